@@ -1,0 +1,1 @@
+"""Whether models and behaviours are sound: constraints, checks, verdicts."""

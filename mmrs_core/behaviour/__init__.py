@@ -1,0 +1,1 @@
+"""The semantics of the Behaviour Language: programs, steps, logs, the replayer."""

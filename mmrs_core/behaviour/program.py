@@ -1,0 +1,169 @@
+"""A behaviour as engines use it: plain frozen values in the local frame, references resolved.
+
+Made from a BL model by `mmrs_core.behaviour.reading.program_of`. Everything that a model may leave
+implicit is explicit here: transitions are indexed by the move that they leave, notify actions name
+the (robot, slot) pairs that they set, positions are (east, north, up) in metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from mmrs_core.diagnostics import Place
+from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, Value
+
+SlotId: TypeAlias = tuple[str, str]
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """What a move leads to or a heading points at.
+
+    Attributes:
+        position: of a coordinate, or where an object is expected; None for an object without a place.
+        description: of an object; None for a coordinate.
+        tolerance: metres that an object may be from its position; 0 for a coordinate, None if unknown.
+        name: of the target in the model; may be empty.
+    """
+
+    position: Position | None
+    description: str | None = None
+    tolerance: float | None = 0.0
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """An orientation: a device (empty: the front) points at a target, turned by an angle in degrees."""
+
+    target: Target
+    device: str = ""
+    angle_degrees: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """An action before or after a movement.
+
+    Attributes:
+        metaclasses: (nsURI, name), most specific first.
+        name: the device action's name, or the action's own name.
+        device: identifier of the device; empty unless a device acts.
+        parameters: (key, value) pairs of a device action, or the payload of a feedback.
+        sets: the slots that a notify sets, resolved once; empty for other actions.
+        active: the value that they are set to.
+    """
+
+    metaclasses: Metaclasses
+    name: str = ""
+    device: str = ""
+    parameters: tuple[tuple[str, str], ...] = ()
+    sets: tuple[SlotId, ...] = ()
+    active: bool = True
+    place: Place = Place()
+
+    def is_a(self, name: Name) -> bool:
+        """Return whether the action is of that metaclass or a subclass of it."""
+        return name in self.metaclasses
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """An atomic movement.
+
+    Attributes:
+        id: unique in the robot: the move's name, or ``moves.<index>`` where it has none.
+        metaclasses: (nsURI, name), most specific first.
+        attributes: plain attributes by feature name (``duration``, ``altitude``, ``trajectory`` …),
+            those of plug-ins included.
+        target, distance, heading, speed: of a GoTo; heading also of a HeadTo. Metres, metres per second.
+        before, after: pre- and post-actions in order.
+        task, rule: what the move serves and which rule made it; empty where nothing is said.
+    """
+
+    id: str
+    metaclasses: Metaclasses
+    attributes: Mapping[str, Value] = field(default_factory=dict)
+    target: Target | None = None
+    distance: float = 0.0
+    heading: Heading | None = None
+    speed: float | None = None
+    before: tuple[Action, ...] = ()
+    after: tuple[Action, ...] = ()
+    task: str = ""
+    rule: str = ""
+    place: Place = Place()
+
+    def is_a(self, name: Name) -> bool:
+        """Return whether the move is of that metaclass or a subclass of it."""
+        return name in self.metaclasses
+
+    @property
+    def kind(self) -> str:
+        """Return the name of the most specific metaclass, for people."""
+        return self.metaclasses[0][1]
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """What follows a move; moves are given by their index in the robot.
+
+    Attributes:
+        waits: names of own slots that must all be active.
+        condition: identifier of a Choice; None for a plain transition.
+        otherwise: where a Choice goes on when its condition does not hold.
+    """
+
+    source: int
+    to: int
+    waits: tuple[str, ...] = ()
+    fluid: bool = False
+    condition: str | None = None
+    otherwise: int | None = None
+    policies: tuple[Policy, ...] = ()
+    place: Place = Place()
+
+    @property
+    def ways(self) -> tuple[int, ...]:
+        """Return the indices of all moves that may follow."""
+        return (self.to,) if self.otherwise is None else (self.to, self.otherwise)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotProgram:
+    """All that one robot does.
+
+    Attributes:
+        home: where it is at the beginning; None where the model does not say.
+        moves: in the model's order.
+        transitions: by index of the move that they leave; every move but Stop has one.
+        start, stop: indices of the only Start and the only Stop.
+    """
+
+    id: str
+    type_name: str
+    travel_mode: str
+    payload: float
+    home: Position | None
+    slots: tuple[str, ...]
+    moves: tuple[Move, ...]
+    transitions: Mapping[int, Transition]
+    start: int
+    stop: int
+    place: Place = Place()
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """The behaviour of all robots."""
+
+    name: str
+    frame: Frame
+    robots: tuple[RobotProgram, ...]
+
+    def robot(self, id: str) -> RobotProgram:
+        """Return the robot of that identifier."""
+        return next(robot for robot in self.robots if robot.id == id)

@@ -1,0 +1,1 @@
+"""What plug-ins hand in: frozen descriptors, and the protocols that they name."""

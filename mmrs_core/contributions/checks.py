@@ -1,0 +1,82 @@
+"""Checks that a behaviour is safe, and what they find."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.scene import Area, Name, Policy, RobotType
+
+
+class Status(Enum):
+    """What a check says of a property."""
+
+    VIOLATED = "violated"
+    SAFE = "safe"
+    UNKNOWN = "unknown"
+    NOT_CHECKED = "not checked"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is known of one property of one robot, or of all of them together.
+
+    Attributes:
+        property: name of the check, such as ``clearance``.
+        robot: identifier; empty where all robots are meant.
+        margin: what is left before the property breaks, negative where it is violated; None where
+            it has no measure. unit: of the margin.
+        move: identifier of the move where the margin is smallest; area: name of the area it is to.
+        message: what was found, for people; for unknown: what is missing.
+    """
+
+    property: str
+    status: Status
+    robot: str = ""
+    margin: float | None = None
+    unit: str = ""
+    move: str = ""
+    area: str = ""
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckInput:
+    """All that a check may look at.
+
+    Attributes:
+        types: robot types by name; a type that a robot names may be missing.
+        areas: of the context as drawn; None where no context was given.
+        environment: by attribute name; absent where not known.
+        reserve: part of lifetime and energy that must be left; position_error: metres.
+        minimum_separation: metres; None: not asked for.
+    """
+
+    program: Program
+    types: Mapping[str, RobotType]
+    robot_kinds: Mapping[Name, RobotKind]
+    move_kinds: Mapping[Name, MoveKind]
+    areas: tuple[Area, ...] | None = None
+    environment: Mapping[str, float] = field(default_factory=dict)
+    reserve: float = 0.2
+    position_error: float = 0.0
+    minimum_separation: float | None = None
+    policies: tuple[Policy, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A property that behaviours are checked for.
+
+    Attributes:
+        name: snake_case, unique; missions accept unknowns by it.
+        title: the property as a sentence.
+        run: one verdict for each robot, or one for all.
+    """
+
+    name: str
+    title: str
+    run: Callable[[CheckInput], Iterable[Verdict]]

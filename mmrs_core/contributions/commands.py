@@ -1,0 +1,21 @@
+"""Commands that plug-ins add to the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command: its help is shown without importing the plug-in's code.
+
+    Attributes:
+        name: as typed after ``mmrs``.
+        help: one line.
+        entry: ``package.module:function``; called with the remaining arguments as a list of strings,
+            returns the exit code.
+    """
+
+    name: str
+    help: str
+    entry: str

@@ -1,0 +1,47 @@
+"""Constraints on models beyond their metamodels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import Name
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One breach of a constraint.
+
+    Attributes:
+        element: the culprit, whose place the diagnostic gets.
+        message: lower case, no full stop, the culprit first.
+        hint: how to mend it; empty: the constraint's own hint.
+    """
+
+    element: Element
+    message: str
+    hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """A rule that valid models keep.
+
+    Attributes:
+        code: three or more capitals and three digits, unique.
+        title: what must hold, as a sentence for the documentation.
+        metaclass: whose instances (subclasses included) it is checked on.
+        check: the breaches by one such element in its models.
+        hint: how to mend a breach.
+        severity: of the diagnostics.
+    """
+
+    code: str
+    title: str
+    metaclass: Name
+    check: Callable[[Element, ModelSet], Iterable[Finding]]
+    hint: str
+    severity: Severity = Severity.ERROR

@@ -1,0 +1,133 @@
+"""What turns tasks into work, and robots into kinematics and moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from mmrs_core.behaviour.program import Move
+from mmrs_core.scene import (
+    Kinematics,
+    Look,
+    Name,
+    Position,
+    Robot,
+    RobotType,
+    Scene,
+    Stroke,
+    Task,
+    Value,
+    Work,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MoveSpec:
+    """A move to be made, without its place in the behaviour.
+
+    Attributes:
+        metaclass: of the move.
+        attributes: plain attributes by feature name.
+        target: where it leads to; None for moves without a target.
+        object: description of an object to go up to, expected at `target`; None for a coordinate.
+        object_tolerance: how far from `target` the object may be, metres; None where unknown.
+        distance: metres from the target at the end.
+        look: orientation; None: the way the robot goes.
+        speed: metres per second; None: by the travel mode.
+    """
+
+    metaclass: Name
+    attributes: Mapping[str, Value] = field(default_factory=dict)
+    target: Position | None = None
+    object: str | None = None
+    object_tolerance: float | None = None
+    distance: float = 0.0
+    look: Look | None = None
+    speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What tasks of one metaclass are made of.
+
+    The rule for the most specific metaclass of a task serves it; two rules for one metaclass are a
+    conflict that names both plug-ins.
+
+    Attributes:
+        name: snake_case; stands in `Move.rule` of every move that it led to.
+        metaclass: of the tasks.
+        work: the work of that task for that robot, whose kinematics are known. It says nothing of
+            who, when, or how to get there. Raises InfeasibleError if that robot cannot do the task;
+            the reason is shown to the operator when no robot can.
+        moves: the moves of a stroke, for tasks whose moves are not GoTo with actions; None: the
+            engine's own.
+    """
+
+    name: str
+    metaclass: Name
+    work: Callable[[Task, Robot, Scene], Work]
+    moves: Callable[[Stroke, Robot], tuple[MoveSpec, ...]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RobotKind:
+    """How robots of one kind move.
+
+    Attributes:
+        name: snake_case.
+        metaclass: of the robot type or of its movement capabilities; the most specific one wins,
+            the robot type's own metaclasses before those of its capabilities.
+        kinematics: what a robot of this kind can do on that mission.
+        launch: moves that take it from home to so many metres above home.
+        recover: moves that bring it down where it is.
+        travel: moves along straight legs; the first position is where the robot is.
+        policies: response (PolicyResponse literal) by event (PolicyEvent literal), where model says nothing.
+    """
+
+    name: str
+    metaclass: Name
+    kinematics: Callable[[Robot, Scene], Kinematics]
+    launch: Callable[[float], tuple[MoveSpec, ...]]
+    recover: Callable[[], tuple[MoveSpec, ...]]
+    travel: Callable[[tuple[Position, ...]], tuple[MoveSpec, ...]]
+    policies: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class MoveKind:
+    """What moves of one metaclass do; checks, simulation and previews go by it.
+
+    Attributes:
+        metaclass: of the moves; the most specific one wins.
+        path: positions that the robot passes on straight legs, the current one first. Arguments: the
+            move, where the robot is, its home or None. None where it is not known, as for an object
+            without a place.
+        seconds: (shortest, longest) duration of the move itself, actions aside, given its path, the
+            robot's kinematics and the travel mode.
+        needs: states the robot must be in before: any of ``grounded``, ``airborne``, ``moving``.
+        leaves: state it is in afterwards; None: as before.
+    """
+
+    metaclass: Name
+    path: Callable[[Move, Position, Position | None], tuple[Position, ...] | None]
+    seconds: Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]
+    needs: frozenset[str]
+    leaves: str | None = None
+
+
+def most_specific(metaclasses: tuple[Name, ...], registered: Mapping[Name, object]) -> Name | None:
+    """Return the first of the metaclasses that is registered; None if none is."""
+    return next((name for name in metaclasses if name in registered), None)
+
+
+def robot_kind_of(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> RobotKind | None:
+    """Return the kind of robots of that type; None where nobody contributed one.
+
+    A capability's metaclass counts only where the type's own most specific match is the general
+    robot or none, so that an underwater capability makes an underwater vehicle of a plain Robot.
+    """
+    by_type = most_specific(robot_type.metaclasses, kinds)
+    by_capability = most_specific(robot_type.capability_metaclasses, kinds)
+    if by_type is None or (by_capability is not None and by_type == ("urn:mmrs:robot:1.0", "Robot")):
+        return kinds[by_capability] if by_capability else (kinds[by_type] if by_type else None)
+    return kinds[by_type]

@@ -1,0 +1,73 @@
+"""Faults of a user's model: what, where, and how to mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Severity(Enum):
+    """How much a fault matters; only errors stop a mission."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """Where something stands in a user's files.
+
+    Attributes:
+        file: the path as the user gave it; empty for a model made in memory.
+        line: counted from 1; 0 where it is not known.
+        path: the element within its model, such as ``/tasks[2]/shell[0]``; may be empty.
+    """
+
+    file: str = ""
+    line: int = 0
+    path: str = ""
+
+    def __str__(self) -> str:
+        """Return ``file:line``, or as much of it as is known."""
+        return f"{self.file}:{self.line}" if self.line else self.file or self.path
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One fault.
+
+    Attributes:
+        code: three or more capitals and three digits, such as ``MML014``; stable.
+        severity: how much it matters.
+        message: lower case, no full stop, the culprit first.
+        place: where it stands.
+        hint: how to mend it; may be empty.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    place: Place = Place()
+    hint: str = ""
+
+    def __str__(self) -> str:
+        """Return one line in the form compilers use, with the hint beneath it."""
+        where = f"{self.place}: " if str(self.place) else ""
+        hint = f"\n    hint: {self.hint}" if self.hint else ""
+        return f"{where}{self.severity.value}: {self.message} [{self.code}]{hint}"
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Return whether any of them is an error."""
+    return any(fault.severity is Severity.ERROR for fault in diagnostics)
+
+
+_RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.NOTE: 2}
+
+
+def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return them without repeats: errors first, then by file, line and code."""
+    unique = dict.fromkeys(diagnostics)
+    return tuple(sorted(unique, key=lambda d: (_RANK[d.severity], d.place, d.code, d.message)))

@@ -1,0 +1,94 @@
+"""Everything this package raises.
+
+    MmrsError
+    ├── InternalError        our own bug
+    ├── UnreadableError      a file that is missing, too large, or no model at all
+    ├── InvalidModelError    a model with faults, all of them listed
+    ├── InfeasibleError      a valid mission that no plan can satisfy
+    │   └── UnreachableError no route keeps the clearance
+    ├── UnsupportedError     a target or backend that cannot express what a model holds
+    ├── PluginError          a plug-in that is broken, missing or in conflict
+    └── LinkLostError        a robot or the bus that no longer answers
+
+A caller's mistake is a `ValueError`, never one of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+
+
+class MmrsError(Exception):
+    """A fault that a user of MMRS can do something about.
+
+    Attributes:
+        exit_code: what a command that ends with this error returns to the shell.
+    """
+
+    exit_code: ClassVar[int] = 1
+
+
+class InternalError(MmrsError):
+    """A broken promise of our own code; the message says which one."""
+
+
+class UnreadableError(MmrsError):
+    """An input that cannot be read as a model at all."""
+
+    exit_code = 3
+
+
+class InvalidModelError(MmrsError):
+    """A model that breaks its metamodel or a constraint.
+
+    Attributes:
+        diagnostics: every fault found, errors first.
+    """
+
+    def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
+        super().__init__(message)
+        self.diagnostics = tuple(diagnostics)
+
+
+class InfeasibleError(MmrsError):
+    """A mission that no plan can satisfy.
+
+    Attributes:
+        reasons: what is short, by how much, and where; at least one line.
+    """
+
+    exit_code = 4
+
+    def __init__(self, message: str, reasons: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.reasons = tuple(reasons) or (message,)
+
+
+class UnreachableError(InfeasibleError):
+    """No route keeps the required clearance between two positions."""
+
+
+class UnsupportedError(MmrsError):
+    """A target or backend was given something it cannot express.
+
+    Attributes:
+        elements: each thing that cannot be expressed, with its robot and move.
+    """
+
+    def __init__(self, message: str, elements: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.elements = tuple(elements)
+
+
+class PluginError(MmrsError):
+    """A plug-in that is broken, missing or in conflict with another."""
+
+
+class LinkLostError(MmrsError):
+    """A robot, vehicle or bus that stopped answering."""
+
+    exit_code = 5

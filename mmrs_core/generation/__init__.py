@@ -1,0 +1,1 @@
+"""Code from behaviours, by templates."""

@@ -1,0 +1,1 @@
+"""Pure geometry: frames, polygons, clearance, segments."""

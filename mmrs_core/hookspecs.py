@@ -1,0 +1,94 @@
+"""Every hook: its signature and its contract, nothing else.
+
+Hooks named after a plural noun declare things: they are called once, when plug-ins are loaded, take
+no argument and return frozen descriptors. Hooks named ``mmrs_stage_finished`` and
+``mmrs_step_executed`` observe. Choice among contributions is by explicit name or by most specific
+metaclass, never by the order of registration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pluggy
+
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.contributions.targets import Target
+from mmrs_core.languages.registry import MetamodelSource
+
+hookspec = pluggy.HookspecMarker("mmrs")
+hookimpl = pluggy.HookimplMarker("mmrs")
+
+
+@hookspec
+def mmrs_metamodels() -> Iterable[MetamodelSource]:  # type: ignore[empty-body]
+    """Contribute metamodels that extend the languages.
+
+    They refer to each other and to the core's by nsURI, never by path. Two of one nsURI are an error.
+    """
+
+
+@hookspec
+def mmrs_constraints() -> Iterable[Constraint]:  # type: ignore[empty-body]
+    """Contribute constraints on models; their codes are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_rules() -> Iterable[Rule]:  # type: ignore[empty-body]
+    """Contribute what tasks are made of; one rule for a metaclass."""
+
+
+@hookspec
+def mmrs_robot_kinds() -> Iterable[RobotKind]:  # type: ignore[empty-body]
+    """Contribute how robots of a metaclass move; one kind for a metaclass."""
+
+
+@hookspec
+def mmrs_move_kinds() -> Iterable[MoveKind]:  # type: ignore[empty-body]
+    """Contribute what moves of a metaclass do; one kind for a metaclass."""
+
+
+@hookspec
+def mmrs_checks() -> Iterable[Check]:  # type: ignore[empty-body]
+    """Contribute checks of behaviours; their names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_targets() -> Iterable[Target]:  # type: ignore[empty-body]
+    """Contribute what code can be generated for; names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_backends() -> Iterable[BackendFactory]:  # type: ignore[empty-body]
+    """Contribute what the interpreter can drive; names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_conditions() -> Iterable[Condition]:  # type: ignore[empty-body]
+    """Contribute functions that decide Choices, by condition identifier."""
+
+
+@hookspec
+def mmrs_map_symbols() -> Iterable[MapSymbol]:  # type: ignore[empty-body]
+    """Contribute how elements look on maps; one symbol for a metaclass."""
+
+
+@hookspec
+def mmrs_commands() -> Iterable[Command]:  # type: ignore[empty-body]
+    """Contribute commands of the command line; names are unique over all plug-ins and the core."""
+
+
+@hookspec
+def mmrs_stage_finished(stage: str, result: object) -> None:
+    """Observe that a stage of the pipeline has finished, with what it returned."""
+
+
+@hookspec
+def mmrs_step_executed(record: StepRecord) -> None:
+    """Observe a step that the interpreter has executed."""

@@ -1,0 +1,1 @@
+"""The modelling languages in memory: metamodels, model elements, reading, writing and conformance."""

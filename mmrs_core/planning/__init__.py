@@ -1,0 +1,1 @@
+"""Who does what, when, and by which way: pure algorithms over scenes."""

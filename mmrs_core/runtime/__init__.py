@@ -1,0 +1,1 @@
+"""Execution of behaviours by interpretation."""

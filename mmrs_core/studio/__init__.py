@@ -1,0 +1,1 @@
+"""The map studio for operators."""
