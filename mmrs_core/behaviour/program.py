@@ -153,16 +153,28 @@ class RobotProgram:
     transitions: Mapping[int, Transition]
     start: int
     stop: int
+    policies: tuple[Policy, ...] = ()
     place: Place = Place()
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """The behaviour of all robots."""
+    """The behaviour of all robots.
+
+    Attributes:
+        position_error: metres that a robot may be from where it believes to be.
+        minimum_separation: metres between robots; None: not asked for.
+        reserve: part of lifetime and energy that must remain unused, 0 to 1.
+        accepted_unknowns: names of the checks whose properties may remain unknown.
+    """
 
     name: str
     frame: Frame
     robots: tuple[RobotProgram, ...]
+    position_error: float = 0.0
+    minimum_separation: float | None = None
+    reserve: float = 0.2
+    accepted_unknowns: tuple[str, ...] = ()
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.scene import (
+    ActionAt,
     Kinematics,
     Look,
     Name,
@@ -34,6 +35,7 @@ class MoveSpec:
         distance: metres from the target at the end.
         look: orientation; None: the way the robot goes.
         speed: metres per second; None: by the travel mode.
+        before, after: device actions before and after the movement; their `at` does not matter.
     """
 
     metaclass: Name
@@ -44,6 +46,8 @@ class MoveSpec:
     distance: float = 0.0
     look: Look | None = None
     speed: float | None = None
+    before: tuple[ActionAt, ...] = ()
+    after: tuple[ActionAt, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +63,8 @@ class Rule:
         work: the work of that task for that robot, whose kinematics are known. It says nothing of
             who, when, or how to get there. Raises InfeasibleError if that robot cannot do the task;
             the reason is shown to the operator when no robot can.
-        moves: the moves of a stroke, for tasks whose moves are not GoTo with actions; None: the
-            engine's own.
+        moves: the moves of a stroke, for tasks whose moves are not GoTo with actions; the robot is
+            at the stroke's first point. None: the engine's own.
     """
 
     name: str
@@ -104,7 +108,8 @@ class MoveKind:
             without a place.
         seconds: (shortest, longest) duration of the move itself, actions aside, given its path, the
             robot's kinematics and the travel mode.
-        needs: states the robot must be in before: any of ``grounded``, ``airborne``, ``moving``.
+        needs: states, one of which the robot must be in before: ``grounded`` (where robots that
+            launch begin), ``airborne``, ``moving`` (where all others are throughout).
         leaves: state it is in afterwards; None: as before.
     """
 
