@@ -1,0 +1,1 @@
+"""Autonomous underwater vehicles for MMRS: thrusters, buoyancy and depth."""

@@ -1,0 +1,1 @@
+"""Multicopters for MMRS: their types, take-off, landing and trajectories."""

@@ -1,0 +1,1 @@
+"""Survey tasks for MMRS: photographing, sampling, measuring, observing and approaching."""
