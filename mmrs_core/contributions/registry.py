@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import TypeVar
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeVar
 
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
@@ -14,11 +15,27 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.registry import MetamodelSource, Registry
+from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 from mmrs_core.scene import Name
 
 Key = TypeVar("Key")
 Item = TypeVar("Item")
+
+Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
+
+_SHOWN: Mapping[str, Callable[[Any], object]] = {
+    "metamodels": lambda source: source.ns_uri,
+    "constraints": lambda constraint: constraint.code,
+    "rules": lambda rule: rule.name,
+    "robot_kinds": lambda kind: kind.name,
+    "move_kinds": lambda kind: "#//".join(kind.metaclass),
+    "checks": lambda check: check.name,
+    "targets": lambda target: target.name,
+    "backends": lambda backend: backend.name,
+    "conditions": lambda condition: condition.identifier,
+    "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
+    "commands": lambda command: command.name,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,34 +43,95 @@ class Contribution:
     """One thing that a plug-in contributed: for people."""
 
     plugin: str
-    distribution: str
     sort: str
     name: str
 
 
-@dataclass(frozen=True, slots=True)
 class Contributions:
     """What the loaded plug-ins contributed; the core's own is among it.
 
-    Attributes:
-        languages: the registry of all metamodels.
-        observers: called with (hook name, arguments) when a stage finishes or a step is executed.
-        catalogue: who contributed what, sorted.
+    Each sort is asked for when it is first needed, so that a command pays only for what it uses.
+    Every attribute raises PluginError if two plug-ins contribute the same thing; it names both.
+
+    Args:
+        declared: the (plug-in, descriptor) pairs of a sort, such as ``rules``, sorted by plug-in.
     """
 
-    languages: Registry
-    metamodels: tuple[MetamodelSource, ...] = ()
-    constraints: tuple[Constraint, ...] = ()
-    rules: Mapping[Name, Rule] = field(default_factory=dict)
-    robot_kinds: Mapping[Name, RobotKind] = field(default_factory=dict)
-    move_kinds: Mapping[Name, MoveKind] = field(default_factory=dict)
-    checks: tuple[Check, ...] = ()
-    targets: Mapping[str, Target] = field(default_factory=dict)
-    backends: Mapping[str, BackendFactory] = field(default_factory=dict)
-    conditions: Mapping[str, Condition] = field(default_factory=dict)
-    map_symbols: Mapping[Name, MapSymbol] = field(default_factory=dict)
-    commands: tuple[Command, ...] = ()
-    catalogue: tuple[Contribution, ...] = ()
+    def __init__(self, declared: Declared) -> None:
+        self._declared = declared
+
+    @cached_property
+    def metamodels(self) -> tuple[MetamodelSource, ...]:
+        """Return the metamodels of plug-ins."""
+        return tuple(self._by("metamodels", lambda source: source.ns_uri).values())
+
+    @cached_property
+    def languages(self) -> Registry:
+        """Return the registry of all metamodels, the core's included."""
+        return registry_with(self.metamodels)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Return the constraints on models."""
+        return tuple(self._by("constraints", lambda constraint: constraint.code).values())
+
+    @cached_property
+    def rules(self) -> Mapping[Name, Rule]:
+        """Return the rules by the metaclass of their tasks."""
+        by_key("rules", self._declared("rules"), lambda rule: rule.name)
+        return self._by("rules", lambda rule: rule.metaclass)
+
+    @cached_property
+    def robot_kinds(self) -> Mapping[Name, RobotKind]:
+        """Return the kinds of robots by metaclass."""
+        return self._by("robot_kinds", lambda kind: kind.metaclass)
+
+    @cached_property
+    def move_kinds(self) -> Mapping[Name, MoveKind]:
+        """Return the kinds of moves by metaclass."""
+        return self._by("move_kinds", lambda kind: kind.metaclass)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """Return the checks of behaviours."""
+        return tuple(self._by("checks", lambda check: check.name).values())
+
+    @cached_property
+    def targets(self) -> Mapping[str, Target]:
+        """Return the targets for code generation by name."""
+        return self._by("targets", lambda target: target.name)
+
+    @cached_property
+    def backends(self) -> Mapping[str, BackendFactory]:
+        """Return what can execute behaviours, by name."""
+        return self._by("backends", lambda backend: backend.name)
+
+    @cached_property
+    def conditions(self) -> Mapping[str, Condition]:
+        """Return the functions that decide Choices, by identifier."""
+        return self._by("conditions", lambda condition: condition.identifier)
+
+    @cached_property
+    def map_symbols(self) -> Mapping[Name, MapSymbol]:
+        """Return how elements look on maps, by metaclass."""
+        return self._by("map_symbols", lambda symbol: symbol.metaclass)
+
+    @cached_property
+    def commands(self) -> tuple[Command, ...]:
+        """Return the commands that plug-ins add."""
+        return tuple(self._by("commands", lambda command: command.name).values())
+
+    def catalogue(self) -> tuple[Contribution, ...]:
+        """Return who contributed what, sorted by plug-in, sort and name."""
+        found = (
+            Contribution(plugin, sort, str(shown(item)))
+            for sort, shown in _SHOWN.items()
+            for plugin, item in self._declared(sort)
+        )
+        return tuple(sorted(found, key=lambda each: (each.plugin, each.sort, each.name)))
+
+    def _by(self, sort: str, key: Callable[[Any], Key]) -> dict[Key, Any]:
+        return by_key(sort, self._declared(sort), key)
 
 
 def by_key(sort: str, items: Iterable[tuple[str, Item]], key: Callable[[Item], Key]) -> dict[Key, Item]:

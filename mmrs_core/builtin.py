@@ -1,0 +1,60 @@
+"""The plug-in called core: what MMRS itself contributes, through the same hooks as everybody."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.execution import BackendFactory
+from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.targets import Target
+from mmrs_core.hookspecs import hookimpl
+
+
+@hookimpl
+def mmrs_constraints() -> Iterable[Constraint]:
+    """Contribute the constraints on missions, contexts, robot types and behaviours."""
+    from mmrs_core.analysis.constraints import CONSTRAINTS
+
+    return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_robot_kinds() -> Iterable[RobotKind]:
+    """Contribute the kind of robots that no plug-in knows better: they move on their own level."""
+    from mmrs_core.transformation.kinds import PLAIN_ROBOT
+
+    return (PLAIN_ROBOT,)
+
+
+@hookimpl
+def mmrs_move_kinds() -> Iterable[MoveKind]:
+    """Contribute the moves of the Behaviour Language."""
+    from mmrs_core.transformation.kinds import MOVE_KINDS
+
+    return MOVE_KINDS
+
+
+@hookimpl
+def mmrs_checks() -> Iterable[Check]:
+    """Contribute the checks of behaviours."""
+    from mmrs_core.analysis.checks import CHECKS
+
+    return CHECKS
+
+
+@hookimpl
+def mmrs_targets() -> Iterable[Target]:
+    """Contribute the targets for code generation."""
+    from mmrs_core.generation.targets import TARGETS
+
+    return TARGETS
+
+
+@hookimpl
+def mmrs_backends() -> Iterable[BackendFactory]:
+    """Contribute the simulation."""
+    from mmrs_core.runtime.simulation import SIMULATION
+
+    return (SIMULATION,)

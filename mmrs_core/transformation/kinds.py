@@ -1,0 +1,205 @@
+"""How plain robots and the moves of the core language move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from math import dist, hypot, inf
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Move
+from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Capability, Kinematics, Position, Robot, RobotType, Scene
+
+ROBOT = ("urn:mmrs:robot:1.0", "Robot")
+SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
+ANYWHERE = frozenset({"grounded", "airborne", "moving"})
+AFLOAT = frozenset({"airborne", "moving"})
+
+
+def capability_for(robot_type: RobotType, payload: float) -> Capability:
+    """Return the capability that was measured with the smallest payload not below this one.
+
+    Raises:
+        InfeasibleError: if the robot was never measured with so much, or may not carry it.
+    """
+    if robot_type.max_payload is not None and payload > robot_type.max_payload:
+        raise InfeasibleError(
+            f"robot type '{robot_type.name}' carries at most {robot_type.max_payload:g} kg,"
+            f" not {payload:g} kg"
+        )
+    for capability in robot_type.capabilities:
+        if capability.payload >= payload:
+            return capability
+    raise InfeasibleError(
+        f"robot type '{robot_type.name}' has no movement capability for a payload of {payload:g} kg"
+    )
+
+
+def kinematics_for(
+    robot: Robot,
+    scene: Scene,
+    *,
+    floor: float = -inf,
+    ceiling: float = inf,
+    launch: float = 0.0,
+    recovery: float = 0.0,
+    launches: bool = False,
+) -> Kinematics:
+    """Return the kinematics that follow from a robot type's own figures.
+
+    Cruise is the travel mode's share of the largest speed, never under the smallest. The mean power
+    is what empties the batteries in the lifetime. Robot kinds add their limits of height.
+
+    Raises:
+        InfeasibleError: if the type has no capability for the robot's payload.
+    """
+    capability = capability_for(robot.type, robot.payload)
+    slowest, fastest = capability.speed
+    stored = sum(battery.energy for battery in robot.type.batteries)
+    lifetime = capability.lifetime
+    usable = 1.0 - scene.reserve
+    return Kinematics(
+        cruise=max(slowest, SHARE_OF_LARGEST_SPEED[robot.travel_mode] * fastest),
+        slowest=slowest,
+        fastest=fastest,
+        climb=capability.climb_rate or fastest,
+        descent=capability.descent_rate or fastest,
+        acceleration=capability.acceleration or inf,
+        turn_rate=capability.turn_rate or 90.0,
+        floor=floor,
+        ceiling=ceiling,
+        launch=launch,
+        recovery=recovery,
+        endurance=inf if lifetime is None else lifetime * usable,
+        energy=stored * usable if stored else inf,
+        power=stored / lifetime if stored and lifetime else 0.0,
+        recharge=_recharge(robot.type),
+        launches=launches,
+    )
+
+
+def _recharge(robot_type: RobotType) -> float | None:
+    times = [battery.recharge_time for battery in robot_type.batteries]
+    known = [time for time in times if time is not None]
+    return max(known) if known and len(known) == len(times) else None
+
+
+def straight_travel(route: tuple[Position, ...]) -> tuple[MoveSpec, ...]:
+    """Return one GoTo of the core language for each leg of a route."""
+    return tuple(MoveSpec((BEHAVIOUR, "GoTo"), target=position) for position in route[1:])
+
+
+def straight_path(move: Move, here: Position, home: Position | None) -> tuple[Position, ...] | None:
+    """Return the straight way to a GoTo's target, ended `distance` before it.
+
+    None where the target is an object whose place is not known.
+    """
+    if move.target is None or move.target.position is None:
+        return None
+    return (here, before_target(here, move.target.position, move.distance))
+
+
+def before_target(here: Position, target: Position, distance: float) -> Position:
+    """Return the point on the straight way that is so far before the target; `here` if it is nearer."""
+    whole = dist(here, target)
+    if distance <= 0.0:
+        return target
+    if whole <= distance:
+        return here
+    part = (whole - distance) / whole
+    return (
+        here[0] + part * (target[0] - here[0]),
+        here[1] + part * (target[1] - here[1]),
+        here[2] + part * (target[2] - here[2]),
+    )
+
+
+def leg_seconds(start: Position, end: Position, speed: float, kinematics: Kinematics) -> float:
+    """Return how long a straight leg takes: the slower of its level and its vertical part.
+
+    Accelerations are not counted.
+    """
+    level = hypot(end[0] - start[0], end[1] - start[1]) / speed
+    rise = end[2] - start[2]
+    return max(level, rise / kinematics.climb, -rise / kinematics.descent)
+
+
+def path_seconds(
+    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
+) -> tuple[float, float]:
+    """Return how long a move along a path takes at its commanded or its robot's cruise speed."""
+    speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
+    whole = sum(leg_seconds(a, b, speed, kinematics) for a, b in pairwise(path))
+    return whole, whole
+
+
+def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:
+    """Return the path of a move on the spot."""
+    return (here,)
+
+
+def no_time(move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str) -> tuple[float, float]:
+    """Return the duration of a move that takes none."""
+    return 0.0, 0.0
+
+
+def declared_time(
+    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
+) -> tuple[float, float]:
+    """Return the duration that the move itself declares."""
+    duration = move.attributes.get("duration")
+    seconds = float(duration) if isinstance(duration, (int, float)) else 0.0
+    return seconds, seconds
+
+
+def turning_time(
+    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
+) -> tuple[float, float]:
+    """Return the bounds of a turn on the spot: none to half a circle."""
+    return 0.0, 180.0 / kinematics.turn_rate
+
+
+def _level_kinematics(robot: Robot, scene: Scene) -> Kinematics:
+    return kinematics_for(robot, scene, floor=robot.home[2], ceiling=robot.home[2])
+
+
+def _nothing() -> tuple[MoveSpec, ...]:
+    return ()
+
+
+def _no_launch(height: float) -> tuple[MoveSpec, ...]:
+    return ()
+
+
+PLAIN_ROBOT = RobotKind(
+    name="plain_robot",
+    metaclass=ROBOT,
+    kinematics=_level_kinematics,
+    launch=_no_launch,
+    recover=_nothing,
+    travel=straight_travel,
+    policies={
+        "LINK_LOST": "HOLD",
+        "PEER_LOST": "HOLD",
+        "BATTERY_LOW": "RETURN",
+        "WAIT_TOO_LONG": "HOLD",
+        "DEVICE_SILENT": "CONTINUE",
+    },
+)
+
+_Seconds = Callable[[Move, tuple[Position, ...], Kinematics, str], tuple[float, float]]
+
+
+def _on_the_spot(name: str, seconds: _Seconds, needs: frozenset[str] = ANYWHERE) -> MoveKind:
+    return MoveKind((BEHAVIOUR, name), stays, seconds, needs)
+
+
+MOVE_KINDS = (
+    _on_the_spot("Start", no_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("Stop", no_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("HoldPosition", declared_time),
+    _on_the_spot("Recharge", declared_time, frozenset({"grounded", "moving"})),
+    _on_the_spot("HeadTo", turning_time, AFLOAT),
+    MoveKind((BEHAVIOUR, "GoTo"), straight_path, path_seconds, AFLOAT),
+)
