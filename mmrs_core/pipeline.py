@@ -1,0 +1,225 @@
+"""The stages from models to behaviours, code and runs, in order; one short function each.
+
+Stages print nothing, read no clock and no environment; only `write` and `save` touch the disk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
+from mmrs_core.errors import InvalidModelError, UnsupportedError
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.checks import Verdict
+    from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.contributions.targets import GeneratedFile
+    from mmrs_core.languages import behaviour as bl
+    from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.runtime.run import Run
+    from mmrs_core.scene import Area, Plan, Policy, RobotType, Scene
+    from mmrs_core.transformation.engine import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What a behaviour is checked against and rendered for, beside itself.
+
+    Attributes:
+        types: robot types by name.
+        areas: of the context as drawn; None where no context is given.
+        environment: weather and water, by attribute name.
+    """
+
+    types: Mapping[str, RobotType]
+    areas: tuple[Area, ...] | None = None
+    environment: Mapping[str, float] | None = None
+
+
+def read_models(
+    mission: Path,
+    contributions: Contributions,
+    *,
+    context: Path | None = None,
+    robots: Sequence[Path] = (),
+) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
+    """Return a mission with its context and robot types, and every fault that reading found.
+
+    Args:
+        mission: a project folder, or the mission's file; what is not named lies beside it.
+
+    Raises:
+        UnreadableError: if a file is missing or no model at all.
+    """
+    from mmrs_core.languages.modelset import read_project
+
+    return read_project(mission, context=context, robots=robots, registry=contributions.languages)
+
+
+def check_models(models: ModelSet, contributions: Contributions) -> tuple[Diagnostic, ...]:
+    """Return every fault of the models: conformance to the metamodels, then constraints."""
+    from mmrs_core.analysis.constraints import check_constraints
+    from mmrs_core.languages.conformance import check_conformance
+
+    registry = contributions.languages
+    faults = [fault for model in models.models for fault in check_conformance(model, registry)]
+    faults.extend(check_constraints(models, contributions.constraints, registry))
+    return in_order(faults)
+
+
+def valid_models(
+    mission: Path,
+    contributions: Contributions,
+    *,
+    context: Path | None = None,
+    robots: Sequence[Path] = (),
+) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
+    """Return models without errors, and their warnings.
+
+    Raises:
+        InvalidModelError: with all diagnostics, if any is an error.
+    """
+    models, faults = read_models(mission, contributions, context=context, robots=robots)
+    if models is not None:
+        faults = in_order((*faults, *check_models(models, contributions)))
+    if models is None or has_errors(faults):
+        raise InvalidModelError(f"{mission}: the mission is not valid", faults)
+    return models, faults
+
+
+def ground(models: ModelSet) -> Scene:
+    """Return the mission in the local frame."""
+    from mmrs_core.languages.grounding import ground as grounded
+
+    return grounded(models)
+
+
+def expand(scene: Scene, contributions: Contributions) -> Scene:
+    """Return the scene with the kinematics of every robot and the work of every task."""
+    from mmrs_core.transformation.expand import expand as expanded
+
+    return expanded(scene, contributions.rules, contributions.robot_kinds)
+
+
+def plan(scene: Scene, *, seed: int = 0) -> Plan:
+    """Return who does what, when and by which way, for an expanded scene."""
+    from mmrs_core.planning.planner import plan as planned
+
+    return planned(scene, seed=seed)
+
+
+def transform(scene: Scene, plan: Plan, contributions: Contributions) -> tuple[bl.Behaviour, Trace]:
+    """Return the behaviour of every robot, and what each of its moves is for."""
+    from mmrs_core.transformation.engine import transform as transformed
+
+    return transformed(
+        scene,
+        plan,
+        rules=contributions.rules,
+        robot_kinds=contributions.robot_kinds,
+        registry=contributions.languages,
+    )
+
+
+def place_of_scene(scene: Scene) -> Place:
+    """Return what the behaviour of a scene is checked against."""
+    types = {robot.type.name: robot.type for robot in scene.robots}
+    return Place(types, scene.areas, scene.environment)
+
+
+def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program:
+    """Return a behaviour as engines use it."""
+    from mmrs_core.behaviour.reading import program_of as program
+
+    return program(behaviour, registry=contributions.languages)
+
+
+def verify(program: Program, place: Place, contributions: Contributions) -> tuple[Verdict, ...]:
+    """Return what is known of every property of a behaviour."""
+    from mmrs_core.analysis.verdicts import verify as verified
+    from mmrs_core.contributions.checks import CheckInput
+
+    given = CheckInput(
+        program=program,
+        types=place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        areas=place.areas,
+        environment=place.environment or {},
+        reserve=program.reserve,
+        position_error=program.position_error,
+        minimum_separation=program.minimum_separation,
+    )
+    return verified(given, contributions.checks)
+
+
+def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ...]:
+    """Return the verdicts that stand against a behaviour: violations, and unknowns nobody accepted."""
+    from mmrs_core.analysis.verdicts import refusing
+
+    return refusing(verdicts, program.accepted_unknowns)
+
+
+def render(
+    program: Program,
+    place: Place,
+    target: str,
+    contributions: Contributions,
+    *,
+    allow_lossy: bool = False,
+    policies: tuple[Policy, ...] = (),
+) -> tuple[GeneratedFile, ...]:
+    """Return the code of every robot for a target.
+
+    Raises:
+        UnsupportedError: if there is no such target, or it cannot express what the behaviour holds.
+    """
+    from mmrs_core.contributions.targets import TargetInput
+    from mmrs_core.generation.render import render as rendered
+
+    if target not in contributions.targets:
+        known = ", ".join(sorted(contributions.targets))
+        raise UnsupportedError(f"target '{target}': not known; there are {known}")
+    given = TargetInput(
+        program=program,
+        types=place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        areas=place.areas or (),
+        policies=policies,
+        position_error=program.position_error,
+    )
+    return rendered(contributions.targets[target], given, allow_lossy=allow_lossy)
+
+
+def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:
+    """Write generated files below a directory; return their paths."""
+    from mmrs_core.generation.writing import write as written
+
+    return written(files, directory)
+
+
+def save(behaviour: bl.Behaviour, path: Path, contributions: Contributions) -> None:
+    """Write a behaviour model, wholly or not at all."""
+    from mmrs_core.languages.writing import write_model
+
+    write_model((behaviour,), path, contributions.languages)
+
+
+def simulate(program: Program, place: Place, contributions: Contributions, *, run: str = "run-0") -> Run:
+    """Return the simulated run of a behaviour in still air unless the environment says otherwise."""
+    from mmrs_core.runtime.run import simulate as simulated
+
+    return simulated(
+        program,
+        types=place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        conditions=contributions.conditions,
+        environment=place.environment or {},
+        run=run,
+    )

@@ -1,0 +1,129 @@
+"""From the steps of a robot's plan to a chain of moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import singledispatchmethod
+
+from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.contributions.rules import MoveSpec, RobotKind, Rule
+from mmrs_core.errors import InfeasibleError, InternalError
+from mmrs_core.scene import (
+    ActionAt,
+    Await,
+    Branch,
+    Launch,
+    Recharge,
+    Recover,
+    Robot,
+    RobotPlan,
+    Serve,
+    Signal,
+    Step,
+    Transit,
+)
+from mmrs_core.transformation.chain import Chain, Give, Report, UseDevice
+from mmrs_core.transformation.strokes import moves_of
+
+
+def draft(plan: RobotPlan, robot: Robot, kind: RobotKind, rules: Mapping[str, Rule]) -> Chain:
+    """Return the moves of one robot.
+
+    Args:
+        kind: of that robot; makes its launches, recoveries and ways.
+        rules: by name; one that has `moves` makes those of its strokes itself.
+    """
+    drafting = _Drafting(robot, kind, rules)
+    for step in plan.steps:
+        drafting.add(step)
+    drafting.chain.add(MoveSpec((BEHAVIOUR, "Stop")), "", "recover")
+    return drafting.chain
+
+
+class _Drafting:
+    def __init__(self, robot: Robot, kind: RobotKind, rules: Mapping[str, Rule]) -> None:
+        self.chain = Chain()
+        self._robot, self._kind, self._rules = robot, kind, rules
+
+    @singledispatchmethod
+    def add(self, step: Step) -> None:
+        """Add the moves of a step."""
+        raise InternalError(f"{type(step).__name__}: no such step of a plan")
+
+    @add.register
+    def _(self, step: Launch) -> None:
+        for spec in self._kind.launch(step.up - step.at[2]):
+            self._add(spec, step.task, "launch")
+
+    @add.register
+    def _(self, step: Transit) -> None:
+        for spec in self._kind.travel(step.route):
+            self._add(spec, step.task, "transit")
+
+    @add.register
+    def _(self, step: Serve) -> None:
+        rule = self._rules.get(step.rule)
+        cruise = self._robot.kinematics.cruise if self._robot.kinematics else step.speed
+        speed = None if abs(step.speed - cruise) < 1e-9 else step.speed
+        if rule is not None and rule.moves is not None:
+            specs = rule.moves(step.stroke, self._robot)
+        else:
+            specs = moves_of(step.stroke, self._kind, speed)
+        for spec in specs:
+            self._add(spec, step.task, step.rule)
+        if step.last:
+            done = Report((("task", step.task), ("state", "done")))
+            self.chain.last(step.task, step.rule).after.append(done)
+
+    @add.register
+    def _(self, step: Await) -> None:
+        if step.until is not None:
+            self.chain.pause(step.task, "wait", max(0.0, step.until - step.begin))
+        self.chain.wait(step.signals)
+
+    @add.register
+    def _(self, step: Signal) -> None:
+        self.chain.last(step.task, "notify").after.append(Give(step.signal, step.receivers))
+
+    @add.register
+    def _(self, step: Recover) -> None:
+        for spec in self._kind.recover():
+            self._add(spec, step.task, "recover")
+
+    @add.register
+    def _(self, step: Recharge) -> None:
+        spec = MoveSpec((BEHAVIOUR, "Recharge"), {"duration": step.end - step.begin})
+        self._add(spec, step.task, "recharge")
+
+    @add.register
+    def _(self, step: Branch) -> None:
+        ends = []
+        for condition, steps in step.arms:
+            if condition is not None:
+                holds, fails = self.chain.branch(condition)
+                self.chain.resume(holds)
+            for inner in steps:
+                self.add(inner)
+            if not steps:
+                self.chain.pause(step.task, "choice")
+            ends.extend(self.chain.ends)
+            if condition is not None:
+                self.chain.resume(fails)
+        self.chain.resume(*ends)
+
+    def _add(self, spec: MoveSpec, task: str, rule: str) -> None:
+        node = self.chain.add(spec, task, rule)
+        node.before.extend(self._deed(action) for action in spec.before)
+        node.after.extend(self._deed(action) for action in spec.after)
+
+    def _deed(self, action: ActionAt) -> UseDevice:
+        device = action.device or self._only_device(action.action)
+        return UseDevice(action.action, device, action.parameters)
+
+    def _only_device(self, action: str) -> str:
+        devices = self._robot.type.devices
+        able = [device.id for device in devices.values() if action in device.actions]
+        if len(able) != 1:
+            found = f"devices {', '.join(able)} support" if able else "no device supports"
+            raise InfeasibleError(f"robot '{self._robot.name}': {found} action '{action}'; name one")
+        return able[0]

@@ -1,0 +1,226 @@
+"""From a plan to a behaviour model, with a trace of what serves what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from mmrs_core.contributions.rules import MoveSpec, RobotKind, Rule
+from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages import robot as rl
+from mmrs_core.languages.registry import Registry
+from mmrs_core.scene import Branch, Name, Plan, Policy, Position, Robot, Scene, Signal, Step
+from mmrs_core.transformation.chain import Chain, Deed, Edge, Give, Node, Report, UseDevice
+from mmrs_core.transformation.coordinates import Coordinates
+from mmrs_core.transformation.drafting import draft
+from mmrs_core.transformation.fluid import Corners
+
+ORIGIN: Position = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class TraceLink:
+    """A move, the task that it serves (empty: none in particular), and the rule that made it."""
+
+    robot: str
+    move: str
+    task: str
+    rule: str
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """What each move of a behaviour is for, robot by robot in the order of the moves."""
+
+    links: tuple[TraceLink, ...]
+
+    def moves_for(self, task: str) -> tuple[TraceLink, ...]:
+        """Return the moves that serve or lead to a task."""
+        return tuple(link for link in self.links if link.task == task)
+
+
+def transform(
+    scene: Scene,
+    plan: Plan,
+    *,
+    rules: Mapping[Name, Rule],
+    robot_kinds: Mapping[Name, RobotKind],
+    registry: Registry,
+) -> tuple[bl.Behaviour, Trace]:
+    """Return the behaviour of every robot that has something to do, and what each move is for.
+
+    The behaviour is monotone: a fresh slot for each synchronisation and receiver, only ever
+    activated. Robots without work do not occur in it.
+    """
+    kinds = {kind.name: kind for kind in robot_kinds.values()}
+    by_name = {rule.name: rule for rule in rules.values()}
+    chains = {
+        each.robot: draft(each, scene.robot(each.robot), kinds[scene.robot(each.robot).kind], by_name)
+        for each in plan.robots
+        if each.steps
+    }
+    return _Assembly(scene, plan, chains, registry).behaviour()
+
+
+class _Assembly:
+    def __init__(self, scene: Scene, plan: Plan, chains: Mapping[str, Chain], registry: Registry) -> None:
+        self._scene, self._chains, self._registry = scene, chains, registry
+        self._coordinates = Coordinates(scene.frame, _positions(scene, chains))
+        self._objects: dict[tuple[str, Position, float | None], bl.ObjectTarget] = {}
+        self._slots = _slots(plan)
+
+    def behaviour(self) -> tuple[bl.Behaviour, Trace]:
+        scene = self._scene
+        robots = [self._robot(scene.robot(name), chain) for name, chain in self._chains.items()]
+        behaviour = bl.Behaviour(
+            name=scene.name,
+            crs=scene.frame.crs,
+            altitudeReference=self._coordinates.altitude_reference,
+            origin=self._coordinates.at(ORIGIN),
+            surfaceHeight=scene.frame.surface,
+            geoidSeparation=scene.frame.geoid_separation,
+            positionError=scene.position_error,
+            minimumSeparation=scene.minimum_separation,
+            reserve=scene.reserve,
+            acceptedUnknowns=list(scene.accepted_unknowns),
+            robots=robots,
+            targets=[*self._coordinates.all, *self._objects.values()],
+        )
+        return behaviour, Trace(tuple(_links(robots)))
+
+    def _robot(self, robot: Robot, chain: Chain) -> bl.Robot:
+        corners = Corners(robot, self._scene, chain)
+        moves = [self._move(node, index) for index, node in enumerate(chain.nodes)]
+        return bl.Robot(
+            id=robot.name,
+            typeName=robot.type.name,
+            travelMode=robot.travel_mode,
+            payload=robot.payload,
+            home=self._coordinates.at(robot.home),
+            slots=list(self._slots.get(robot.name, {}).values()),
+            moves=moves,
+            moveTransitions=[self._transition(edge, robot, moves, corners) for edge in chain.edges],
+            policies=[_policy(policy) for policy in self._scene.policies],
+        )
+
+    def _move(self, node: Node, index: int) -> bl.Move:
+        spec = node.spec
+        features: dict[str, object] = dict(spec.attributes)
+        if spec.target is not None:
+            features["target"] = self._target(spec, spec.target)
+            features["distance"] = spec.distance
+            if spec.speed is not None:
+                features["speed"] = spec.speed
+        if spec.look is not None:
+            features["heading"] = self._heading(spec)
+        move = self._registry.create(
+            *spec.metaclass,
+            name=f"{spec.metaclass[1].lower()}_{index:03d}",
+            preActions=[self._action(deed) for deed in node.before],
+            postActions=[self._action(deed) for deed in node.after],
+            **{key: value for key, value in (("task", node.task), ("rule", node.rule)) if value},
+            **features,
+        )
+        assert isinstance(move, bl.Move)
+        return move
+
+    def _target(self, spec: MoveSpec, position: Position) -> bl.Target:
+        if spec.object is None:
+            return self._coordinates.at(position)
+        key = (spec.object, position, spec.object_tolerance)
+        if key not in self._objects:
+            self._objects[key] = bl.ObjectTarget(
+                description=spec.object,
+                expectedAt=self._coordinates.at(position),
+                tolerance=spec.object_tolerance,
+            )
+        return self._objects[key]
+
+    def _heading(self, spec: MoveSpec) -> bl.Heading:
+        look = spec.look
+        assert look is not None
+        device = {"deviceId": look.device} if look.device else {}
+        return bl.Heading(target=self._coordinates.at(look.at), angle=look.angle_degrees, **device)
+
+    def _action(self, deed: Deed) -> bl.Action:
+        if isinstance(deed, UseDevice):
+            return bl.DeviceAction(
+                actionName=deed.action, deviceId=deed.device, parameters=_pairs(deed.parameters)
+            )
+        if isinstance(deed, Report):
+            return bl.Feedback(payload=_pairs(deed.payload))
+        return self._notify(deed)
+
+    def _notify(self, give: Give) -> bl.Notify:
+        slots = [self._slots[receiver][give.signal] for receiver in give.receivers]
+        if len(slots) == 1:
+            return bl.UnicastNotify(slot=slots[0])
+        if len(slots) == len(self._chains) - 1:
+            return bl.BroadcastNotify(slot=slots[0])
+        return bl.MulticastNotify(slots=slots)
+
+    def _transition(
+        self, edge: Edge, robot: Robot, moves: list[bl.Move], corners: Corners
+    ) -> bl.MoveTransition:
+        assert edge.to is not None
+        waits = [self._slots[robot.name][signal] for signal in edge.waits]
+        if edge.condition is None:
+            return bl.MoveTransition(
+                from_=moves[edge.source],
+                to=moves[edge.to],
+                waitFor=waits,
+                fluid=corners.may_flow(edge),
+            )
+        assert edge.otherwise is not None
+        return bl.Choice(
+            from_=moves[edge.source],
+            to=moves[edge.to],
+            falseBranch=moves[edge.otherwise],
+            waitFor=waits,
+            conditionIdentifier=edge.condition,
+        )
+
+
+def _positions(scene: Scene, chains: Mapping[str, Chain]) -> Iterator[Position]:
+    yield ORIGIN
+    for name, chain in chains.items():
+        yield scene.robot(name).home
+        for node in chain.nodes:
+            if node.spec.target is not None:
+                yield node.spec.target
+            if node.spec.look is not None:
+                yield node.spec.look.at
+
+
+def _slots(plan: Plan) -> dict[str, dict[str, bl.Slot]]:
+    """Return a slot for each signal in each robot that receives it; names are unique in the plan."""
+    slots: dict[str, dict[str, bl.Slot]] = {}
+    for each in plan.robots:
+        for step in _signals(each.steps):
+            for receiver in step.receivers:
+                slots.setdefault(receiver, {})[step.signal] = bl.Slot(name=step.signal)
+    return slots
+
+
+def _signals(steps: tuple[Step, ...]) -> Iterator[Signal]:
+    for step in steps:
+        if isinstance(step, Signal):
+            yield step
+        elif isinstance(step, Branch):
+            for _, inner in step.arms:
+                yield from _signals(inner)
+
+
+def _links(robots: list[bl.Robot]) -> Iterator[TraceLink]:
+    for robot in robots:
+        for move in robot.moves:
+            yield TraceLink(robot.id, move.name or "", move.task or "", move.rule or "")
+
+
+def _pairs(pairs: tuple[tuple[str, str], ...]) -> list[bl.Pair]:
+    return [bl.Pair(key=key, value=value) for key, value in pairs]
+
+
+def _policy(policy: Policy) -> rl.Policy:
+    after = {} if policy.after is None else {"after": policy.after}
+    return rl.Policy(event=policy.event, response=policy.response, **after)

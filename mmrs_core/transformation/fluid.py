@@ -1,0 +1,74 @@
+"""Where a robot may go from one move into the next without a stop."""
+
+from __future__ import annotations
+
+from math import acos, hypot, isfinite, pi
+
+import numpy as np
+import shapely
+
+from mmrs_core.contributions.rules import MoveSpec
+from mmrs_core.scene import Position, Robot, Scene
+from mmrs_core.transformation.chain import Chain, Edge
+
+UNKNOWN_CUT = 2.0
+"""Metres by which a corner may be cut where a robot type does not state its acceleration."""
+
+STRAIGHT = pi / 180
+"""Turns smaller than this, in radians, cut no corner."""
+
+
+class Corners:
+    """Tells whether a robot that does not stop at a corner stays clear of everything.
+
+    A robot that goes round a corner without a stop cuts it by up to v² / 2a.
+    """
+
+    def __init__(self, robot: Robot, scene: Scene, chain: Chain) -> None:
+        areas = list(scene.kept_from())
+        self._shapes = np.array([shapely.Polygon(area.shell) for area in areas], dtype=object)
+        self._keep = np.array([area.safety_distance + robot.clearance for area in areas])
+        self._robot, self._chain = robot, chain
+        self._before = {way: edge.source for edge in chain.edges for way in (edge.to, edge.otherwise)}
+
+    def may_flow(self, edge: Edge) -> bool:
+        """Return whether the transition along that edge may be fluid."""
+        if edge.to is None or edge.waits or edge.condition is not None:
+            return False
+        nodes = self._chain.nodes
+        first, second = nodes[edge.source], nodes[edge.to]
+        if first.after or second.before or not (_travels(first.spec) and _travels(second.spec)):
+            return False
+        start = nodes[self._before[edge.source]].spec.target
+        corner, end = first.spec.target, second.spec.target
+        if corner is None or end is None:
+            return False
+        if start is not None and _turn(start, corner, end) < STRAIGHT:
+            return True
+        return self._is_clear(corner, first.spec.speed)
+
+    def _is_clear(self, corner: Position, speed: float | None) -> bool:
+        kinematics = self._robot.kinematics
+        if kinematics is None:
+            return False
+        pace = speed or kinematics.cruise
+        cut = pace**2 / (2 * kinematics.acceleration) if isfinite(kinematics.acceleration) else UNKNOWN_CUT
+        point = shapely.Point(corner[:2])
+        return all(
+            shape.distance(point) >= keep + cut for shape, keep in zip(self._shapes, self._keep, strict=True)
+        )
+
+
+def _travels(spec: MoveSpec) -> bool:
+    return spec.metaclass[1] == "GoTo" and spec.object is None and spec.target is not None
+
+
+def _turn(start: Position, corner: Position, end: Position) -> float:
+    """Return the angle by which the way turns at the corner, in radians; pi where it is not defined."""
+    a = tuple(y - x for x, y in zip(start, corner, strict=True))
+    b = tuple(y - x for x, y in zip(corner, end, strict=True))
+    lengths = hypot(*a) * hypot(*b)
+    if lengths == 0.0:
+        return pi
+    cosine = sum(x * y for x, y in zip(a, b, strict=True)) / lengths
+    return acos(max(-1.0, min(1.0, cosine)))
