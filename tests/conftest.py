@@ -1,0 +1,47 @@
+"""Fixtures for all tests."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import pytest
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-golden", action="store_true", help="rewrite golden files from what is produced")
+
+
+@pytest.fixture
+def update_golden(request: pytest.FixtureRequest) -> bool:
+    return bool(request.config.getoption("--update-golden"))
+
+
+@pytest.fixture(scope="session")
+def need_program():
+    """Return a function that skips a test where a program is absent, or fails it where peers must be."""
+
+    def need(name: str, why: str) -> str:
+        found = shutil.which(name)
+        if found is None:
+            message = f"{name} is not installed: {why}"
+            if os.environ.get("MMRS_REQUIRE_PEERS") == "1":
+                pytest.fail(message)
+            pytest.skip(message)
+        return found
+
+    return need
+
+
+@pytest.fixture(scope="session")
+def plugins():
+    """Return the installed plug-ins."""
+    from mmrs_core.plugins import load_plugins
+
+    return load_plugins()
+
+
+@pytest.fixture(scope="session")
+def contributions(plugins):
+    """Return what the installed plug-ins contribute."""
+    return plugins.contributions

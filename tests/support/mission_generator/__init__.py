@@ -1,0 +1,1 @@
+"""Random missions for tests: seeded, and where possible solvable by construction."""

@@ -1,0 +1,267 @@
+"""Random missions of multicopters over survey tasks.
+
+A mission of the solvable sort is made so that a simple plan exists: everything that stands in the
+way is convex, nothing is nearer to anything else than a wide robot needs to pass between, no task or
+home touches anything, drones can fly above every obstacle or around it, and any single piece of work
+with the way there and back fits into one sortie. The witness is that plan: the first robot flies one
+piece after the other, recharging in between. Missions of the wild sort promise nothing of the kind.
+"""
+
+from dataclasses import dataclass
+from math import hypot
+from random import Random
+
+from mission_generator import shapes
+
+MISSION, CONTEXT = "urn:mmrs:mission:1.0", "urn:mmrs:context:1.0"
+ROBOT, DRONE, SURVEY = "urn:mmrs:robot:1.0", "urn:mmrs:multicopter:1.0", "urn:mmrs:survey:1.0"
+SIZE = 400.0
+GAP = 30.0
+DETOUR = 1.6
+
+
+@dataclass(frozen=True)
+class Witness:
+    """The simple plan of a solvable mission: seconds of the longest sortie it needs, and of the limit."""
+
+    longest_sortie: float
+    limit: float
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A random mission, its context and its robot types as model elements, ready for a ModelSet."""
+
+    seed: int
+    mission: object
+    context: object
+    robots: dict
+    witness: Witness | None
+
+
+class Maker:
+    """Makes model elements of one random mission."""
+
+    def __init__(self, seed: int, registry) -> None:
+        self.seed, self.random, self.registry = seed, Random(seed), registry
+        self.solvable = self.random.random() < 0.6
+        self.taken: list[tuple[float, float, float]] = []
+        self.far = 0.0
+        self.inside: list[tuple[float, float, float]] = []
+
+    def make(self, namespace: str, name: str, **features):
+        return self.registry.create(namespace, name, **features)
+
+    def point(self, x: float, y: float, z: float = 0.0):
+        self.far = max(self.far, hypot(x, y))
+        return self.make(MISSION, "RelativeCoordinate", x=x, y=y, z=z)
+
+    def ring(self, points):
+        return [self.point(x, y) for x, y in points]
+
+    def sample(self) -> Sample:
+        random = self.random
+        robots = self._robots(random.randint(1, 10))
+        tasks = self._tasks(random.randint(1, 5))
+        dependencies = self._dependencies(tasks)
+        context = self._context()
+        types = {t.name: t for t in self._types()}
+        origin = self.make(
+            MISSION, "GeoCoordinate", latitude=random.uniform(-60, 70), longitude=random.uniform(-179, 179)
+        )
+        local = self.make(MISSION, "RelativeCoordinate", x=0.0, y=0.0, z=0.0)
+        mission = self.make(
+            MISSION,
+            "Mission",
+            name=f"random {self.seed}",
+            origin=local if random.random() < 0.2 else origin,
+            team=self.make(MISSION, "Team", robots=robots),
+            tasks=tasks,
+            taskDependencies=dependencies,
+            transitAltitude=random.choice([30.0, 45.0]),
+            positionError=random.choice([0.0, 0.5]),
+            reserve=0.2,
+        )
+        return Sample(self.seed, mission, context, types, self._witness())
+
+    def _robots(self, count: int):
+        discs = [(12.0 * k, -SIZE - 40.0, 6.0) for k in range(count)]
+        self.taken.extend(discs)
+        return [
+            self.make(
+                MISSION,
+                "Robot",
+                name=f"drone {k}",
+                type="quick" if self.random.random() < 0.3 else "steady",
+                home=self.point(x, y),
+                travelMode=self.random.choice(["SAFE", "NORMAL", "AGGRESSIVE"]),
+                returnHome=self.solvable or self.random.random() < 0.9,
+            )
+            for k, (x, y, _) in enumerate(discs)
+        ]
+
+    def _tasks(self, count: int):
+        gap = GAP if self.solvable else -15.0
+        discs = shapes.separated(self.random, count, SIZE, (25.0, 90.0), gap, self.taken)
+        self.taken.extend(discs)
+        tasks = [self._task(k, *disc) for k, disc in enumerate(discs)]
+        return tasks or [self._task(0, 0.0, 0.0, 40.0)]
+
+    def _task(self, k: int, x: float, y: float, radius: float):
+        kind = self.random.choice(["PhotoGridTask"] * 3 + ["GoToTask", "RoadTask", "ObserveTask"])
+        return getattr(self, f"_{kind}")(f"task {k}", x, y, radius)
+
+    def _PhotoGridTask(self, name, x, y, radius):  # noqa: N802
+        shell = shapes.star(self.random, (x, y), radius, self.random.randint(4, 11))
+        holes = []
+        if self.random.random() < 0.4:
+            hole = shapes.ngon((x, y), radius * 0.25, self.random.randint(3, 6), 0.3)
+            holes = [self.make(MISSION, "Ring", points=self.ring(hole))]
+        elif self.random.random() < 0.5:
+            self.inside.append((x, y, radius * 0.2))
+        grid = self.random.choice([8.0, 12.0, 20.0])
+        footprint = self.random.random() < 0.4
+        size = (
+            {"footprintWidth": grid, "footprintLength": grid, "sideOverlap": 0.2, "frontOverlap": 0.3}
+            if footprint
+            else {"gridResolution": grid}
+        )
+        return self.make(
+            SURVEY,
+            "PhotoGridTask",
+            name=name,
+            initialPosition=self.point(*shell[0]),
+            shell=self.ring(shell),
+            holes=holes,
+            altitude=self.random.choice([15.0, 25.0, 40.0]),
+            **size,
+        )
+
+    def _GoToTask(self, name, x, y, radius):  # noqa: N802
+        speed = self.random.choice(["NORMAL", "SLOW", "QUICK"])
+        return self.make(SURVEY, "GoToTask", name=name, point=self.point(x, y, 20.0), type=speed)
+
+    def _RoadTask(self, name, x, y, radius):  # noqa: N802
+        line = [(x - radius / 2, y), (x, y + radius / 3), (x + radius / 2, y)]
+        return self.make(
+            SURVEY,
+            "RoadTask",
+            name=name,
+            initialPosition=self.point(*line[0]),
+            points=self.ring(line),
+            altitude=20.0,
+            inverted=self.random.random() < 0.5,
+        )
+
+    def _ObserveTask(self, name, x, y, radius):  # noqa: N802
+        return self.make(
+            SURVEY, "ObserveTask", name=name, point=self.point(x, y), duration=20.0, altitude=25.0
+        )
+
+    def _dependencies(self, tasks):
+        if len(tasks) < 3 or self.random.random() < 0.3:
+            pairs = [(a, b) for a, b in zip(tasks, tasks[1:], strict=False) if self.random.random() < 0.3]
+        else:
+            fork = self.make(MISSION, "Fork", name="fork")
+            join = self.make(MISSION, "Join", name="join")
+            first, *middle, last = list(tasks)
+            if len(middle) < 2:
+                middle.append(last)
+            pairs = [(first, fork)]
+            for task in middle:
+                pairs += [(fork, task), (task, join)]
+            if last is not middle[-1]:
+                pairs.append((join, last))
+            tasks += [fork, join]
+        return [self.make(MISSION, "TaskDependency", **{"from_": a, "to": b}) for a, b in pairs]
+
+    def _context(self):
+        gap = GAP if self.solvable else -20.0
+        count = self.random.randint(0, 8)
+        discs = shapes.separated(self.random, count, SIZE, (5.0, 50.0), gap, self.taken)
+        forbidden, obstacles = [], []
+        for k, (x, y, radius) in enumerate([*discs, *self.inside]):
+            ring = self.ring(shapes.ngon((x, y), radius, self.random.randint(3, 8), k * 0.7))
+            safety = self.random.choice([0.0, 1.0, 4.0])
+            if self.random.random() < 0.5:
+                features = {"name": f"forbidden {k}", "shell": ring, "safetyDistance": safety}
+                forbidden.append(self.make(CONTEXT, "Area", **features))
+            else:
+                top = self.random.choice([10.0, 22.0, 60.0, 200.0])
+                obstacles.append(
+                    self.make(
+                        CONTEXT,
+                        "Obstacle",
+                        name=f"obstacle {k}",
+                        shell=ring,
+                        safetyDistance=safety,
+                        maxHeight=top,
+                    )
+                )
+        landing = self.ring(shapes.ngon((0.0, -SIZE - 90.0), 20.0, 6, 0.0))
+        emergency = [self.make(CONTEXT, "Area", name="landing", shell=landing)]
+        return self.make(
+            CONTEXT, "Context", forbiddenAreas=forbidden, obstacles=obstacles, emergencyAreas=emergency
+        )
+
+    def _types(self):
+        short = not self.solvable and self.random.random() < 0.4
+        self.lifetime = 150.0 if short else self.random.choice([1200.0, 1800.0])
+        for name, fastest in (("steady", 10.0), ("quick", 16.0)):
+            camera = self.make(
+                ROBOT,
+                "Device",
+                id="camera",
+                supportedActions=[self.make(ROBOT, "SupportedAction", name="TakePicture", duration=1.0)],
+            )
+            yield self.make(
+                DRONE,
+                "Drone",
+                name=name,
+                gps=True,
+                onBoardObstacleAvoidance=False,
+                launchType="VTOL",
+                maxAltitude=120.0,
+                positionHold=10.0,
+                size=self.make(
+                    DRONE,
+                    "DroneSize",
+                    width=0.6,
+                    length=0.6,
+                    height=0.3,
+                    weight=1.5,
+                    propellers=4,
+                    propellerSize=250.0,
+                ),
+                devices=[camera],
+                batteries=[self.make(ROBOT, "Battery", capacity=5000.0, voltage=14.8, rechargeTime=120.0)],
+                movementCapabilities=[
+                    self.make(
+                        ROBOT,
+                        "MovementCapability",
+                        payloadWeight=0.0,
+                        lifetime=self.lifetime,
+                        maxAcceleration=3.0,
+                        maxClimbRate=3.0,
+                        maxDescentRate=2.0,
+                        speed=self.make(ROBOT, "Interval", min=0.0, max=fastest),
+                    )
+                ],
+            )
+
+    def _witness(self) -> Witness | None:
+        """Return the witness of a solvable mission: the longest sortie is far out and back, once."""
+        if not self.solvable:
+            return None
+        slowest = 0.5 * 10.0
+        climbs = 120.0 / 3.0 + 120.0 / 2.0
+        way = 2 * DETOUR * (self.far + SIZE) / slowest
+        return Witness(way + climbs + 60.0, self.lifetime * 0.8)
+
+
+def sample(seed: int, registry) -> Sample:
+    """Return the random mission of that seed; the same seed makes the same mission."""
+    made = Maker(seed, registry).sample()
+    if made.witness is not None and made.witness.longest_sortie > made.witness.limit:
+        return Sample(made.seed, made.mission, made.context, made.robots, None)
+    return made
