@@ -1,0 +1,112 @@
+"""How a document that is being written refers to elements, its own and those of other files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mmrs_core.languages.element import Element, Source, held, metaclass_of, root_of
+from mmrs_core.languages.hrefs import relative_href
+
+
+class Addresses:
+    """Fragments and hrefs, each computed once."""
+
+    def __init__(self, roots: Sequence[Element], file: Path | None) -> None:
+        """Take the roots of the document, and the file it is for (None: not known)."""
+        self._roots = roots
+        self._here = {id(root) for root in roots}
+        self._sources = {id(root._mmrs_source) for root in roots if root._mmrs_source is not None}
+        self._folder = file.resolve().parent if file is not None else None
+        self._fragments: dict[int, str] = {}
+        for index, root in enumerate(roots):
+            self._enter(root, f"/{index}" if len(roots) > 1 else "/")
+
+    def stands_here(self, element: Element) -> bool:
+        """Return whether the document holds the element."""
+        return id(element) in self._fragments
+
+    def stands_elsewhere(self, element: Element) -> bool:
+        """Return whether a contained element is the root of another file, and stays there."""
+        source = element._mmrs_source
+        if source is None or source.path is None or id(source) in self._sources or id(element) in self._here:
+            return False
+        return any(root is element for root in source.roots)
+
+    def fragment(self, element: Element) -> str:
+        """Return the fragment of an element of this document."""
+        return self._fragments[id(element)]
+
+    def identifier(self, element: Element) -> str | None:
+        """Return the ``xmi:id`` that its file gave to an element."""
+        source = element._mmrs_source
+        return source.ids.get(element) if source is not None and source.ids else None
+
+    def href(self, element: Element, where: str) -> str:
+        """Return the reference to an element.
+
+        Raises:
+            ValueError: if it stands neither here nor in a file; the message begins with ``where``.
+        """
+        if self.stands_here(element):
+            return f"#{self.fragment(element)}"
+        top = root_of(element)
+        for candidate in _upwards(element):
+            if candidate._mmrs_source is not None and candidate in candidate._mmrs_source.roots:
+                top = candidate
+                break
+        source = top._mmrs_source
+        if source is None or source.path is None or top not in source.roots:
+            raise ValueError(f"{where}: refers to {element!r}, which stands in no file")
+        if self._folder is None:
+            raise ValueError(f"{where}: refers to {source.file}; say which file the model is written to")
+        return f"{relative_href(source.path, self._folder)}#{self._fragment_in(source, top, element)}"
+
+    def _fragment_in(self, source: Source, top: Element, element: Element) -> str:
+        own = _own_id(element)
+        if own is not None:
+            return own
+        steps = []
+        while element is not top:
+            container, feature = element._mmrs_container, element._mmrs_feature
+            assert container is not None  # top is above it
+            assert feature is not None
+            index = next(i for i, value in enumerate(held(container, feature)) if value is element)
+            steps.append(f"/@{feature.name}.{index}" if feature.many else f"/@{feature.name}")
+            element = container
+        number = str(source.roots.index(top)) if len(source.roots) > 1 else ""
+        return f"/{number}{''.join(reversed(steps))}"
+
+    def _enter(self, root: Element, fragment: str) -> None:
+        pending = [(root, fragment)]
+        while pending:
+            element, fragment = pending.pop()
+            self._fragments[id(element)] = _own_id(element) or fragment
+            metaclass = type(element)._mmrs_metaclass
+            for feature in metaclass.features if metaclass is not None else ():
+                if not feature.containment:
+                    continue
+                for index, value in enumerate(held(element, feature)):
+                    if isinstance(value, Element) and not self.stands_elsewhere(value):
+                        step = f"/@{feature.name}.{index}" if feature.many else f"/@{feature.name}"
+                        pending.append((value, fragment + step))
+
+
+def _own_id(element: Element) -> str | None:
+    """Return the value of its id attribute, or the ``xmi:id`` that its file gave to it."""
+    if element._mmrs_source is not None and element in element._mmrs_source.ids:
+        return element._mmrs_source.ids[element]
+    if type(element)._mmrs_metaclass is None:
+        return None
+    for feature in metaclass_of(element).features:
+        if feature.is_id:
+            for value in held(element, feature):
+                return str(value) or None
+    return None
+
+
+def _upwards(element: Element) -> list[Element]:
+    chain = [element]
+    while (container := chain[-1]._mmrs_container) is not None:
+        chain.append(container)
+    return chain

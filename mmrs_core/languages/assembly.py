@@ -1,0 +1,221 @@
+"""Metaclasses made of tables: types looked up, supertypes before subtypes, features inherited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mmrs_core.errors import PluginError
+from mmrs_core.languages.classes import implementation_class, interface_class
+from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declared_type
+from mmrs_core.languages.ecore_tables import ClassTable, FeatureTable, PackageTable
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.locating import Directory, Located
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.naming import nearest, python_name
+
+_Key = tuple[str, str]
+
+_ECORE_ITSELF = Located(
+    PackageTable(
+        ECORE,
+        "ecore",
+        "ecore",
+        classes=(
+            ClassTable(
+                "EStringToStringMapEntry",
+                features=(
+                    FeatureTable("key", f"{ECORE}#//EString", False),
+                    FeatureTable("value", f"{ECORE}#//EString", False),
+                ),
+            ),
+        ),
+    ),
+    "core",
+    None,
+    None,
+)
+
+
+def _any_object() -> Metaclass:
+    """Return Ecore's EObject, which every element is."""
+    metaclass = Metaclass(ECORE, "EObject", True, "Any element at all.")
+    _complete(metaclass, ancestry=(metaclass.key,), interface=Element)
+    return metaclass
+
+
+class Assembly:
+    """Packages on their way from tables to metaclasses."""
+
+    def __init__(self, known: Iterable[Package], located: Iterable[Located]) -> None:
+        """Take packages that stand already and share their classes, and those to be made."""
+        packages = tuple(known)
+        self._located = tuple(located) if packages else (*located, _ECORE_ITSELF)
+        self._directory = Directory(self._located, {package.ns_uri: package.parent for package in packages})
+        self._metaclasses: dict[_Key, Metaclass] = {(ECORE, "EObject"): _any_object()}
+        self._types: dict[_Key, DataType | Enumeration] = {}
+        for package in packages:
+            self._metaclasses |= {metaclass.key: metaclass for metaclass in package.metaclasses}
+            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.enumerations}
+            self._types |= {(kind.ns_uri, kind.name): kind for kind in package.datatypes}
+        self._tables: dict[_Key, tuple[ClassTable, Located]] = {}
+        self._unlinked: list[tuple[Feature, FeatureTable, Located]] = []
+
+    def packages(self) -> tuple[Package, ...]:
+        """Return the packages to be made.
+
+        Raises:
+            PluginError: for an undeclared type, a class that inherits from itself, or a name used twice.
+        """
+        for entry in self._located:
+            self._declare(entry)
+        for key, (table, entry) in self._tables.items():
+            self._inherit(key, table, entry, ())
+        for feature, row, entry in self._unlinked:
+            self._join_opposites(feature, row, entry)
+        for metaclass in (self._metaclasses[key] for key in self._tables):
+            if not metaclass.abstract:
+                _complete(metaclass, implementation=implementation_class(metaclass, metaclass.interface))
+        return tuple(self._package(entry) for entry in self._located)
+
+    def _declare(self, entry: Located) -> None:
+        ns_uri = entry.table.ns_uri
+        for enum in entry.table.enums:
+            self._types[ns_uri, enum.name] = Enumeration(ns_uri, enum.name, enum.literals, enum.documentation)
+        for kind in entry.table.datatypes:
+            self._types[ns_uri, kind.name] = declared_type(
+                ns_uri, kind.name, kind.java_class, kind.serializable
+            )
+        for table in entry.table.classes:
+            if (ns_uri, table.name) in self._tables:
+                raise PluginError(f"{entry.provider}: {ns_uri}: class {table.name} is declared twice")
+            self._tables[ns_uri, table.name] = (table, entry)
+            self._metaclasses[ns_uri, table.name] = Metaclass(
+                ns_uri, table.name, table.abstract, table.documentation
+            )
+
+    def _inherit(self, key: _Key, table: ClassTable, entry: Located, below: tuple[_Key, ...]) -> None:
+        metaclass = self._metaclasses[key]
+        if metaclass.ancestry:
+            return
+        if key in below:
+            raise PluginError(
+                f"{entry.provider}: {entry.table.ns_uri}: class {table.name} inherits from itself"
+            )
+        supertypes = []
+        for uri in table.supertypes:
+            above = self._directory.find(uri, entry)
+            if above in self._tables:
+                self._inherit(above, *self._tables[above], (*below, key))
+            supertypes.append(self._class(above, entry, f"supertype of {table.name}"))
+        interface = interface_class(metaclass, tuple(dict.fromkeys(above.interface for above in supertypes)))
+        ancestry = [cls._mmrs_metaclass for cls in interface.__mro__ if isinstance(cls, type(Element))]
+        _complete(
+            metaclass,
+            supertypes=tuple(supertypes),
+            interface=interface,
+            ancestry=(key, *(above.key for above in ancestry[1:] if above)),
+        )
+        self._give_features(metaclass, table, entry)
+
+    def _give_features(self, metaclass: Metaclass, table: ClassTable, entry: Located) -> None:
+        inherited = dict.fromkeys(feature for above in metaclass.supertypes for feature in above.features)
+        taken = {feature.attribute for feature in inherited}
+        own = []
+        for row in table.features:
+            feature = self._feature(metaclass, row, entry, python_name(row.name, taken))
+            taken.add(feature.attribute)
+            own.append(feature)
+        features = (*inherited, *own)
+        by_name = {feature.name: feature for feature in features}
+        if len(by_name) < len(features):
+            twice = next(feature.name for feature in features if by_name[feature.name] is not feature)
+            raise PluginError(f"{entry.provider}: {metaclass.ns_uri}: {table.name} has two features {twice}")
+        by_attribute = {feature.attribute: feature for feature in features}
+        _complete(metaclass, features=features, by_name=by_name, by_attribute=by_attribute)
+
+    def _feature(self, owner: Metaclass, row: FeatureTable, entry: Located, attribute: str) -> Feature:
+        key = self._directory.find(row.type, entry)
+        where = f"{owner.name}.{row.name}"
+        kind = self._class(key, entry, where) if row.is_reference else self._value_type(key, entry, where)
+        feature = Feature(
+            name=row.name,
+            attribute=attribute,
+            documentation=row.documentation,
+            lower=row.lower,
+            upper=row.upper,
+            is_reference=row.is_reference,
+            containment=row.containment,
+            unsettable=row.unsettable,
+            unique=row.unique,
+            is_id=row.is_id,
+            stored=row.stored and getattr(kind, "serializable", True),
+            owner=owner,
+            type=kind,
+            default=_default(row, kind, f"{entry.provider}: {entry.table.ns_uri}: {where}"),
+        )
+        if row.opposite:
+            self._unlinked.append((feature, row, entry))
+        return feature
+
+    def _class(self, key: _Key, entry: Located, where: str) -> Metaclass:
+        if key in self._metaclasses:
+            return self._metaclasses[key]
+        raise PluginError(self._no_type(key, entry, where))
+
+    def _value_type(self, key: _Key, entry: Located, where: str) -> DataType | Enumeration:
+        found = self._types.get(key) or builtin_type(*key)
+        if found is None:
+            raise PluginError(self._no_type(key, entry, where))
+        return found
+
+    def _no_type(self, key: _Key, entry: Located, where: str) -> str:
+        ns_uri, name = key
+        hint = nearest(name, [known for uri, known in (*self._metaclasses, *self._types) if uri == ns_uri])
+        message = f"{entry.provider}: {entry.table.ns_uri}: {where}: no type {name} in {ns_uri}"
+        return f"{message}; {hint}" if hint else message
+
+    def _join_opposites(self, feature: Feature, row: FeatureTable, entry: Located) -> None:
+        document, _, fragment = row.opposite.partition("#")
+        owner, _, name = fragment.rpartition("/")
+        key = self._directory.find(f"{document}#{owner}", entry)
+        other = self._class(key, entry, row.name).by_name.get(name)
+        if other is None or not other.is_reference:
+            raise PluginError(f"{entry.provider}: {entry.table.ns_uri}: {row.opposite}: no such reference")
+        object.__setattr__(feature, "opposite", other)
+
+    def _package(self, entry: Located) -> Package:
+        table = entry.table
+        own = [kind for (ns_uri, _), kind in self._types.items() if ns_uri == table.ns_uri]
+        return Package(
+            table.ns_uri,
+            table.name,
+            table.prefix,
+            entry.provider,
+            table.documentation,
+            tuple(self._metaclasses[table.ns_uri, row.name] for row in table.classes),
+            tuple(kind for kind in own if isinstance(kind, Enumeration)),
+            tuple(kind for kind in own if isinstance(kind, DataType)),
+            entry.ecore,
+            entry.parent,
+        )
+
+
+def _default(row: FeatureTable, kind: Metaclass | DataType | Enumeration, where: str) -> object:
+    if row.is_reference or isinstance(kind, Metaclass) or row.upper != 1:
+        return None
+    if row.default is not None and (row.default or kind.name == "EString"):
+        try:
+            return kind.parse(row.default)
+        except ValueError as fault:
+            raise PluginError(f"{where}: default {fault}") from None
+    if row.unsettable:
+        return None
+    if isinstance(kind, Enumeration):
+        return kind.names[0] if kind.literals else None
+    return kind.primitive_default
+
+
+def _complete(metaclass: Metaclass, **fields: object) -> None:
+    """Fill in what could not be known when the metaclass was made: classes refer to each other in circles."""
+    for name, value in fields.items():
+        object.__setattr__(metaclass, name, value)

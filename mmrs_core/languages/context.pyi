@@ -1,0 +1,107 @@
+"""Made by mmrs_core.languages.stubs from urn:mmrs:context:1.0; not to be edited."""
+
+from collections.abc import Iterable
+from typing import Final, Literal, TypeAlias
+
+from mmrs_core.languages import mission
+from mmrs_core.languages.element import Element
+
+NS_URI: Final[str]
+
+class Context(mission.NamedElement):
+    """A place: what robots must keep away from, where they may go in an emergency, and what else matters there."""
+    crs: str | None
+    """Coordinate reference system of the geographic coordinates of this model; absent: the mission's."""
+    origin: mission.Coordinate | None
+    """What relative coordinates of this model count from; absent: the mission's origin."""
+    surfaceHeight: float
+    """Height of the water surface above the mission's origin, in metres; depths count down from it."""
+    forbiddenAreas: list[Area]
+    """Areas that no robot may enter, at any height unless the area states heights."""
+    emergencyAreas: list[Area]
+    """Areas that robots may go to in an emergency."""
+    obstacles: list[Obstacle]
+    """Things that stand in the way."""
+    elements: list[ContextElement]
+    """Things that missions refer to, of types that plug-ins add."""
+    environment: Environment | None
+    """Weather and water."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        crs: str | None = ...,
+        origin: mission.Coordinate | None = ...,
+        surfaceHeight: float | None = ...,
+        forbiddenAreas: Iterable[Area] | None = ...,
+        emergencyAreas: Iterable[Area] | None = ...,
+        obstacles: Iterable[Obstacle] | None = ...,
+        elements: Iterable[ContextElement] | None = ...,
+        environment: Environment | None = ...,
+    ) -> None: ...
+
+class Area(mission.NamedElement):
+    """An area on the map."""
+    shell: list[mission.Coordinate]
+    """The border: its vertices in order, the last one joined to the first."""
+    safetyDistance: float
+    """Smallest distance between a robot and each side of the area, in metres."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        shell: Iterable[mission.Coordinate] | None = ...,
+        safetyDistance: float | None = ...,
+    ) -> None: ...
+
+class Obstacle(Area):
+    """An area that is blocked between two heights."""
+    minHeight: float | None
+    """Height of its lower side above the mission's origin, in metres; absent: down to the ground and beyond."""
+    maxHeight: float | None
+    """Height of its upper side above the mission's origin, in metres; absent: unlimited."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        shell: Iterable[mission.Coordinate] | None = ...,
+        safetyDistance: float | None = ...,
+        minHeight: float | None = ...,
+        maxHeight: float | None = ...,
+    ) -> None: ...
+
+class ContextElement(mission.NamedElement):
+    """A thing at the place that missions refer to; plug-ins extend it with panel groups, moorings, pipelines and the like."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+    ) -> None: ...
+
+class Environment(Element):
+    """Weather and water during the mission; what is absent is not known."""
+    windSpeed: float | None
+    """In metres per second."""
+    windDirection: float | None
+    """Where the wind comes from, in degrees clockwise from north."""
+    temperature: float | None
+    """Of the air or water, in degrees Celsius."""
+    currentSpeed: float | None
+    """Of the water, in metres per second."""
+    currentDirection: float | None
+    """Where the current goes to, in degrees clockwise from north."""
+    waterDensity: float | None
+    """In kilograms per cubic metre: about 1025 for sea water, 1000 for fresh water."""
+    irradiance: float | None
+    """Of the sun, in watts per square metre."""
+    def __init__(
+        self,
+        *,
+        windSpeed: float | None = ...,
+        windDirection: float | None = ...,
+        temperature: float | None = ...,
+        currentSpeed: float | None = ...,
+        currentDirection: float | None = ...,
+        waterDensity: float | None = ...,
+        irradiance: float | None = ...,
+    ) -> None: ...

@@ -1,0 +1,258 @@
+"""Values of attributes: how EMF writes each data type as text, and how it reads it back."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from decimal import Decimal, InvalidOperation
+
+ECORE = "http://www.eclipse.org/emf/2002/Ecore"
+XML_TYPES = "http://www.eclipse.org/emf/2003/XMLType"
+
+_JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)")
+_JAVA_INTEGER = re.compile(r"[+-]?[0-9]+")
+_DATE = re.compile(r"(\d+)-(\d\d)-(\d\d)(?:T(\d\d):(\d\d)(?::(\d\d)(?:\.(\d{1,6}))?)?)?(Z|[+-]\d\d:?\d\d)?")
+
+
+@dataclass(frozen=True, slots=True)
+class DataType:
+    """A type of attribute values.
+
+    Attributes:
+        ns_uri: of the package that declares it.
+        name: as in the metamodel, such as EDouble.
+        python: the class of its values.
+        parse: reads a value from text; raises ValueError with a message that begins with the text.
+        render: writes a value as EMF does; the value must be of the class ``python``.
+        primitive_default: what an attribute holds that was never set; None except for Java's primitive types.
+        primitive: whether a value can not be null.
+        serializable: whether values appear in files at all.
+    """
+
+    ns_uri: str
+    name: str
+    python: type
+    parse: Callable[[str], object]
+    render: Callable[[object], str]
+    primitive_default: object = None
+    serializable: bool = True
+
+    @property
+    def primitive(self) -> bool:
+        """Return whether its values are those of a primitive type of Java."""
+        return self.primitive_default is not None
+
+    def accepts(self, value: object) -> bool:
+        """Return whether a value in memory is one of this type; whole numbers pass for real ones."""
+        if self.python is float:
+            return isinstance(value, (float, int)) and not isinstance(value, bool)
+        if self.python is int:
+            return isinstance(value, int) and not isinstance(value, bool)
+        return isinstance(value, self.python)
+
+
+def parse_boolean(text: str) -> bool:
+    """Read a truth value, in any case of letters, as EMF does."""
+    word = text.lower()
+    if word not in ("true", "false"):
+        raise ValueError(f"{text!r}: not true or false")
+    return word == "true"
+
+
+def parse_real(text: str) -> float:
+    """Read a number in Java's notation, which has NaN, Infinity and a trailing d or f."""
+    stripped = text.strip()
+    if not _JAVA_REAL.fullmatch(stripped, 0):
+        raise ValueError(f"{text!r}: not a number")
+    return float(stripped if stripped[-1] == "y" else stripped.rstrip("fFdD"))
+
+
+def render_real(value: object) -> str:
+    """Write a number as Java does: plain between 1e-3 and 1e7, else with a power of ten.
+
+    >>> [render_real(x) for x in (0.0, -1.5, 42.0, 1e7, 12345678.9, 0.00012, float("inf"))]
+    ['0.0', '-1.5', '42.0', '1.0E7', '1.23456789E7', '1.2E-4', 'Infinity']
+    """
+    number = float(value)  # type: ignore[arg-type]  # accepts() vouches for it
+    if number != number:
+        return "NaN"
+    if number in (float("inf"), float("-inf")):
+        return "Infinity" if number > 0 else "-Infinity"
+    if number == 0.0 or 1e-3 <= abs(number) < 1e7:
+        text = format(Decimal(repr(number)), "f")
+        return text if "." in text else f"{text}.0"
+    sign, digits, exponent = Decimal(repr(number)).as_tuple()
+    figures = "".join(map(str, digits))
+    power = int(exponent) + len(figures) - 1
+    fraction = figures[1:].rstrip("0") or "0"
+    return f"{'-' if sign else ''}{figures[0]}.{fraction}E{power}"
+
+
+def _integer(bits: int | None) -> Callable[[str], int]:
+    def parse(text: str) -> int:
+        if not _JAVA_INTEGER.fullmatch(text):
+            raise ValueError(f"{text!r}: not a whole number")
+        if bits is not None and len(text) > 25:
+            raise ValueError(f"{text[:12]}...: does not fit into {bits} bits")
+        value = int(text)
+        if bits is not None and not -(1 << bits - 1) <= value < 1 << bits - 1:
+            raise ValueError(f"{text!r}: does not fit into {bits} bits")
+        return value
+
+    return parse
+
+
+def _parse_decimal(text: str) -> Decimal:
+    try:
+        return Decimal(text)
+    except InvalidOperation:
+        raise ValueError(f"{text!r}: not a decimal number") from None
+
+
+def _parse_character(text: str) -> str:
+    if len(text) != 1:
+        raise ValueError(f"{text!r}: not one character")
+    return text
+
+
+def _parse_bytes(text: str) -> bytes:
+    try:
+        return bytes.fromhex(text)
+    except ValueError:
+        raise ValueError(f"{text!r}: not bytes in hexadecimal digits") from None
+
+
+def parse_date(text: str) -> datetime:
+    """Read a date as EMF writes it; one without a zone is taken as UTC."""
+    match = _DATE.fullmatch(text)
+    if match is None:
+        raise ValueError(f"{text!r}: not a date such as 2024-05-01T10:11:12.123+0200")
+    year, month, day, hour, minute, second, fraction, zone = match.groups()
+    micro = int((fraction or "").ljust(6, "0") or "0")
+    try:
+        date = datetime(
+            int(year), int(month), int(day), int(hour or 0), int(minute or 0), int(second or 0), micro
+        )
+        offset = datetime.strptime(zone, "%z").tzinfo if zone and zone != "Z" else UTC
+    except ValueError:
+        raise ValueError(f"{text!r}: no such date") from None
+    return date.replace(tzinfo=offset)
+
+
+def _render_date(value: object) -> str:
+    assert isinstance(value, datetime)  # accepts() vouches for it
+    date = value if value.tzinfo else value.replace(tzinfo=UTC)
+    return f"{date:%Y-%m-%dT%H:%M:%S}.{date.microsecond // 1000:03d}{date:%z}"
+
+
+def _render_boolean(value: object) -> str:
+    return "true" if value else "false"
+
+
+def _render_bytes(value: object) -> str:
+    return bytes(value).hex()  # type: ignore[call-overload,no-any-return]  # accepts() vouches for it
+
+
+_Codec = tuple[type, Callable[[str], object], Callable[[object], str], object]
+_TEXT: _Codec = (str, str, str, None)
+
+
+def _whole(bits: int | None, primitive: bool) -> _Codec:
+    return (int, _integer(bits), str, 0 if primitive else None)
+
+
+def _real(primitive: bool) -> _Codec:
+    return (float, parse_real, render_real, 0.0 if primitive else None)
+
+
+def _truth(primitive: bool) -> _Codec:
+    return (bool, parse_boolean, _render_boolean, False if primitive else None)
+
+
+_BY_JAVA_CLASS: dict[str, _Codec] = {
+    "boolean": _truth(True),
+    "java.lang.Boolean": _truth(False),
+    "byte": _whole(8, True),
+    "java.lang.Byte": _whole(8, False),
+    "short": _whole(16, True),
+    "java.lang.Short": _whole(16, False),
+    "int": _whole(32, True),
+    "java.lang.Integer": _whole(32, False),
+    "long": _whole(64, True),
+    "java.lang.Long": _whole(64, False),
+    "java.math.BigInteger": _whole(None, False),
+    "float": _real(True),
+    "java.lang.Float": _real(False),
+    "double": _real(True),
+    "java.lang.Double": _real(False),
+    "java.math.BigDecimal": (Decimal, _parse_decimal, str, None),
+    "char": (str, _parse_character, str, "\0"),
+    "java.lang.Character": (str, _parse_character, str, None),
+    "byte[]": (bytes, _parse_bytes, _render_bytes, None),
+    "java.util.Date": (datetime, parse_date, _render_date, None),
+}
+
+_ECORE_JAVA = {
+    "EBoolean": "boolean",
+    "EBooleanObject": "java.lang.Boolean",
+    "EByte": "byte",
+    "EByteObject": "java.lang.Byte",
+    "EByteArray": "byte[]",
+    "EChar": "char",
+    "ECharacterObject": "java.lang.Character",
+    "EDate": "java.util.Date",
+    "EDouble": "double",
+    "EDoubleObject": "java.lang.Double",
+    "EFloat": "float",
+    "EFloatObject": "java.lang.Float",
+    "EInt": "int",
+    "EIntegerObject": "java.lang.Integer",
+    "ELong": "long",
+    "ELongObject": "java.lang.Long",
+    "EShort": "short",
+    "EShortObject": "java.lang.Short",
+    "EBigInteger": "java.math.BigInteger",
+    "EBigDecimal": "java.math.BigDecimal",
+    "EString": "java.lang.String",
+    "EJavaObject": "java.lang.Object",
+    "EJavaClass": "java.lang.Class",
+}
+
+_XML_JAVA = {
+    "Boolean": "boolean",
+    "BooleanObject": "java.lang.Boolean",
+    "Byte": "byte",
+    "Decimal": "java.math.BigDecimal",
+    "Double": "double",
+    "DoubleObject": "java.lang.Double",
+    "Float": "float",
+    "FloatObject": "java.lang.Float",
+    "Int": "int",
+    "IntObject": "java.lang.Integer",
+    "Integer": "java.math.BigInteger",
+    "Long": "long",
+    "LongObject": "java.lang.Long",
+    "Short": "short",
+    "NonNegativeInteger": "java.math.BigInteger",
+    "PositiveInteger": "java.math.BigInteger",
+}
+
+
+def declared_type(ns_uri: str, name: str, java_class: str, serializable: bool = True) -> DataType:
+    """Return the data type that a package declares, whose values are as those of the Java class.
+
+    The values of a class that is not known here are kept as the text that stands in the file.
+    """
+    python, parse, render, default = _BY_JAVA_CLASS.get(java_class, _TEXT)
+    return DataType(ns_uri, name, python, parse, render, default, serializable)
+
+
+def builtin_type(ns_uri: str, name: str) -> DataType | None:
+    """Return a data type of Ecore itself or of EMF's XML types; None where there is none of that name."""
+    if ns_uri == ECORE and name in _ECORE_JAVA:
+        return declared_type(ns_uri, name, _ECORE_JAVA[name])
+    if ns_uri == XML_TYPES:
+        return declared_type(ns_uri, name, _XML_JAVA.get(name, "java.lang.String"))
+    return None

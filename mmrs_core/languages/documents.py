@@ -1,0 +1,101 @@
+"""What is known of a file while its references are still texts."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from mmrs_core.diagnostics import Diagnostic, Place, Severity
+from mmrs_core.languages.element import Element, Source, held, path_of
+from mmrs_core.languages.metaclass import Feature
+
+_STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>\d{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
+_KEY = re.compile(r"(?P<name>\w+)='(?P<value>[^']*)'")
+
+
+@dataclass(slots=True)
+class Pending:
+    """A reference that is still a text: in ``feature`` of ``element``, on that line."""
+
+    element: Element
+    feature: Feature
+    text: str
+    line: int
+
+
+@dataclass(slots=True)
+class Draft:
+    """A file between its parsing and the resolution of its references."""
+
+    source: Source
+    roots: list[Element] = field(default_factory=list)
+    ids: dict[str, Element] = field(default_factory=dict)
+    pending: list[Pending] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    broken: set[tuple[Element, str]] = field(default_factory=set)
+    found: dict[str, Element] = field(default_factory=dict)
+
+    def fault(
+        self,
+        code: str,
+        message: str,
+        line: int,
+        element: Element | None = None,
+        hint: str = "",
+        severity: Severity = Severity.ERROR,
+    ) -> None:
+        """Note a fault at a line, in an element if it is known."""
+        path = path_of(element) if element is not None else ""
+        self.diagnostics.append(
+            Diagnostic(code, severity, message, Place(self.source.file, line, path), hint)
+        )
+
+    def find(self, fragment: str) -> Element | None:
+        """Return the element that a fragment means: a path such as ``//@tasks.2``, or an id."""
+        known = self.found.get(fragment)
+        if known is not None:
+            return known
+        if not fragment.startswith("/"):
+            return self.ids.get(fragment)
+        head, _, last = fragment.rpartition("/")
+        parent = self.found.get(head) or self._walk(head)
+        found = self._step(parent, last) if head else self._root(last)
+        if found is not None:
+            self.found[fragment] = found
+        return found
+
+    def _walk(self, fragment: str) -> Element | None:
+        _, root, *steps = fragment.split("/") if fragment else ("", "")
+        element = self._root(root)
+        for step in steps:
+            element = self._step(element, step)
+        if element is not None:
+            self.found[fragment] = element
+        return element
+
+    def _root(self, index: str) -> Element | None:
+        number = (
+            0 if index == "" else int(index) if index.isdecimal() and len(index) < 10 else len(self.roots)
+        )
+        return self.roots[number] if number < len(self.roots) else None
+
+    def _step(self, parent: Element | None, step: str) -> Element | None:
+        match = _STEP.fullmatch(step)
+        metaclass = type(parent)._mmrs_metaclass if parent is not None else None
+        if match is None or parent is None or metaclass is None:
+            return None
+        feature = metaclass.by_name.get(match["name"])
+        if feature is None or not feature.is_reference:
+            return None
+        values = [value for value in held(parent, feature) if isinstance(value, Element)]
+        if match["keys"]:
+            return _by_keys(values, dict(_KEY.findall(match["keys"])))
+        index = int(match["index"] or 0)
+        return values[index] if index < len(values) else None
+
+
+def _by_keys(values: list[Element], wanted: dict[str, str]) -> Element | None:
+    for value in values:
+        if wanted and all(str(getattr(value, name, None)) == text for name, text in wanted.items()):
+            return value
+    return None

@@ -1,0 +1,263 @@
+"""Elements of models, and the questions that can be asked about any of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from mmrs_core.diagnostics import Place
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.naming import nearest
+
+
+class Source:
+    """A file that elements were read from.
+
+    Attributes:
+        file: the path as the user gave it; what messages say.
+        path: where it lies; None for text that came from no file.
+        roots: the elements at its top.
+        ids: the identifiers that the file itself gave to elements (``xmi:id``).
+    """
+
+    __slots__ = ("file", "ids", "path", "roots")
+
+    def __init__(self, file: str, path: Path | None) -> None:
+        self.file = file
+        self.path = path
+        self.roots: tuple[Element, ...] = ()
+        self.ids: dict[Element, str] = {}
+
+
+class ElementType(type):
+    """The type of interface and implementation classes: calling either makes an element."""
+
+    _mmrs_metaclass: Metaclass | None = None
+
+    def __call__(cls, /, **features: object) -> Any:  # the element's class is what the stubs declare
+        """Make an element whose features have the given values; None stands for "not given".
+
+        Raises:
+            ValueError: if the class is abstract or a name is no feature of it.
+        """
+        metaclass = cls._mmrs_metaclass
+        made = metaclass.implementation if metaclass else None
+        if made is None:
+            raise ValueError(f"{cls.__name__}: abstract, no element can be made of it")
+        element: Element = made.__new__(made)
+        for attribute, value in features.items():
+            if attribute not in made._mmrs_missing:
+                hint = nearest(attribute, made._mmrs_missing)
+                raise ValueError(f"{attribute}: no feature of {cls.__name__}{hint and '; ' + hint}")
+            if value is not None:
+                setattr(element, attribute, value)
+        return element
+
+    def mro(cls) -> list[type]:
+        """Return Python's order, or depth first where that order does not exist.
+
+        Ecore lets supertypes stand in any order; Python's linearisation does not.
+        """
+        try:
+            return super().mro()
+        except TypeError:
+            inherited = [ancestor for base in cls.__bases__ for ancestor in base.__mro__]
+            # the last occurrence, so that no class comes before its own subclass
+            return [cls, *reversed(dict.fromkeys(reversed(inherited)))]
+
+
+class Element(metaclass=ElementType):
+    """An element of a model. Its attributes are the features of its metaclass, and nothing else."""
+
+    __slots__ = ("_mmrs_container", "_mmrs_feature", "_mmrs_line", "_mmrs_source")
+
+    if TYPE_CHECKING:
+        _mmrs_container: Element | None
+        _mmrs_feature: Feature | None
+        _mmrs_line: int
+        _mmrs_source: Source | None
+
+    _mmrs_slots: ClassVar[Mapping[str, Any]] = {}
+    """The bare slot of each feature, by attribute: no copy of lists, no change at the other end."""
+    _mmrs_missing: ClassVar[Mapping[str, Callable[[Element], object]]] = {}
+    """What each feature holds while its slot is empty, by attribute."""
+
+    if not TYPE_CHECKING:  # the stubs declare the features; anything else is a mistake to be found
+
+        def __getattr__(self, name: str) -> object:
+            try:
+                return type(self)._mmrs_missing[name](self)
+            except KeyError:
+                pass
+            if name in _UNSET:
+                return _UNSET[name]
+            hint = nearest(name, type(self)._mmrs_missing)
+            raise AttributeError(
+                f"{name}: no feature of {type(self).__name__}{hint and '; ' + hint}", name=name, obj=self
+            )
+
+    def __repr__(self) -> str:
+        """Return the class, its name or id if it has one, and its place."""
+        label = label_of(self)
+        return f"<{type(self).__name__}{label and ' ' + repr(label)} at {place_of(self)}>"
+
+
+_UNSET = {"_mmrs_container": None, "_mmrs_feature": None, "_mmrs_line": 0, "_mmrs_source": None}
+
+
+class Unknown(Element):
+    """An element whose metamodel is not installed; its XML is kept as it was.
+
+    Attributes:
+        _mmrs_xml: its text, from the opening bracket to the closing one.
+        _mmrs_scope: the prefixes that were in scope there.
+        _mmrs_type: what it claims to be, as ``nsURI#Name``.
+    """
+
+    __slots__ = ("_mmrs_scope", "_mmrs_type", "_mmrs_xml")
+
+    if TYPE_CHECKING:
+        _mmrs_scope: Mapping[str, str]
+        _mmrs_type: str
+        _mmrs_xml: str
+
+
+def metaclass_of(element: Element | type[Element]) -> Metaclass:
+    """Return the metaclass of an element, or of an interface or implementation class.
+
+    Raises:
+        ValueError: if its metamodel is not installed.
+    """
+    kind = element if isinstance(element, type) else type(element)
+    if kind._mmrs_metaclass is None:
+        raise ValueError(f"{kind.__name__}: an element whose metamodel is not installed")
+    return kind._mmrs_metaclass
+
+
+def is_kind(element: Element, ns_uri: str, name: str) -> bool:
+    """Return whether the element is of that metaclass or one of its subtypes."""
+    metaclass = type(element)._mmrs_metaclass
+    return metaclass is not None and metaclass.is_kind(ns_uri, name)
+
+
+def container_of(element: Element) -> Element | None:
+    """Return the element that contains it, or None for a root."""
+    return element._mmrs_container
+
+
+def containing_feature(element: Element) -> Feature | None:
+    """Return the feature of its container that holds it, or None for a root."""
+    return element._mmrs_feature
+
+
+def root_of(element: Element) -> Element:
+    """Return the outermost container; the element itself if it has none."""
+    while (container := element._mmrs_container) is not None:
+        element = container
+    return element
+
+
+def held(element: Element, feature: Feature) -> tuple[object, ...]:
+    """Return the values that a feature holds now: all of a list, one, or none; defaults do not count."""
+    try:
+        value = type(element)._mmrs_slots[feature.attribute].__get__(element)
+    except AttributeError:
+        return ()
+    if feature.many:
+        return tuple(value)
+    return () if value is None else (value,)
+
+
+def contents(element: Element) -> Iterator[Element]:
+    """Yield the elements directly inside it, in the order of features and lists."""
+    metaclass = type(element)._mmrs_metaclass
+    for feature in metaclass.features if metaclass else ():
+        if feature.containment:
+            yield from (value for value in held(element, feature) if isinstance(value, Element))
+
+
+def descendants(element: Element) -> Iterator[Element]:
+    """Yield all elements inside it, outer ones before inner ones, in document order."""
+    pending = list(contents(element))[::-1]
+    while pending:
+        current = pending.pop()
+        yield current
+        pending.extend(list(contents(current))[::-1])
+
+
+def get(element: Element, name: str) -> object:
+    """Return the value of the feature of that name in the metamodel: the default where it is not set.
+
+    Raises:
+        ValueError: if it has no such feature.
+    """
+    value: object = getattr(element, metaclass_of(element).feature(name).attribute)
+    return value
+
+
+def is_set(element: Element, name: str) -> bool:
+    """Return whether the feature of that name holds something that a file would have to say.
+
+    As in EMF: any value counts for an unsettable feature, else only one that is not the default.
+
+    Raises:
+        ValueError: if it has no such feature.
+    """
+    return holds(element, metaclass_of(element).feature(name))
+
+
+def holds(element: Element, feature: Feature) -> bool:
+    """Return the same as `is_set`, for a feature at hand."""
+    try:
+        value = type(element)._mmrs_slots[feature.attribute].__get__(element)
+    except AttributeError:
+        return False
+    if feature.many:
+        return len(value) > 0
+    if value is None and feature.default is None:
+        return False
+    return feature.unsettable or not _same(value, feature.default)
+
+
+def _same(value: object, default: object) -> bool:
+    """Compare as Java's equals does: 0.0 is not -0.0, and true is not 1."""
+    if isinstance(value, float) and isinstance(default, float):
+        return repr(value) == repr(default)
+    return value == default and isinstance(value, bool) == isinstance(default, bool)
+
+
+def place_of(element: Element) -> Place:
+    """Return the file and line it was read from, and its path within its model."""
+    source = element._mmrs_source
+    return Place(source.file if source else "", element._mmrs_line, path_of(element))
+
+
+def path_of(element: Element) -> str:
+    """Return the features and positions that lead to it from its root, such as ``/tasks[2]/shell[0]``."""
+    steps: list[str] = []
+    while (container := element._mmrs_container) is not None:
+        feature = element._mmrs_feature
+        assert feature is not None  # set together with the container
+        steps.append(f"/{feature.name}{_index(container, feature, element)}")
+        element = container
+    return "".join(reversed(steps)) or "/"
+
+
+def _index(container: Element, feature: Feature, element: Element) -> str:
+    if not feature.many:
+        return ""
+    for index, value in enumerate(held(container, feature)):
+        if value is element:
+            return f"[{index}]"
+    return "[?]"
+
+
+def label_of(element: Element) -> str:
+    """Return the element's ``name`` or ``id``, whichever it has first, or an empty text."""
+    for attribute in ("name", "id"):
+        if attribute in type(element)._mmrs_missing:
+            value = getattr(element, attribute)
+            if isinstance(value, str) and value:
+                return value
+    return ""

@@ -1,0 +1,42 @@
+"""Which file a reference to another file means, and whether it may be opened."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+
+
+def linked_file(document: str, base: Path, root: Path) -> Path:
+    """Return the real path of a document that a file in the folder ``base`` refers to.
+
+    Args:
+        document: the part of the href before the hash, percent escapes allowed.
+        base: the folder of the referring file.
+        root: the folder, as a real path, that must contain the document once symbolic links are followed.
+
+    Raises:
+        ValueError: if it is absolute, has a scheme such as ``file:`` or ``http:``, or leaves the root.
+    """
+    path = unquote(document)
+    if _SCHEME.match(path) or path.startswith(("/", "\\")):
+        raise ValueError(f"{document}: not a relative path; only files of the project are opened")
+    if not path or "\0" in path or "\\" in path:
+        raise ValueError(f"{document!r}: not a path")
+    try:
+        real = (base / path).resolve()
+    except (OSError, RuntimeError):
+        raise ValueError(f"{document}: leads in a circle") from None
+    if not real.is_relative_to(root):
+        raise ValueError(f"{document}: outside the project folder {root.name}")
+    return real
+
+
+def relative_href(target: Path, base: Path) -> str:
+    """Return the reference to a file as it is written in a file of the folder ``base``."""
+    from os.path import relpath
+
+    steps = Path(relpath(target, base)).as_posix()
+    return re.sub(r"[%#?\s]", lambda match: f"%{ord(match.group()):02X}", steps)

@@ -1,0 +1,216 @@
+"""What a metamodel says about its classes: packages, metaclasses, features, enumerations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.naming import nearest
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.element import Element
+
+MANY = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """One value of an enumeration: ``name`` in memory, ``literal`` in files, ``value`` in Java."""
+
+    name: str
+    literal: str
+    value: int
+    documentation: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Enumeration:
+    """A closed set of values, which in memory are the names of its literals."""
+
+    ns_uri: str
+    name: str
+    literals: tuple[Literal, ...]
+    documentation: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its values in memory, in the order of the metamodel."""
+        return tuple(literal.name for literal in self.literals)
+
+    def parse(self, text: str) -> str:
+        """Return the name whose literal the text is.
+
+        Raises:
+            ValueError: if it is nobody's literal; the message begins with the text.
+        """
+        for literal in self.literals:
+            if literal.literal == text:
+                return literal.name
+        known = ", ".join(literal.literal for literal in self.literals)
+        raise ValueError(f"{text!r}: not a literal of {self.name} ({known})")
+
+    def render(self, value: object) -> str:
+        """Return the literal of a name, which must be one."""
+        return next(literal.literal for literal in self.literals if literal.name == value)
+
+    def accepts(self, value: object) -> bool:
+        """Return whether a value in memory is the name of a literal."""
+        return isinstance(value, str) and any(literal.name == value for literal in self.literals)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Feature:
+    """One attribute or reference that a metaclass declares; shared by all classes that inherit it.
+
+    Attributes:
+        name: as in the metamodel and in files.
+        attribute: the name under which Python reaches it; differs for keywords, as in ``from_``.
+        lower: fewest values.
+        upper: most values, ``MANY`` (-1) for any number.
+        type: a metaclass for a reference, else a data type or an enumeration.
+        default: what it holds when it was never set; None where an unset number is no number.
+        unsettable: whether "never set" differs from "set to the default".
+        unique: whether a value may occur only once among many.
+        opposite: the reference that the other end keeps, or None.
+        stored: whether files hold it.
+        owner: the metaclass that declares it.
+    """
+
+    name: str
+    attribute: str
+    documentation: str
+    lower: int
+    upper: int
+    is_reference: bool
+    containment: bool
+    unsettable: bool
+    unique: bool
+    is_id: bool
+    stored: bool
+    owner: Metaclass
+    type: Metaclass | DataType | Enumeration
+    default: object
+    opposite: Feature | None = None
+
+    @property
+    def many(self) -> bool:
+        """Whether it holds a list."""
+        return self.upper != 1
+
+    @property
+    def required(self) -> bool:
+        """Whether it needs at least one value."""
+        return self.lower > 0
+
+    @property
+    def is_container(self) -> bool:
+        """Whether it names the element that contains its owner."""
+        return self.opposite is not None and self.opposite.containment
+
+    @property
+    def linked(self) -> bool:
+        """Whether setting it changes the other end as well."""
+        return self.containment or self.opposite is not None
+
+    def __repr__(self) -> str:
+        """Return the owner's name and its own."""
+        return f"<feature {self.owner.name}.{self.name}>"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Metaclass:
+    """A class of a metamodel, with the Python classes made of it.
+
+    Attributes:
+        features: all of them, inherited ones included, in EMF's order.
+        ancestry: (nsURI, name) of itself and all supertypes, most specific first.
+        interface: what ``isinstance`` is asked with, and what is called to make an element.
+        implementation: the class of its elements; None when it is abstract.
+        by_name: the features by their name in the metamodel.
+        by_attribute: the features by their name in Python.
+    """
+
+    ns_uri: str
+    name: str
+    abstract: bool
+    documentation: str
+    supertypes: tuple[Metaclass, ...] = ()
+    features: tuple[Feature, ...] = ()
+    ancestry: tuple[tuple[str, str], ...] = ()
+    interface: type[Element] = field(repr=False, default=None)  # type: ignore[assignment]  # set at once
+    implementation: type[Element] | None = field(repr=False, default=None)
+    by_name: Mapping[str, Feature] = field(repr=False, default_factory=dict)
+    by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Its nsURI and name, which together identify it."""
+        return self.ns_uri, self.name
+
+    def feature(self, name: str) -> Feature:
+        """Return the feature of that name in the metamodel.
+
+        Raises:
+            ValueError: if it has none, with the nearest name.
+        """
+        try:
+            return self.by_name[name]
+        except KeyError:
+            hint = nearest(name, self.by_name)
+            raise ValueError(f"{name}: no feature of {self.name}{hint and '; ' + hint}") from None
+
+    def is_kind(self, ns_uri: str, name: str) -> bool:
+        """Return whether it is that metaclass or one of its subtypes."""
+        return (ns_uri, name) in self.ancestry
+
+    def accepts(self, value: object) -> bool:
+        """Return whether a value in memory is an element of this metaclass or a subtype."""
+        return isinstance(value, self.interface)
+
+    def __repr__(self) -> str:
+        """Return nsURI and name."""
+        return f"<metaclass {self.ns_uri}#{self.name}>"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Package:
+    """A metamodel.
+
+    Attributes:
+        prefix: which files use for it unless another package took it.
+        provider: the distribution that brought it.
+        ecore: the file it came from, or the pyecore EPackage.
+        parent: nsURI of the package it stands in; empty at the top.
+    """
+
+    ns_uri: str
+    name: str
+    prefix: str
+    provider: str
+    documentation: str
+    metaclasses: tuple[Metaclass, ...]
+    enumerations: tuple[Enumeration, ...]
+    datatypes: tuple[DataType, ...]
+    ecore: Path | object = field(repr=False, default=None)
+    parent: str = ""
+
+    @property
+    def members(self) -> Mapping[str, type[Element] | Enumeration]:
+        """What a Python module of the language offers, by name: interface classes and enumerations."""
+        enumerations = {enumeration.name: enumeration for enumeration in self.enumerations}
+        return {metaclass.name: metaclass.interface for metaclass in self.metaclasses} | enumerations
+
+    def member(self, name: str) -> type[Element] | Enumeration:
+        """Return one of the members.
+
+        Raises:
+            AttributeError: if there is none of that name, as modules do, with the nearest name.
+        """
+        members = self.members
+        if name not in members:
+            hint = nearest(name, members)
+            raise AttributeError(f"{name}: no class of {self.ns_uri}{hint and '; ' + hint}")
+        return members[name]

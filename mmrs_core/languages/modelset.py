@@ -1,0 +1,144 @@
+"""All models of a project: the mission, its place, its types of robot, and a behaviour if there is one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages.documents import Draft
+from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.reading import Reading
+from mmrs_core.languages.registry import Registry
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.metaclass import Metaclass
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSet:
+    """The models that belong together.
+
+    Attributes:
+        robots: the types of robot, by name.
+        models: every file that was read, in the order in which they were read.
+    """
+
+    mission: mission.Mission
+    context: context.Context | None
+    robots: Mapping[str, robot.Robot]
+    models: tuple[Model, ...]
+    behaviour: behaviour.Behaviour | None = None
+
+
+def project_files(
+    place: Path, context: Path | None = None, robots: Sequence[Path] = ()
+) -> tuple[Path, Path | None, tuple[Path, ...]]:
+    """Return the files of mission, context and robot types that a folder or a mission file stands for.
+
+    What is not given is looked for beside the mission: ``context.xmi``, and ``robots/*.xmi`` by name.
+
+    Raises:
+        UnreadableError: if a folder has no ``mission.xmi``.
+    """
+    mission_file = place
+    if place.is_dir():
+        mission_file = place / "mission.xmi"
+        if not mission_file.is_file():
+            raise UnreadableError(f"{place}: no mission.xmi in this folder")
+    folder = mission_file.parent
+    if context is None and (folder / "context.xmi").is_file():
+        context = folder / "context.xmi"
+    return mission_file, context, tuple(robots) or tuple(sorted(folder.glob("robots/*.xmi")))
+
+
+def read_project(
+    mission: Path, *, context: Path | None = None, robots: Sequence[Path] = (), registry: Registry
+) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
+    """Return the models of a project and the faults of their files; None if there is no mission among them.
+
+    Args:
+        mission: the project's folder, or the mission's file.
+        context: the place; by default ``context.xmi`` beside the mission, if there is one.
+        robots: the types of robot; by default ``robots/*.xmi`` beside the mission.
+        registry: the metamodels they may use.
+
+    Raises:
+        UnreadableError: if a file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
+    """
+    mission_file, context_file, robot_files = project_files(mission, context, robots)
+    files = [mission_file, *([context_file] if context_file else []), *robot_files]
+    reading = Reading(registry, _common_folder(files))
+    drafts = [reading.open(file) for file in files]
+    reading.follow()
+    main = reading.model(drafts[0])
+    models = (main, *main.linked)
+    faults = [fault for model in models for fault in model.diagnostics]
+    found = _single(drafts[0], registry.metaclass("urn:mmrs:mission:1.0", "Mission"), faults)
+    where = registry.metaclass("urn:mmrs:context:1.0", "Context")
+    place = _single(drafts[1], where, faults) if context_file else None
+    types = _robot_types(drafts[len(files) - len(robot_files) :], registry, faults)
+    if found is None:
+        return None, tuple(faults)
+    return ModelSet(found, place or None, types, models), tuple(faults)  # type: ignore[arg-type]
+
+
+def _common_folder(files: Sequence[Path]) -> Path:
+    """Return the folder that references may not leave: the mission's, or one above that holds all files."""
+    folders = [file.resolve().parent for file in files]
+    folder = folders[0]
+    while not all(other.is_relative_to(folder) for other in folders):
+        folder = folder.parent
+    return folder
+
+
+def _single(draft: Draft, metaclass: Metaclass, faults: list[Diagnostic]) -> Element | None:
+    """Return the first root of that metaclass, after a fault for everything else at the top."""
+    chosen = None
+    for root in draft.source.roots:
+        if chosen is None and metaclass.accepts(root):
+            chosen = root
+        elif not isinstance(root, Unknown):
+            message = f"{metaclass_of(root).name}: expected one {metaclass.name} in this file, nothing else"
+            faults.append(Diagnostic("PRJ002", Severity.ERROR, message, place_of(root)))
+    return chosen
+
+
+def _robot_types(
+    drafts: Sequence[Draft], registry: Registry, faults: list[Diagnostic]
+) -> Mapping[str, robot.Robot]:
+    types: dict[str, robot.Robot] = {}
+    for root in _robot_roots(drafts, registry, faults):
+        name = root.name or ""
+        if name in types:
+            first = place_of(types[name])
+            message = (
+                f"{name or 'a nameless type'}: two types of robot have this name; the first is at {first}"
+            )
+            faults.append(
+                Diagnostic("PRJ001", Severity.ERROR, message, place_of(root), "give each type its own name")
+            )
+        else:
+            types[name] = root
+    return types
+
+
+def _robot_roots(
+    drafts: Sequence[Draft], registry: Registry, faults: list[Diagnostic]
+) -> Iterator[robot.Robot]:
+    metaclass = registry.metaclass("urn:mmrs:robot:1.0", "Robot")
+    for draft in drafts:
+        for root in draft.source.roots:
+            if isinstance(root, robot.Robot):
+                yield root
+            elif not isinstance(root, Unknown):
+                message = f"{metaclass_of(root).name}: expected types of robot in this file, nothing else"
+                faults.append(Diagnostic("PRJ002", Severity.ERROR, message, place_of(root)))
+        if not draft.source.roots and not draft.diagnostics:
+            message = f"{metaclass.name}: the file holds none"
+            faults.append(Diagnostic("PRJ002", Severity.ERROR, message))

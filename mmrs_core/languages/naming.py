@@ -1,0 +1,39 @@
+"""How names of a metamodel become names of Python, and which known name a misspelt one is nearest to."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Collection, Iterable
+from difflib import get_close_matches
+
+_FOREIGN = re.compile(r"\W")
+
+
+def python_name(name: str, taken: Collection[str] = ()) -> str:
+    """Return the attribute under which a feature of that name is reached.
+
+    Keywords get a trailing underscore, and so do names that Python or this package keeps for itself.
+    What no identifier may hold becomes an underscore; a name already taken gets underscores until it is free.
+
+    >>> python_name("from"), python_name("shell"), python_name("__init__"), python_name("2nd-pass")
+    ('from_', 'shell', '_init___', '_2nd_pass')
+    """
+    result = _FOREIGN.sub("_", name) or "_"
+    if result[0].isdigit():
+        result = f"_{result}"
+    if result.startswith("__") or result.startswith("_mmrs_"):
+        result = f"_{result.lstrip('_')}_"
+    if keyword.iskeyword(result):
+        result += "_"
+    while result in taken:
+        result += "_"
+    return result
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return a hint that names the known word most like the given one, or an empty text."""
+    choices = sorted(set(known))
+    folded = {choice.casefold(): choice for choice in choices}
+    found = get_close_matches(name.casefold(), folded, n=1, cutoff=0.6)
+    return f"did you mean {folded[found[0]]}?" if found else ""

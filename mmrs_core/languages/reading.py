@@ -1,0 +1,107 @@
+"""Models from XMI files: all faults reported, nothing fetched, nothing opened outside the project."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.documents import Draft
+from mmrs_core.languages.element import Source
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.resolution import resolve
+from mmrs_core.languages.xmi_reader import XmiReader
+from mmrs_core.languages.xml_events import Document, read_bytes
+
+
+class Reading:
+    """Several files read together, so that references between them lead to the same elements."""
+
+    def __init__(self, registry: Registry, root: Path | None) -> None:
+        """Take the metamodels, and the folder that references must not leave (None: no file at all)."""
+        self._registry = registry
+        self._root = root.resolve() if root is not None else None
+        self._drafts: dict[Path, Draft] = {}
+        self._unresolved: list[Draft] = []
+
+    def open(self, path: Path) -> Draft:
+        """Read a file, unless it was read already, without following its references yet.
+
+        Raises:
+            UnreadableError: if it is missing, not well-formed, has a DOCTYPE, is too large or too deep.
+        """
+        real = path.resolve()
+        if real not in self._drafts:
+            self._drafts[real] = self.parse(read_bytes(path), Source(str(path), real))
+        return self._drafts[real]
+
+    def parse(self, data: bytes, source: Source) -> Draft:
+        """Read the text of a file; errors as in `open`."""
+        document, draft = Document(data, source.file), Draft(source)
+        with _collector_at_rest():
+            document.parse(XmiReader(document, draft, self._registry))
+        source.roots = tuple(draft.roots)
+        self._unresolved.append(draft)
+        return draft
+
+    def follow(self) -> None:
+        """Resolve the references of all files read so far, and of those that they lead to."""
+        with _collector_at_rest():
+            while self._unresolved:
+                resolve(self._unresolved.pop(0), self.open, self._root)
+
+    def model(self, draft: Draft) -> Model:
+        """Return what a file holds, with the other files read together with it."""
+        others = (self._plain(other) for other in self._drafts.values() if other is not draft)
+        plain = self._plain(draft)
+        return Model(plain.file, plain.roots, plain.diagnostics, tuple(others), plain.broken)
+
+    def _plain(self, draft: Draft) -> Model:
+        file = Path(draft.source.file) if draft.source.path else draft.source.file
+        return Model(file, draft.source.roots, tuple(draft.diagnostics), (), frozenset(draft.broken))
+
+
+@contextmanager
+def _collector_at_rest() -> Iterator[None]:
+    """Keep the cyclic collector from walking a growing model again and again: nothing in it is garbage."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+def read_model(path: Path, registry: Registry, *, root: Path | None = None) -> Model:
+    """Return the model in a file, and every fault of it.
+
+    Args:
+        path: an XMI file.
+        registry: the metamodels it may use.
+        root: the folder that references to other files must not leave; by default the file's own.
+
+    Raises:
+        UnreadableError: if the file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
+    """
+    reading = Reading(registry, root if root is not None else path.parent)
+    draft = reading.open(path)
+    reading.follow()
+    return reading.model(draft)
+
+
+def read_text(data: bytes, file: str, registry: Registry) -> Model:
+    """Return the model in a text, which messages call ``file``; references to other files are refused.
+
+    Raises:
+        UnreadableError: if it is not well-formed XML, has a DOCTYPE, or nests too deeply.
+    """
+    if not isinstance(data, bytes):
+        raise UnreadableError(f"{file}: expected bytes, not {type(data).__name__}")
+    reading = Reading(registry, None)
+    draft = reading.parse(data, Source(file, None))
+    reading.follow()
+    return reading.model(draft)

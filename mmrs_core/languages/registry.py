@@ -1,0 +1,121 @@
+"""The metamodels at hand, and elements made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from mmrs_core.errors import PluginError
+from mmrs_core.languages.assembly import Assembly
+from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.locating import Located, locate_all
+from mmrs_core.languages.metaclass import Metaclass, Package
+from mmrs_core.languages.naming import nearest
+from mmrs_core.resources import shipped
+
+CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
+
+
+@dataclass(frozen=True, slots=True)
+class MetamodelSource:
+    """A metamodel that somebody brings.
+
+    Attributes:
+        ns_uri: of the package, as its file states it.
+        ecore: the .ecore file, or a pyecore EPackage.
+        provider: the distribution that brings it.
+    """
+
+    ns_uri: str
+    ecore: Path | object
+    provider: str = "core"
+
+
+class Registry:
+    """All metamodels that models may use.
+
+    Attributes:
+        packages: in the order in which they were given, a package before those inside it.
+        everything: the same, with the part of Ecore itself that models may hold.
+    """
+
+    def __init__(self, packages: Iterable[Package]) -> None:
+        self.everything = tuple(packages)
+        self.packages = tuple(package for package in self.everything if package.ns_uri != ECORE)
+        self._packages = {package.ns_uri: package for package in self.everything}
+        self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
+            metaclass.key: metaclass for package in self.everything for metaclass in package.metaclasses
+        }
+
+    def package(self, ns_uri: str) -> Package:
+        """Return the package of that nsURI.
+
+        Raises:
+            ValueError: if there is none, with the nearest nsURI.
+        """
+        try:
+            return self._packages[ns_uri]
+        except KeyError:
+            hint = nearest(ns_uri, self._packages)
+            raise ValueError(f"{ns_uri}: no such metamodel{hint and '; ' + hint}") from None
+
+    def metaclass(self, ns_uri: str, name: str) -> Metaclass:
+        """Return a metaclass.
+
+        Raises:
+            ValueError: if there is no such package or no such class in it, with the nearest name.
+        """
+        try:
+            return self._metaclasses[ns_uri, name]
+        except KeyError:
+            names = [metaclass.name for metaclass in self.package(ns_uri).metaclasses]
+            hint = nearest(name, names)
+            raise ValueError(f"{name}: no class of {ns_uri}{hint and '; ' + hint}") from None
+
+    def has(self, ns_uri: str) -> bool:
+        """Return whether the metamodel of that nsURI is here."""
+        return ns_uri in self._packages
+
+    def create(self, ns_uri: str, name: str, /, **features: object) -> Element:
+        """Return a new element whose features have the given values.
+
+        Raises:
+            ValueError: if the class is unknown or abstract, or has no such feature.
+        """
+        element: Element = self.metaclass(ns_uri, name).interface(**features)
+        return element
+
+
+@cache
+def core_registry() -> Registry:
+    """Return the four languages of the core; always the same registry."""
+    folder = shipped("metamodels")
+    sources = [MetamodelSource(f"urn:mmrs:{name}:1.0", folder / f"{name}.ecore") for name in CORE_LANGUAGES]
+    return Registry(_assemble(sources, ()))
+
+
+def registry_with(sources: Iterable[MetamodelSource]) -> Registry:
+    """Return the core's metamodels together with others, which may build upon each other in any order.
+
+    Raises:
+        PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
+            from itself, or a file holds another metamodel than announced.
+        UnreadableError: if a file is no metamodel.
+    """
+    core = core_registry().everything
+    return Registry((*core, *_assemble(tuple(sources), core)))
+
+
+def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:
+    located: list[Located] = []
+    seen = {package.ns_uri: package.provider for package in known}
+    for entry in locate_all((source.ns_uri, source.ecore, source.provider) for source in sources):
+        ns_uri = entry.table.ns_uri
+        if ns_uri in seen:
+            raise PluginError(f"{entry.provider}: metamodel {ns_uri} is already provided by {seen[ns_uri]}")
+        seen[ns_uri] = entry.provider
+        located.append(entry)
+    return Assembly(known, located).packages()

@@ -1,0 +1,149 @@
+"""References from texts to elements, within a file and across files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.documents import Draft, Pending
+from mmrs_core.languages.element import Element, Unknown, label_of
+from mmrs_core.languages.hrefs import linked_file
+from mmrs_core.languages.links import raw, store
+
+Opener = Callable[[Path], Draft]
+
+
+def resolve(draft: Draft, opener: Opener, root: Path | None) -> None:
+    """Set every reference of a file; what leads nowhere becomes a fault of that file.
+
+    Args:
+        draft: the file; its pending references are emptied.
+        opener: reads another file, or returns it when it was read before.
+        root: the folder that references must not leave; None where there are no files.
+    """
+    pending, draft.pending = draft.pending, []
+    doubled = []
+    for reference in pending:
+        for uri in _uris(reference.text):
+            target = _target(uri, reference, draft, opener, root)
+            if target is not None and _set(reference, target, draft):
+                doubled.append((reference, target))
+    for reference, target in doubled:
+        _tell_other_end(reference, target, draft)
+
+
+def _uris(text: str) -> Iterator[str]:
+    """Yield the URIs in a text, without the types that may stand before references to other files."""
+    words = text.split()
+    for index, word in enumerate(words):
+        following = words[index + 1] if index + 1 < len(words) else ""
+        if not (":" in word and "#" not in word and not word.startswith("/") and "#" in following):
+            yield word
+
+
+def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None) -> Element | None:
+    document, _, fragment = uri.rpartition("#") if "#" in uri else ("", "", uri)
+    where = draft
+    if document:
+        opened = _opened(document, reference, draft, opener, root)
+        if opened is None:
+            return None
+        where = opened
+    target = where.find(fragment or "/")
+    if target is None:
+        kind = reference.feature.type.name
+        _fault(
+            "XMI006",
+            f"{reference.feature.name}: {uri} leads to no element",
+            reference,
+            draft,
+            _hint(kind, uri),
+        )
+    return target
+
+
+def _hint(kind: str, uri: str) -> str:
+    return "" if "/" in uri else f"write the path of a {kind}, such as //@{kind.lower()}s.0, or an id"
+
+
+def _opened(
+    document: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None
+) -> Draft | None:
+    path = draft.source.path
+    if path is None or root is None:
+        message = f"{reference.feature.name}: {document}: a text that is no file cannot refer to files"
+        _fault("XMI007", message, reference, draft)
+        return None
+    try:
+        real = linked_file(document, path.parent, root)
+        return draft if real == path else opener(_as_given(document, draft, real))
+    except ValueError as fault:
+        _fault("XMI007", f"{reference.feature.name}: {fault}", reference, draft)
+    except UnreadableError as fault:
+        _fault("XMI016", f"{reference.feature.name}: {fault}", reference, draft)
+    return None
+
+
+def _as_given(document: str, draft: Draft, real: Path) -> Path:
+    """Return the path in the terms in which the user named the referring file, where that is the same."""
+    given = Path(draft.source.file).parent / document
+    return given if given.resolve() == real else real
+
+
+def _set(reference: Pending, target: Element, draft: Draft) -> bool:
+    """Put the target into the reference; return whether the other end has to be told."""
+    element, feature = reference.element, reference.feature
+    if not isinstance(target, Unknown) and not feature.type.accepts(target):
+        label = label_of(target)
+        what = f"{type(target).__name__}{label and f' {label!r}'}"
+        message = f"{feature.name}: leads to the {what}, not to a {feature.type.name}"
+        _fault("XMI008", message, reference, draft)
+        return False
+    if feature.containment:
+        return _contain(reference, target, draft)
+    if feature.many:
+        values = getattr(element, feature.attribute)
+        values.put(target) if feature.linked else values.append(target)
+        return feature.linked
+    if raw(element, feature) not in (None, target):
+        _fault("XMI009", f"{feature.name}: refers to more than one element, takes one", reference, draft)
+        return False
+    type(element)._mmrs_slots[feature.attribute].__set__(element, target)
+    return feature.linked
+
+
+def _contain(reference: Pending, target: Element, draft: Draft) -> bool:
+    """Contain the root of another file, which stays in that file."""
+    element, feature = reference.element, reference.feature
+    try:
+        if target._mmrs_container is not None:
+            raise ValueError(f"{feature.name}: leads to an element that stands elsewhere already")
+        if feature.many:
+            getattr(element, feature.attribute).append(target)
+        else:
+            setattr(element, feature.attribute, target)
+    except ValueError as fault:
+        _fault("XMI017", str(fault), reference, draft)
+    return False
+
+
+def _tell_other_end(reference: Pending, target: Element, draft: Draft) -> None:
+    element, opposite = reference.element, reference.feature.opposite
+    if opposite is None or opposite.attribute not in type(target)._mmrs_slots:
+        return
+    present = raw(target, opposite)
+    if opposite.containment:
+        if element._mmrs_container is not target:
+            message = f"{reference.feature.name}: leads to an element that does not contain this one"
+            _fault("XMI013", message, reference, draft)
+    elif opposite.many or present is None:
+        store(target, opposite, element)
+    elif present is not element:
+        message = f"{reference.feature.name}: the other end, {opposite.name}, refers to another element"
+        _fault("XMI013", message, reference, draft)
+
+
+def _fault(code: str, message: str, reference: Pending, draft: Draft, hint: str = "") -> None:
+    draft.fault(code, message, reference.line, reference.element, hint)
+    draft.broken.add((reference.element, reference.feature.name))

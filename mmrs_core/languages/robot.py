@@ -1,0 +1,18 @@
+"""The Robot Language (RL): what each type of robot is and can do.
+
+The classes come from ``robot.ecore`` when they are first asked for; the stub beside this file lists them.
+"""
+
+from __future__ import annotations
+
+from mmrs_core.languages.registry import core_registry
+
+NS_URI = "urn:mmrs:robot:1.0"
+
+
+def __getattr__(name: str) -> object:
+    return core_registry().package(NS_URI).member(name)
+
+
+def __dir__() -> list[str]:
+    return sorted(("NS_URI", *core_registry().package(NS_URI).members))

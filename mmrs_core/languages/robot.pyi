@@ -1,0 +1,253 @@
+"""Made by mmrs_core.languages.stubs from urn:mmrs:robot:1.0; not to be edited."""
+
+from collections.abc import Iterable
+from typing import Final, Literal, TypeAlias
+
+from mmrs_core.languages.element import Element
+
+NS_URI: Final[str]
+
+RangingSystem: TypeAlias = Literal["SONAR", "RADAR", "LIDAR", "SODAR"]
+
+TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
+
+AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
+
+PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT"]
+
+PolicyResponse: TypeAlias = Literal["HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"]
+
+class Robot(Element):
+    """A type of robot. Every robot of a mission names the type that it is of."""
+    name: str
+    """Unique name of the type; mission robots and behaviours refer to it."""
+    onBoardObstacleAvoidance: bool
+    """Whether the robot avoids collisions by itself."""
+    gyro: bool
+    """Whether a gyroscope is on board."""
+    gps: bool
+    """Whether a satellite positioning receiver is on board."""
+    accelerometer: bool
+    """Whether an accelerometer is on board."""
+    magnetometer: bool
+    """Whether a magnetometer is on board."""
+    barometer: bool
+    """Whether a barometer is on board."""
+    pressuremeter: bool
+    """Whether a pressure meter is on board."""
+    communicationRange: float | None
+    """Maximum range of the radio control, in metres; absent: not known."""
+    dataRate: float | None
+    """Data rate between robot and control station, in kilobits per second."""
+    radioFrequency: float | None
+    """Radio frequency between robot and control station, in megahertz."""
+    rangingSystem: list[RangingSystem]
+    """The ranging systems that operate in the robot."""
+    maxPayload: float | None
+    """Largest payload that the robot can carry, in kilograms; absent: it carries none."""
+    maxOperatingPressure: float | None
+    """Largest ambient pressure in which the robot operates, in pascals absolute."""
+    hardwareConfiguration: str | None
+    """Path or URL of a document that describes the hardware; never fetched."""
+    operatingTemperature: Interval | None
+    """Ambient temperatures in which the robot operates, in degrees Celsius."""
+    size: Size
+    """The robot's dimensions."""
+    devices: list[Device]
+    """Devices that gather data or act on the world."""
+    batteries: list[Battery]
+    """The robot's batteries; none where it has a wired power source."""
+    movementCapabilities: list[MovementCapability]
+    """How the robot moves, one entry for each payload weight it was measured with."""
+    policies: list[Policy]
+    """What a robot of this type does when something goes wrong, unless the mission says otherwise."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        onBoardObstacleAvoidance: bool | None = ...,
+        gyro: bool | None = ...,
+        gps: bool | None = ...,
+        accelerometer: bool | None = ...,
+        magnetometer: bool | None = ...,
+        barometer: bool | None = ...,
+        pressuremeter: bool | None = ...,
+        communicationRange: float | None = ...,
+        dataRate: float | None = ...,
+        radioFrequency: float | None = ...,
+        rangingSystem: Iterable[RangingSystem] | None = ...,
+        maxPayload: float | None = ...,
+        maxOperatingPressure: float | None = ...,
+        hardwareConfiguration: str | None = ...,
+        operatingTemperature: Interval | None = ...,
+        size: Size | None = ...,
+        devices: Iterable[Device] | None = ...,
+        batteries: Iterable[Battery] | None = ...,
+        movementCapabilities: Iterable[MovementCapability] | None = ...,
+        policies: Iterable[Policy] | None = ...,
+    ) -> None: ...
+
+class Size(Element):
+    """The outer dimensions of a robot."""
+    width: float
+    """Left to right, in metres."""
+    length: float
+    """Front to back, in metres."""
+    height: float
+    """Bottom to top, in metres."""
+    weight: float
+    """Mass without payload, in kilograms."""
+    def __init__(
+        self,
+        *,
+        width: float | None = ...,
+        length: float | None = ...,
+        height: float | None = ...,
+        weight: float | None = ...,
+    ) -> None: ...
+
+class Interval(Element):
+    """A closed interval of a real quantity, whose unit the owner states."""
+    min: float
+    """The smallest value."""
+    max: float
+    """The largest value."""
+    def __init__(
+        self,
+        *,
+        min: float | None = ...,
+        max: float | None = ...,
+    ) -> None: ...
+
+class Device(Element):
+    """A device that a robot carries, such as a camera, a sensor, a gripper or a lamp."""
+    id: str
+    """Identifier, unique in the robot type; behaviours refer to it."""
+    name: str | None
+    """What people call the device."""
+    properties: list[Property]
+    """Configuration of the device; documented keys say how it is wired, so that targets need no tables of their own."""
+    supportedActions: list[SupportedAction]
+    """What the device can do."""
+    def __init__(
+        self,
+        *,
+        id: str | None = ...,
+        name: str | None = ...,
+        properties: Iterable[Property] | None = ...,
+        supportedActions: Iterable[SupportedAction] | None = ...,
+    ) -> None: ...
+
+class Property(Element):
+    """One property of a device."""
+    name: str
+    """The key, such as mavlink.camera, mavlink.servo, sensor.width, focal.length or can.id."""
+    value: str
+    """The value, as text; the key defines its unit."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        value: str | None = ...,
+    ) -> None: ...
+
+class SupportedAction(Element):
+    """An action that a device can perform."""
+    name: str
+    """Name of the action, unique in the device; behaviours refer to it."""
+    description: str | None
+    """What the action does, for people."""
+    duration: float
+    """How long the action takes, in seconds."""
+    parameters: list[Parameter]
+    """The parameters that the action accepts."""
+    def __init__(
+        self,
+        *,
+        name: str | None = ...,
+        description: str | None = ...,
+        duration: float | None = ...,
+        parameters: Iterable[Parameter] | None = ...,
+    ) -> None: ...
+
+class Parameter(Element):
+    """A parameter of an action."""
+    key: str
+    """Name of the parameter, unique in the action."""
+    description: str | None
+    """Meaning, unit and range of its values, for people."""
+    def __init__(
+        self,
+        *,
+        key: str | None = ...,
+        description: str | None = ...,
+    ) -> None: ...
+
+class Battery(Element):
+    """A battery of the robot."""
+    capacity: float
+    """Charge when full, in milliampere-hours."""
+    voltage: float
+    """Nominal voltage, in volts."""
+    rechargeTime: float | None
+    """Time to a full charge or an exchange, in seconds; absent: it cannot be recharged during a mission."""
+    def __init__(
+        self,
+        *,
+        capacity: float | None = ...,
+        voltage: float | None = ...,
+        rechargeTime: float | None = ...,
+    ) -> None: ...
+
+class MovementCapability(Element):
+    """How the robot moves while it carries a payload of one weight."""
+    payloadWeight: float
+    """Weight of the payload that the figures hold for, in kilograms."""
+    lifetime: float | None
+    """Estimated time that the robot operates on full batteries with that payload, in seconds; absent: unlimited for a wired robot, unknown for one with batteries."""
+    maxAcceleration: float | None
+    """Largest acceleration, in metres per second squared."""
+    speed: Interval
+    """Smallest and largest speed, in metres per second."""
+    yaw: Interval | None
+    """Range of the angle about the vertical axis, in degrees."""
+    pitch: Interval | None
+    """Range of the angle about the lateral axis, in degrees."""
+    roll: Interval | None
+    """Range of the angle about the longitudinal axis, in degrees."""
+    maxClimbRate: float | None
+    """Largest upward speed, in metres per second; absent: the largest speed."""
+    maxDescentRate: float | None
+    """Largest downward speed, in metres per second; absent: the largest speed."""
+    maxTurnRate: float | None
+    """Largest rate of turn about the vertical axis, in degrees per second; absent: 90."""
+    def __init__(
+        self,
+        *,
+        payloadWeight: float | None = ...,
+        lifetime: float | None = ...,
+        maxAcceleration: float | None = ...,
+        speed: Interval | None = ...,
+        yaw: Interval | None = ...,
+        pitch: Interval | None = ...,
+        roll: Interval | None = ...,
+        maxClimbRate: float | None = ...,
+        maxDescentRate: float | None = ...,
+        maxTurnRate: float | None = ...,
+    ) -> None: ...
+
+class Policy(Element):
+    """What a robot does when something goes wrong."""
+    event: PolicyEvent
+    """What went wrong."""
+    response: PolicyResponse
+    """What the robot then does."""
+    after: float | None
+    """How long the fault lasts before the robot responds, in seconds; absent: the default of the platform for that event."""
+    def __init__(
+        self,
+        *,
+        event: PolicyEvent | None = ...,
+        response: PolicyResponse | None = ...,
+        after: float | None = ...,
+    ) -> None: ...

@@ -1,0 +1,77 @@
+"""Models into XMI files: deterministic, and never half a file."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xmi_writer import XmiWriter
+
+
+def to_xmi(
+    roots: Sequence[Element],
+    registry: Registry,
+    *,
+    schema_location: Mapping[str, str] | None = None,
+    file: Path | None = None,
+) -> bytes:
+    """Return the text of a model as EMF writes it, in UTF-8; the same model gives the same bytes.
+
+    Args:
+        roots: the elements at the top of the file.
+        registry: the metamodels of the elements.
+        schema_location: for Eclipse, where the .ecore of each nsURI lies, relative to the file.
+        file: where the text will stand; needed when the model refers to other files.
+
+    Raises:
+        ValueError: if a value is not of its type, holds a character that XML cannot hold, or a reference
+            leads to an element that stands in no file.
+    """
+    return XmiWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
+
+
+def write_model(
+    roots: Sequence[Element],
+    path: Path,
+    registry: Registry,
+    *,
+    schema_location: Mapping[str, str] | None = None,
+) -> None:
+    """Write a model into a file, whole or not at all.
+
+    Raises:
+        ValueError: as `to_xmi`; nothing is written then.
+        OSError: if the folder cannot be written to; the file is as it was before.
+    """
+    replace_file(path, to_xmi(roots, registry, schema_location=schema_location, file=path))
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Put other content into a file, or make it, in one step that a crash cannot divide.
+
+    Raises:
+        OSError: if the folder cannot be written to; the file is as it was before.
+    """
+    real = path.resolve()  # a symbolic link stays one
+    handle, name = tempfile.mkstemp(prefix=f".{real.name}.", suffix=".part", dir=real.parent)
+    part = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.chmod(real.stat().st_mode & 0o777 if real.exists() else 0o666 & ~_umask())
+        part.replace(real)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

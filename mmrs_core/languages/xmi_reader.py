@@ -1,0 +1,328 @@
+"""From XMI to elements: one pass over a file, references left as texts."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.documents import Draft, Pending
+from mmrs_core.languages.element import Element, Unknown, label_of
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xml_events import XMI, XSI, Document
+
+_TYPE = f"{XSI} type"
+_XMI_TYPE = f"{XMI} type"
+_NIL = f"{XSI} nil"
+_ID = f"{XMI} id"
+_UUID = f"{XMI} uuid"
+_WRAPPER = f"{XMI} XMI"
+_HARMLESS = frozenset(
+    (_TYPE, _XMI_TYPE, f"{XMI} version", f"{XSI} schemaLocation", f"{XSI} noNamespaceSchemaLocation", _UUID)
+)
+
+
+class _Frame(NamedTuple):
+    """An open XML element: a model element, or a feature's value (then ``feature`` is given)."""
+
+    element: Element
+    metaclass: Metaclass
+    feature: Feature | None = None
+
+
+class XmiReader:
+    """Listens to one document and fills a draft."""
+
+    def __init__(self, document: Document, draft: Draft, registry: Registry) -> None:
+        self._document = document
+        self._draft = draft
+        self._registry = registry
+        self._open: list[_Frame] = []
+        self._text: list[str] = []
+        self._ignored = 0
+        self._wrapped = False
+        self._kept: tuple[Unknown, int] | None = None
+        self._nil = False
+
+    def start(self, tag: str, attributes: list[str]) -> None:
+        """Take the start of an XML element."""
+        if self._ignored:
+            self._ignored += 1
+        elif self._open:
+            self._inside(self._open[-1], tag, attributes)
+        elif tag == _WRAPPER and not self._wrapped and not self._draft.roots:
+            self._wrapped = True
+        else:
+            self._root(tag, attributes)
+
+    def end(self, tag: str) -> None:
+        """Take the end of an XML element."""
+        if self._ignored:
+            self._ignored -= 1
+            if not self._ignored:
+                self._keep()
+        elif self._open:
+            frame = self._open.pop()
+            if frame.feature is not None and not frame.feature.is_reference:
+                self._value_ends(frame.element, frame.feature)
+
+    def text(self, text: str) -> None:
+        """Take character data."""
+        if self._ignored:
+            return
+        if self._open and self._open[-1].feature is not None:
+            self._text.append(text)
+        elif not text.isspace():
+            self._fault("XMI010", f"{text.strip()[:40]!r}: text where only elements may stand")
+
+    # the kinds of XML element
+
+    def _root(self, tag: str, attributes: list[str]) -> None:
+        ns_uri, _, name = tag.rpartition(" ")
+        if ns_uri == XMI and self._wrapped:
+            self._ignore(f"xmi:{name}")
+            return
+        metaclass = self._metaclass(ns_uri, name)
+        element = self._make(metaclass, f"{ns_uri}#{name}")
+        if element is None:
+            return
+        self._draft.roots.append(element)
+        if metaclass is not None and not isinstance(element, Unknown):
+            self._open.append(_Frame(element, metaclass))
+            self._attributes(element, metaclass, attributes)
+
+    def _inside(self, frame: _Frame, tag: str, attributes: list[str]) -> None:
+        element, metaclass, open_feature = frame
+        if open_feature is not None:
+            self._fault("XMI010", f"{tag}: an element inside a value of {open_feature.name}", element)
+            self._ignored = 1
+            return
+        feature = metaclass.by_name.get(tag)
+        if feature is None:
+            feature = self._namespaced(element, metaclass, tag)
+        if feature is None:
+            self._ignored = 1
+        elif not feature.is_reference:
+            self._text.clear()
+            self._nil = _value(attributes, _NIL) in ("true", "1")
+            self._open.append(_Frame(element, metaclass, feature))
+        elif (href := _value(attributes, "href")) is not None and "href" not in feature_names(feature):
+            self._refer(element, feature, href)
+            self._open.append(_Frame(element, metaclass, feature))
+        elif _value(attributes, _NIL) in ("true", "1"):
+            self._open.append(_Frame(element, metaclass, feature))
+        elif feature.containment:
+            self._contained(element, feature, attributes)
+        else:
+            self._fault("XMI006", f"{feature.name}: a reference as an element needs an href", element)
+            self._ignored = 1
+
+    def _namespaced(self, element: Element, metaclass: Metaclass, tag: str) -> Feature | None:
+        ns_uri, _, name = tag.rpartition(" ")
+        if ns_uri == XMI:
+            self._ignore(f"xmi:{name}")
+            return None
+        feature = metaclass.by_name.get(name)
+        if feature is None or (ns_uri and not self._registry.has(ns_uri)):
+            self._no_feature(element, metaclass, name)
+            return None
+        return feature
+
+    def _contained(self, owner: Element, feature: Feature, attributes: list[str]) -> None:
+        kind = _value(attributes, _TYPE) or _value(attributes, _XMI_TYPE)
+        assert isinstance(feature.type, Metaclass)  # it is a reference
+        metaclass: Metaclass | None = feature.type
+        claimed = f"{feature.type.ns_uri}#{feature.type.name}"
+        if kind is not None:
+            prefix, _, name = kind.rpartition(":")
+            ns_uri = self._document.namespaces.uri(prefix) or ""
+            claimed = f"{ns_uri}#{name}"
+            metaclass = self._metaclass(ns_uri, name, owner, prefix)
+        element = self._make(metaclass, claimed, owner)
+        if element is None:
+            return
+        if metaclass is not None and not isinstance(element, Unknown):
+            self._open.append(_Frame(element, metaclass))
+            if feature.type.key not in metaclass.ancestry:
+                message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
+                self._fault("XMI008", message, owner, broken=feature)
+                return
+        self._contain(owner, feature, element)
+        if metaclass is not None and not isinstance(element, Unknown):
+            self._attributes(element, metaclass, attributes)
+
+    def _contain(self, owner: Element, feature: Feature, element: Element) -> None:
+        slot = type(owner)._mmrs_slots[feature.attribute]
+        if feature.many:
+            values = getattr(owner, feature.attribute)
+            values.put(element)
+        else:
+            try:
+                slot.__get__(owner)
+                self._fault("XMI009", f"{feature.name}: given more than once, takes one", owner)
+            except AttributeError:
+                slot.__set__(owner, element)
+        element._mmrs_container = owner
+        element._mmrs_feature = feature
+        opposite = feature.opposite
+        if opposite is not None and not isinstance(element, Unknown):
+            type(element)._mmrs_slots[opposite.attribute].__set__(element, owner)
+
+    def _make(
+        self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None
+    ) -> Element | None:
+        if metaclass is None:
+            element: Element = Unknown.__new__(Unknown)
+            assert isinstance(element, Unknown)
+            element._mmrs_type = claimed
+            self._kept = (element, self._document.offset)
+            self._ignored = 1
+        elif metaclass.implementation is None:
+            self._fault("XMI003", f"{metaclass.name}: abstract; say which kind of it by xsi:type", owner)
+            self._ignored = 1
+            return None
+        else:
+            element = metaclass.implementation.__new__(metaclass.implementation)
+        element._mmrs_line = self._document.line
+        element._mmrs_source = self._draft.source
+        return element
+
+    def _metaclass(
+        self, ns_uri: str, name: str, owner: Element | None = None, prefix: str | None = None
+    ) -> Metaclass | None:
+        if ns_uri and self._registry.has(ns_uri):
+            try:
+                return self._registry.metaclass(ns_uri, name)
+            except ValueError as fault:
+                message, _, hint = str(fault).partition("; ")
+                self._fault("XMI002", message, owner, hint)
+                return None
+        if not ns_uri and prefix is not None:
+            self._fault("XMI014", f"{prefix}:{name}: the prefix {prefix!r} is not declared", owner)
+        elif not ns_uri:
+            self._fault("XMI015", f"{name}: the root is no model: it has no namespace", owner)
+        else:
+            known = nearest(ns_uri, [package.ns_uri for package in self._registry.packages])
+            hint = known or "install the plug-in that provides it; the element is kept as it is"
+            self._fault("XMI001", f"{ns_uri}: no such metamodel, needed for {name}", owner, hint)
+        return None
+
+    # attributes and values
+
+    def _attributes(self, element: Element, metaclass: Metaclass, attributes: list[str]) -> None:
+        pairs = iter(attributes)
+        for name, text in zip(pairs, pairs, strict=True):
+            feature = metaclass.by_name.get(name)
+            if feature is not None:
+                self._attribute(element, feature, text)
+            elif name == _ID:
+                self._identify(element, text, own=False)
+            elif name not in _HARMLESS:
+                self._no_feature(element, metaclass, name.rpartition(" ")[2])
+
+    def _attribute(self, element: Element, feature: Feature, text: str) -> None:
+        if feature.is_reference:
+            self._refer(element, feature, text)
+        elif feature.many:
+            for word in text.split():
+                self._value(element, feature, word)
+        else:
+            self._value(element, feature, text)
+
+    def _refer(self, element: Element, feature: Feature, text: str) -> None:
+        self._draft.pending.append(Pending(element, feature, text, self._document.line))
+
+    def _value(self, element: Element, feature: Feature, text: str) -> None:
+        assert not isinstance(feature.type, Metaclass)  # it is an attribute
+        try:
+            value = feature.type.parse(text)
+        except ValueError as fault:
+            self._fault("XMI005", f"{feature.name}: {fault}", element, broken=feature)
+            return
+        if feature.many:
+            getattr(element, feature.attribute).append(value)
+        else:
+            type(element)._mmrs_slots[feature.attribute].__set__(element, value)
+        if feature.is_id:
+            self._identify(element, text, own=True)
+
+    def _value_ends(self, element: Element, feature: Feature) -> None:
+        text = "".join(self._text)
+        self._text.clear()
+        if not self._nil:
+            self._value(element, feature, text)
+        elif feature.many or getattr(feature.type, "primitive", True):
+            self._fault("XMI005", f"{feature.name}: cannot be nil", element, broken=feature)
+        elif feature.default is not None:
+            type(element)._mmrs_slots[feature.attribute].__set__(element, None)
+        self._nil = False
+
+    def _identify(self, element: Element, identifier: str, own: bool) -> None:
+        other = self._draft.ids.setdefault(identifier, element)
+        if other is not element:
+            message = f"{identifier}: an id used twice; first on line {other._mmrs_line}"
+            self._fault("XMI012", message, element)
+        elif not own:
+            self._draft.source.ids[element] = identifier
+
+    # faults
+
+    def _no_feature(self, element: Element, metaclass: Metaclass, name: str) -> None:
+        label = label_of(element)
+        message = f"{name}: no feature of {metaclass.name}{label and f' {label!r}'}"
+        self._fault("XMI004", message, element, nearest(name, metaclass.by_name))
+
+    def _ignore(self, what: str) -> None:
+        self._ignored = 1
+        message = f"{what}: not read, and not kept when the model is saved"
+        self._draft.fault("XMI011", message, self._document.line, severity=Severity.WARNING)
+
+    def _fault(
+        self,
+        code: str,
+        message: str,
+        element: Element | None = None,
+        hint: str = "",
+        broken: Feature | None = None,
+    ) -> None:
+        self._draft.fault(code, message, self._document.line, element, hint)
+        if element is not None and broken is not None:
+            self._draft.broken.add((element, broken.name))
+
+    def _keep(self) -> None:
+        if self._kept is None:
+            return
+        element, begin = self._kept
+        self._kept = None
+        data, end = self._document.data, self._document.offset
+        # the end of an empty element is told at the place where it begins
+        end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
+        element._mmrs_xml = data[begin:end].decode(self._document.encoding, "replace")
+        element._mmrs_scope = self._document.namespaces.in_scope()
+
+
+def feature_names(feature: Feature) -> frozenset[str]:
+    """Return the names of the features that elements in a reference have."""
+    return frozenset(feature.type.by_name) if isinstance(feature.type, Metaclass) else frozenset()
+
+
+def _value(attributes: list[str], name: str) -> str | None:
+    for index in range(0, len(attributes), 2):
+        if attributes[index] == name:
+            return attributes[index + 1]
+    return None
+
+
+def _end_of_tag(data: bytes, begin: int) -> int:
+    """Return the offset behind the tag that begins there; a ``>`` inside quotes does not end it."""
+    quote = 0
+    for index in range(begin, len(data)):
+        byte = data[index]
+        if quote:
+            quote = 0 if byte == quote else quote
+        elif byte in b"\"'":
+            quote = byte
+        elif byte == ord(">"):
+            return index + 1
+    return len(data)

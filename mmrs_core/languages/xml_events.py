@@ -1,0 +1,161 @@
+"""XML as a stream of events, with the line of each, and with bounds that hostile files run into."""
+
+from __future__ import annotations
+
+import stat
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+from xml.parsers import expat
+
+from mmrs_core.errors import UnreadableError
+
+LARGEST_FILE = 512 * 1024 * 1024
+DEEPEST_NESTING = 400
+XMI = "http://www.omg.org/XMI"
+XSI = "http://www.w3.org/2001/XMLSchema-instance"
+
+
+class Listener(Protocol):
+    """What a document tells while it is parsed; a qualified name is ``namespace name``."""
+
+    def start(self, tag: str, attributes: list[str]) -> None:
+        """Take the start of an element; the attributes are name, value, name, value in file order."""
+
+    def end(self, tag: str) -> None:
+        """Take the end of an element."""
+
+    def text(self, text: str) -> None:
+        """Take character data."""
+
+
+class Namespaces:
+    """The prefixes in scope while a document is parsed."""
+
+    def __init__(self) -> None:
+        self._bindings: dict[str, list[str]] = {}
+
+    def open(self, prefix: str | None, uri: str | None) -> None:
+        """Bind a prefix; None stands for the default namespace."""
+        self._bindings.setdefault(prefix or "", []).append(uri or "")
+
+    def close(self, prefix: str | None) -> None:
+        """Undo the last binding of a prefix."""
+        self._bindings[prefix or ""].pop()
+
+    def uri(self, prefix: str) -> str | None:
+        """Return what a prefix is bound to, or None."""
+        stack = self._bindings.get(prefix)
+        return stack[-1] if stack else None
+
+    def in_scope(self) -> dict[str, str]:
+        """Return all bindings that hold now."""
+        return {prefix: stack[-1] for prefix, stack in self._bindings.items() if stack}
+
+
+class Document:
+    """One XML document on its way through the parser.
+
+    Attributes:
+        file: what messages call it.
+        data: its bytes, in an encoding that offsets count in.
+        namespaces: the prefixes in scope at the current event.
+        encoding: the declared one.
+    """
+
+    def __init__(self, data: bytes, file: str) -> None:
+        self.file = file
+        self.data, override = _without_wide_characters(data, file)
+        self.namespaces = Namespaces()
+        self.encoding = override or "UTF-8"
+        self._depth = 0
+        self._begun = False
+        self._parser = expat.ParserCreate(override, " ", {})
+        self._parser.buffer_text = True
+        self._parser.ordered_attributes = True
+        self._parser.XmlDeclHandler = self._declaration
+        self._parser.StartDoctypeDeclHandler = self._doctype
+        self._parser.StartNamespaceDeclHandler = self.namespaces.open
+        self._parser.EndNamespaceDeclHandler = self.namespaces.close
+
+    @property
+    def line(self) -> int:
+        """The line of the current event, counted from 1."""
+        return self._parser.CurrentLineNumber
+
+    @property
+    def offset(self) -> int:
+        """The place of the current event in ``data``, in bytes."""
+        return self._parser.CurrentByteIndex
+
+    def parse(self, listener: Listener) -> None:
+        """Send all events to the listener.
+
+        Raises:
+            UnreadableError: if it is not well-formed, has a DOCTYPE, or nests too deeply.
+        """
+        self._parser.StartElementHandler = self._counted(listener.start)
+        self._parser.EndElementHandler = self._uncounted(listener.end)
+        self._parser.CharacterDataHandler = listener.text
+        try:
+            self._parser.Parse(self.data, True)
+        except expat.ExpatError as fault:
+            reason = expat.errors.messages[fault.code]
+            raise UnreadableError(f"{self.file}:{fault.lineno}: not well-formed XML: {reason}") from None
+        except (LookupError, ValueError) as fault:
+            if self._begun:
+                raise
+            raise UnreadableError(f"{self.file}: not readable as XML: {fault}") from None
+
+    def _counted(self, start: Callable[[str, list[str]], None]) -> Callable[[str, list[str]], None]:
+        def counted(tag: str, attributes: list[str]) -> None:
+            self._begun = True
+            self._depth += 1
+            if self._depth > DEEPEST_NESTING:
+                raise UnreadableError(f"{self.file}:{self.line}: nested deeper than {DEEPEST_NESTING} levels")
+            start(tag, attributes)
+
+        return counted
+
+    def _uncounted(self, end: Callable[[str], None]) -> Callable[[str], None]:
+        def uncounted(tag: str) -> None:
+            self._depth -= 1
+            end(tag)
+
+        return uncounted
+
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        self.encoding = encoding or self.encoding
+
+    def _doctype(self, *_: object) -> None:
+        raise UnreadableError(f"{self.file}:{self.line}: DOCTYPE is not accepted in a model")
+
+
+def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]:
+    """Return UTF-16 as UTF-8, so that offsets mean the same everywhere, and what the parser must assume."""
+    if data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
+        return data, None
+    try:
+        return data.decode("utf-16").encode(), "UTF-8"
+    except UnicodeDecodeError:
+        raise UnreadableError(f"{file}: not readable as UTF-16") from None
+
+
+def read_bytes(path: Path, largest: int = LARGEST_FILE) -> bytes:
+    """Return the content of a regular file.
+
+    Raises:
+        UnreadableError: if there is none, it is a folder or a device, too large, or not permitted.
+    """
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise UnreadableError(f"{path}: not a file")
+        if status.st_size > largest:
+            raise UnreadableError(f"{path}: larger than {largest // (1024 * 1024)} MB")
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise UnreadableError(f"{path}: no such file") from None
+    except (OSError, ValueError) as fault:
+        reason = fault.strerror.lower() if isinstance(fault, OSError) and fault.strerror else fault
+        raise UnreadableError(f"{path}: cannot be read: {reason}") from None
