@@ -1,0 +1,169 @@
+"""Every hook, shown by a plug-in object that uses it."""
+
+import inspect
+import sys
+from importlib.metadata import EntryPoint
+
+import pytest
+from mmrs_core import hookspecs, plugins
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
+from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.contributions.targets import Target
+from mmrs_core.errors import PluginError
+from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages.registry import MetamodelSource
+from mmrs_core.plugins import load_plugins
+
+KITE = ("urn:test:kite:1.0", "Kite")
+
+
+def plugin_with(hook, function):
+    """Return a plug-in object that implements one hook by that function."""
+    return type("Plugin", (), {hook: staticmethod(hookimpl(function))})()
+
+
+def contributions_with(hook, *declared):
+    plugin = plugin_with(hook, lambda: declared)
+    return load_plugins(only_core=True, extra={"kites": plugin}).contributions
+
+
+def unused(*arguments):
+    raise AssertionError("loading plug-ins calls no contribution")
+
+
+def test_every_hook_has_a_test():
+    hooks = [
+        name for name, _ in inspect.getmembers(hookspecs, inspect.isfunction) if name.startswith("mmrs_")
+    ]
+    here = vars(sys.modules[__name__])
+    assert hooks
+    assert [name for name in hooks if f"test_hook_{name}" not in here] == []
+
+
+def test_hook_mmrs_metamodels(tmp_path):
+    ecore = tmp_path / "kite.ecore"
+    ecore.write_text(
+        '<?xml version="1.0"?><ecore:EPackage xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
+        ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+        ' xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="kite" nsURI="urn:test:kite:1.0"'
+        ' nsPrefix="kite"><eClassifiers xsi:type="ecore:EClass" name="Kite"'
+        ' eSuperTypes="urn:mmrs:robot:1.0#//Robot"/></ecore:EPackage>'
+    )
+    contributions = contributions_with("mmrs_metamodels", MetamodelSource(KITE[0], ecore, "kites"))
+    kite = contributions.languages.metaclass(*KITE)
+    assert ("urn:mmrs:robot:1.0", "Robot") in kite.ancestry
+
+
+def test_hook_mmrs_constraints():
+    constraint = Constraint("KITE001", "a kite has a string", KITE, unused, "tie one on")
+    assert constraint in contributions_with("mmrs_constraints", constraint).constraints
+
+
+def test_hook_mmrs_rules():
+    rule = Rule("kite_task", KITE, unused)
+    assert contributions_with("mmrs_rules", rule).rules[KITE] == rule
+
+
+def test_hook_mmrs_robot_kinds():
+    kind = RobotKind("kite", KITE, unused, unused, unused, unused)
+    assert contributions_with("mmrs_robot_kinds", kind).robot_kinds[KITE] == kind
+
+
+def test_hook_mmrs_move_kinds():
+    kind = MoveKind(KITE, unused, unused, frozenset({"airborne"}))
+    assert contributions_with("mmrs_move_kinds", kind).move_kinds[KITE] == kind
+
+
+def test_hook_mmrs_checks():
+    check = Check("string", "the string holds", unused)
+    assert check in contributions_with("mmrs_checks", check).checks
+
+
+def test_hook_mmrs_targets(tmp_path):
+    target = Target("kite", "code for kites", tmp_path, unused, unused)
+    assert contributions_with("mmrs_targets", target).targets["kite"] == target
+
+
+def test_hook_mmrs_backends():
+    backend = BackendFactory("kite", "drives kites", unused)
+    assert contributions_with("mmrs_backends", backend).backends["kite"] == backend
+
+
+def test_hook_mmrs_conditions():
+    condition = Condition("wind is strong", unused)
+    assert contributions_with("mmrs_conditions", condition).conditions["wind is strong"] == condition
+
+
+def test_hook_mmrs_map_symbols():
+    symbol = MapSymbol(KITE, "kite", "#aa0000", "K")
+    assert contributions_with("mmrs_map_symbols", symbol).map_symbols[KITE] == symbol
+
+
+def test_hook_mmrs_commands():
+    command = Command("kite", "fly a kite", "kites.command:main")
+    assert command in contributions_with("mmrs_commands", command).commands
+
+
+def test_hook_mmrs_stage_finished():
+    seen = []
+    plugin = plugin_with("mmrs_stage_finished", lambda stage, result: seen.append((stage, result)))
+    load_plugins(only_core=True, extra={"kites": plugin}).observe_stage("plan", 42)
+    assert seen == [("plan", 42)]
+
+
+def test_hook_mmrs_step_executed():
+    seen = []
+    record = StepRecord("run", "kite", 0, 1, 0.0, "begin", "start")
+    plugin = plugin_with("mmrs_step_executed", lambda record: seen.append(record))
+    load_plugins(only_core=True, extra={"kites": plugin}).observe_step(record)
+    assert seen == [record]
+
+
+def test_two_rules_for_one_metaclass_name_both_plug_ins():
+    one = plugin_with("mmrs_rules", lambda: [Rule("one", KITE, unused)])
+    two = plugin_with("mmrs_rules", lambda: [Rule("two", KITE, unused)])
+    loaded = load_plugins(only_core=True, extra={"first": one, "second": two})
+    with pytest.raises(PluginError, match="'first' and 'second'"):
+        _ = loaded.contributions.rules
+
+
+def test_a_misspelt_hook_is_an_error_that_names_the_plug_in():
+    plugin = plugin_with("mmrs_ruels", lambda: [])
+    with pytest.raises(PluginError, match=r"'kites'.*mmrs_ruels"):
+        load_plugins(only_core=True, extra={"kites": plugin})
+
+
+def test_a_hook_that_fails_names_the_plug_in():
+    def fails():
+        raise KeyError("string")
+
+    loaded = load_plugins(only_core=True, extra={"kites": plugin_with("mmrs_rules", fails)})
+    with pytest.raises(PluginError, match=r"'kites'.*mmrs_rules fails"):
+        _ = loaded.contributions.rules
+
+
+def test_a_plug_in_that_does_not_import_names_its_distribution(monkeypatch):
+    broken = EntryPoint("broken", "no.such.module", "mmrs.plugins")
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [broken])
+    with pytest.raises(PluginError, match=r"plug-in 'broken' of distribution .* does not load"):
+        load_plugins()
+
+
+def test_two_plug_ins_of_one_name_are_an_error(monkeypatch):
+    twice = [EntryPoint("kites", "json", "mmrs.plugins"), EntryPoint("kites", "csv", "mmrs.plugins")]
+    monkeypatch.setattr(plugins, "entry_points", lambda group: twice)
+    with pytest.raises(PluginError, match="'kites' is used by both"):
+        load_plugins()
+
+
+def test_catalogue_says_who_contributed_what():
+    rule = Rule("kite_task", KITE, unused)
+    plugin = plugin_with("mmrs_rules", lambda: [rule])
+    loaded = load_plugins(only_core=True, extra={"kites": plugin})
+    declared = loaded.contributions._declared
+    assert ("kites", rule) in declared("rules")
