@@ -1,0 +1,142 @@
+"""What the local metric frame of a mission is, and the questions that coordinates answer about themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.languages.element import Element, descendants, is_kind, place_of
+from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.scene import Frame
+
+MISSION = "urn:mmrs:mission:1.0"
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+NOWHERE = "GND001"
+"""Code of the faults that keep a coordinate from having a place."""
+
+Reference: TypeAlias = Callable[[Element], Element | None]
+"""The coordinate that a relative one counts from; None: the origin of the frame."""
+
+
+def is_geographic(coordinate: Element) -> bool:
+    """Return whether it is a GeoCoordinate of a mission, context or behaviour."""
+    return is_kind(coordinate, MISSION, "GeoCoordinate") or is_kind(coordinate, BEHAVIOUR, "GeoCoordinate")
+
+
+def is_relative(coordinate: Element) -> bool:
+    """Return whether it is a RelativeCoordinate of a mission, context or behaviour."""
+    return is_kind(coordinate, MISSION, "RelativeCoordinate") or is_kind(
+        coordinate, BEHAVIOUR, "RelativeCoordinate"
+    )
+
+
+def on_earth(coordinate: Element) -> bool:
+    """Return whether its latitude and longitude are given and within their ranges."""
+    latitude, longitude = number(coordinate, "latitude"), number(coordinate, "longitude")
+    return latitude is not None and longitude is not None and abs(latitude) <= 90 and abs(longitude) <= 180
+
+
+def coordinates_of(root: Element | None) -> Iterator[Element]:
+    """Yield all coordinates inside an element, in document order."""
+    for element in descendants(root) if root is not None else ():
+        if is_geographic(element) or is_relative(element):
+            yield element
+
+
+def origin_of(mission: Element | None) -> Element | None:
+    """Return the coordinate of the frame's origin: the mission's own, else the first robot's home."""
+    if mission is None:
+        return None
+    explicit = child(mission, "origin")
+    homes = (child(robot, "home") for robot in children(child(mission, "team"), "robots"))
+    return explicit if explicit is not None else next((home for home in homes if home is not None), None)
+
+
+def frame_of(mission: Element | None, context: Element | None) -> Frame:
+    """Return how the frame lies on the Earth; a local one where the origin is relative or has no place."""
+    origin = origin_of(mission)
+    placed = origin if origin is not None and is_geographic(origin) and on_earth(origin) else None
+    reference = (text(mission, "altitudeReference") if mission is not None else "") or "ELLIPSOID"
+    return Frame(
+        crs=(text(mission, "crs") if mission is not None else "") or "EPSG:4326",
+        latitude=number(placed, "latitude") if placed is not None else None,
+        longitude=number(placed, "longitude") if placed is not None else None,
+        altitude=_altitude(placed, reference) if placed is not None else None,
+        altitude_reference=reference,
+        geoid_separation=number(mission, "geoidSeparation") if mission is not None else None,
+        surface=(number(context, "surfaceHeight") if context is not None else None) or 0.0,
+    )
+
+
+def _altitude(origin: Element, reference: str) -> float | None:
+    return 0.0 if reference == "ORIGIN" else number(origin, "altitude")
+
+
+def height_of(coordinate: Element, frame: Frame) -> float | str:
+    """Return the height of a geographic coordinate above the origin in metres, or why it has none."""
+    altitude, depth = number(coordinate, "altitude"), number(coordinate, "depth")
+    if altitude is not None and depth is not None:
+        return "has both an altitude and a depth"
+    if depth is not None:
+        return frame.surface - depth
+    if altitude is None or frame.altitude_reference == "ORIGIN":
+        return altitude or 0.0
+    if frame.altitude is None:
+        return "has an altitude, but the origin has none to compare it with"
+    return altitude - frame.altitude
+
+
+def reference_in(context: Element | None) -> Reference:
+    """Return what the relative coordinates of a mission and its context count from."""
+    base = child(context, "origin") if context is not None else None
+    inside = set(coordinates_of(context)) if base is not None else set()
+
+    def reference(coordinate: Element) -> Element | None:
+        named = child(coordinate, "reference")
+        if named is not None:
+            return named
+        return base if coordinate in inside and coordinate is not base else None
+
+    return reference
+
+
+def circle_through(coordinate: Element, reference: Reference) -> tuple[Element, ...]:
+    """Return the coordinates that count from each other in a circle with this one; empty if none do."""
+    circle = {coordinate: None}
+    current = coordinate
+    while is_relative(current):
+        following = reference(current)
+        if following is coordinate:
+            return tuple(circle)
+        if following is None or following in circle:
+            return ()
+        circle[following] = None
+        current = following
+    return ()
+
+
+def origin_faults(mission: Element, origin: Element, frame: Frame) -> Iterator[str]:
+    """Yield what contradicts that the origin is at height 0, and at (0, 0, 0) where it is relative.
+
+    A relative home that serves as origin for want of another only says that the frame is a local one; it
+    counts from the frame's origin as all others do.
+    """
+    if is_relative(origin):
+        moved = (
+            any(number(origin, axis) for axis in ("x", "y", "z")) or child(origin, "reference") is not None
+        )
+        if moved and child(mission, "origin") is origin:
+            yield "is the origin, so it can only be at x = y = z = 0, without a reference"
+        return
+    if frame.altitude_reference == "ORIGIN" and number(origin, "altitude"):
+        yield "is the origin that altitudes count from, so its own altitude must be 0"
+    depth = number(origin, "depth")
+    if depth is not None and abs(frame.surface - depth) > 1e-9:
+        yield (f"is the origin at a depth of {depth:g} m, but the surface is {frame.surface:g} m above it")
+
+
+def fault(element: Element, message: str, hint: str = "", code: str = NOWHERE) -> Diagnostic:
+    """Return an error of an element, which the message does not name yet."""
+    place = place_of(element)
+    return Diagnostic(code, Severity.ERROR, f"{place.path} {message}", place, hint)
