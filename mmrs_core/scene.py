@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from mmrs_core.diagnostics import Place
 
@@ -22,6 +22,13 @@ Point: TypeAlias = tuple[float, float]
 Ring: TypeAlias = tuple[Point, ...]
 Name: TypeAlias = tuple[str, str]
 Metaclasses: TypeAlias = tuple[Name, ...]
+
+TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
+AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
+PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT"]
+PolicyResponse: TypeAlias = Literal[
+    "HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +213,7 @@ class Robot:
     home: Position
     return_home: bool
     payload: float
-    travel_mode: str
+    travel_mode: TravelMode
     clearance: float
     kind: str = ""
     kinematics: Kinematics | None = None
@@ -247,10 +254,10 @@ class Dependency:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """What a robot does about a fault; literal names of PolicyEvent and PolicyResponse."""
+    """What a robot does about a fault, once it has lasted `after` seconds (None: the platform's default)."""
 
-    event: str
-    response: str
+    event: PolicyEvent
+    response: PolicyResponse
     after: float | None = None
 
 
@@ -271,7 +278,7 @@ class Frame:
     latitude: float | None
     longitude: float | None
     altitude: float | None = None
-    altitude_reference: str = "ELLIPSOID"
+    altitude_reference: AltitudeReference = "ELLIPSOID"
     geoid_separation: float | None = None
     surface: float = 0.0
 

@@ -11,6 +11,8 @@ from mmrs_core.scene import (
     Kinematics,
     Look,
     Name,
+    PolicyEvent,
+    PolicyResponse,
     Position,
     Robot,
     RobotType,
@@ -85,7 +87,7 @@ class RobotKind:
         launch: moves that take it from home to so many metres above home.
         recover: moves that bring it down where it is.
         travel: moves along straight legs; the first position is where the robot is.
-        policies: response (PolicyResponse literal) by event (PolicyEvent literal), where model says nothing.
+        policies: response by event, where the models say nothing.
     """
 
     name: str
@@ -94,7 +96,7 @@ class RobotKind:
     launch: Callable[[float], tuple[MoveSpec, ...]]
     recover: Callable[[], tuple[MoveSpec, ...]]
     travel: Callable[[tuple[Position, ...]], tuple[MoveSpec, ...]]
-    policies: Mapping[str, str] = field(default_factory=dict)
+    policies: Mapping[PolicyEvent, PolicyResponse] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,7 +59,7 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True)
-class _End:
+class End:
     """Where the chain goes on: after a move, or at one way out of a Choice."""
 
     source: int
@@ -78,7 +78,7 @@ class Chain:
     def __init__(self) -> None:
         self.nodes = [Node(MoveSpec((BEHAVIOUR, "Start")), "", "launch")]
         self.edges: list[Edge] = []
-        self._ends: tuple[_End, ...] = (_End(0),)
+        self._ends: tuple[End, ...] = (End(0),)
         self._waits: tuple[str, ...] = ()
 
     def add(self, spec: MoveSpec, task: str, rule: str) -> Node:
@@ -87,7 +87,7 @@ class Chain:
         self.nodes.append(node)
         for end in self._ends:
             self._connect(end, index)
-        self._ends, self._waits = (_End(index),), ()
+        self._ends, self._waits = (End(index),), ()
         return node
 
     def wait(self, signals: tuple[str, ...]) -> None:
@@ -112,27 +112,27 @@ class Chain:
         """Add a stop on the spot for so many seconds."""
         return self.add(MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": seconds}), task, rule)
 
-    def branch(self, condition: str) -> tuple[_End, _End]:
+    def branch(self, condition: str) -> tuple[End, End]:
         """End the chain with a Choice; return its two ways out, to be given to `resume`."""
         if len(self._ends) > 1 or self._ends[0].choice is not None:
             self.pause("", "choice")
         edge = Edge(self._ends[0].source, waits=self._waits, condition=condition)
         self.edges.append(edge)
         self._waits = ()
-        return _End(edge.source, edge), _End(edge.source, edge, holds=False)
+        return End(edge.source, edge), End(edge.source, edge, holds=False)
 
-    def resume(self, *ends: _End) -> None:
+    def resume(self, *ends: End) -> None:
         """Go on at these open ends."""
         self._ends = ends
 
     @property
-    def ends(self) -> tuple[_End, ...]:
+    def ends(self) -> tuple[End, ...]:
         """Return the open ends; a pending wait is made a stop on the spot first."""
         if self._waits:
             self.pause("", "wait")
         return self._ends
 
-    def _connect(self, end: _End, index: int) -> None:
+    def _connect(self, end: End, index: int) -> None:
         if end.choice is None:
             self.edges.append(Edge(end.source, index, self._waits))
         elif self._waits:

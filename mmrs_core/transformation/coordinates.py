@@ -8,7 +8,7 @@ import numpy as np
 
 from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.languages import behaviour as bl
-from mmrs_core.scene import Frame, Position
+from mmrs_core.scene import AltitudeReference, Frame, Position
 
 DEGREE_DIGITS = 9
 """Digits after the point of a degree: a tenth of a millimetre on the ground."""
@@ -31,7 +31,7 @@ class Coordinates:
         self._made = dict(zip(unique, self._make(unique), strict=True))
 
     @property
-    def altitude_reference(self) -> str:
+    def altitude_reference(self) -> AltitudeReference:
         """Return what the altitudes of the coordinates count from."""
         return "ORIGIN" if self._lift is None else self._frame.altitude_reference
 

@@ -22,7 +22,7 @@ from mmrs_core.scene import (
     Step,
     Transit,
 )
-from mmrs_core.transformation.chain import Chain, Give, Report, UseDevice
+from mmrs_core.transformation.chain import Chain, End, Give, Report, UseDevice
 from mmrs_core.transformation.strokes import moves_of
 
 
@@ -97,7 +97,7 @@ class _Drafting:
 
     @add.register
     def _(self, step: Branch) -> None:
-        ends = []
+        ends: list[End] = []
         for condition, steps in step.arms:
             if condition is not None:
                 holds, fails = self.chain.branch(condition)

@@ -139,8 +139,8 @@ class _Assembly:
     def _heading(self, spec: MoveSpec) -> bl.Heading:
         look = spec.look
         assert look is not None
-        device = {"deviceId": look.device} if look.device else {}
-        return bl.Heading(target=self._coordinates.at(look.at), angle=look.angle_degrees, **device)
+        target = self._coordinates.at(look.at)
+        return bl.Heading(target=target, angle=look.angle_degrees, deviceId=look.device or None)
 
     def _action(self, deed: Deed) -> bl.Action:
         if isinstance(deed, UseDevice):
@@ -222,5 +222,4 @@ def _pairs(pairs: tuple[tuple[str, str], ...]) -> list[bl.Pair]:
 
 
 def _policy(policy: Policy) -> rl.Policy:
-    after = {} if policy.after is None else {"after": policy.after}
-    return rl.Policy(event=policy.event, response=policy.response, **after)
+    return rl.Policy(event=policy.event, response=policy.response, after=policy.after)

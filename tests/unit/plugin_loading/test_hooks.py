@@ -5,6 +5,7 @@ import sys
 from importlib.metadata import EntryPoint
 
 import pytest
+
 from mmrs_core import hookspecs, plugins
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.checks import Check

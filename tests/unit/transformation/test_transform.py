@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.languages import behaviour as bl
