@@ -1,0 +1,47 @@
+"""Figures as people read them: times, lengths, heights."""
+
+from __future__ import annotations
+
+from math import isinf
+
+_MINUTE = 60
+_HOUR = 3600
+_KILOMETRE = 1000.0
+_METRES_WITH_DECIMAL = 100.0
+
+
+def clock(seconds: float) -> str:
+    """Return a time or duration as minutes and seconds, with hours where there are any.
+
+    >>> clock(65.4), clock(3725)
+    ('1:05', '1:02:05')
+    """
+    whole = round(seconds)
+    minutes, rest = divmod(whole, _MINUTE)
+    if whole < _HOUR:
+        return f"{minutes}:{rest:02}"
+    return f"{minutes // _MINUTE}:{minutes % _MINUTE:02}:{rest:02}"
+
+
+def length(metres: float) -> str:
+    """Return a length with a unit.
+
+    >>> length(7.25), length(321.4), length(4321)
+    ('7.2 m', '321 m', '4.32 km')
+    """
+    if abs(metres) >= _KILOMETRE:
+        return f"{metres / _KILOMETRE:.2f} km"
+    return f"{metres:.1f} m" if abs(metres) < _METRES_WITH_DECIMAL else f"{metres:.0f} m"
+
+
+def heights(low: float, high: float) -> str:
+    """Return what heights an area covers.
+
+    >>> heights(0.0, 25.0), heights(float("-inf"), float("inf"))
+    ('0.0 m to 25.0 m', 'all heights')
+    """
+    if isinf(low) and isinf(high):
+        return "all heights"
+    if isinf(high):
+        return f"from {length(low)} up"
+    return f"up to {length(high)}" if isinf(low) else f"{length(low)} to {length(high)}"

@@ -1,0 +1,197 @@
+"""Makes the picture of a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import accumulate, pairwise
+from math import dist, inf
+
+from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
+from mmrs_core.cli.preview.places import origin_of, task_pictures, zones_of
+from mmrs_core.scene import (
+    Await,
+    Branch,
+    Launch,
+    Plan,
+    Position,
+    Recharge,
+    Recover,
+    RobotPlan,
+    Scene,
+    Serve,
+    Signal,
+    Step,
+    Stroke,
+    Transit,
+)
+
+_JOULES_IN_WATT_HOUR = 3600.0
+
+
+def picture_of_plan(scene: Scene, plan: Plan) -> Picture:
+    """Return what to show of a plan for that (expanded) scene."""
+    return Picture(
+        title=scene.name,
+        origin=origin_of(scene.frame),
+        robots=tuple(_robot_picture(scene, robot) for robot in plan.robots),
+        zones=zones_of(scene),
+        tasks=task_pictures(scene, plan.begins, plan.ends),
+        handovers=tuple(_handovers(plan)),
+        makespan=plan.makespan,
+        notes=plan.notes,
+        surface=scene.frame.surface if any(area_is_wet(scene)) else None,
+    )
+
+
+def area_is_wet(scene: Scene) -> Iterator[bool]:
+    """Yield for each robot whether it must stay under the water's surface."""
+    return (
+        robot.kinematics is not None and robot.kinematics.ceiling <= scene.frame.surface
+        for robot in scene.robots
+    )
+
+
+def _robot_picture(scene: Scene, plan: RobotPlan) -> RobotPicture:
+    robot = scene.robot(plan.robot)
+    legs = tuple(_legs(scene, plan.robot, plan.steps))
+    kinematics = robot.kinematics
+    return RobotPicture(
+        name=robot.name,
+        type_name=robot.type.name,
+        home=robot.home,
+        legs=legs,
+        bars=tuple(_bars(plan.steps)),
+        heights=tuple(heights_of(robot.home, legs)),
+        floor=kinematics.floor if kinematics else -inf,
+        ceiling=kinematics.ceiling if kinematics else inf,
+        summary=_summary(plan),
+    )
+
+
+def _summary(plan: RobotPlan) -> tuple[tuple[str, str], ...]:
+    served = tuple(dict.fromkeys(step.task for step in plan.steps if isinstance(step, Serve)))
+    return (
+        ("tasks", ", ".join(served) or "none"),
+        ("way", length(plan.length)),
+        ("busy", clock(plan.busy)),
+        ("energy", f"{plan.energy / _JOULES_IN_WATT_HOUR:.1f} Wh" if plan.energy else "not known"),
+        ("sorties", str(plan.sorties)),
+    )
+
+
+def _legs(scene: Scene, robot: str, steps: Iterable[Step]) -> Iterator[Leg]:
+    for step in steps:
+        match step:
+            case Launch(at=at, up=up):
+                yield Leg("launch", (at, (at[0], at[1], up)), step.begin, step.end, step.task)
+            case Transit(route=route):
+                yield Leg("transit", route, step.begin, step.end, step.task)
+            case Serve():
+                yield _work_leg(scene, robot, step)
+            case Recover(at=at, up=up):
+                yield Leg("recover", (at, (at[0], at[1], up)), step.begin, step.end, step.task)
+            case Branch(arms=arms):
+                for condition, arm in arms:
+                    yield from (_under(leg, condition) for leg in _legs(scene, robot, arm))
+
+
+def _work_leg(scene: Scene, robot: str, step: Serve) -> Leg:
+    stroke = step.stroke
+    work = scene.works.get((step.task, robot))
+    coverage = work.coverage if work else None
+    notes = (f"{len(stroke.actions)} actions" if stroke.actions else "", stroke.object or "")
+    return Leg(
+        "work",
+        stroke.points,
+        step.begin,
+        step.end,
+        step.task,
+        width=coverage.width if coverage else 0.0,
+        reach=coverage.length / 2 if coverage else 0.0,
+        actions=tuple(along(stroke, action.at) for action in stroke.actions),
+        note=", ".join(filter(None, notes)),
+    )
+
+
+def _under(leg: Leg, condition: str | None) -> Leg:
+    note = f"if {condition}" if condition else "otherwise"
+    return replace(leg, note=", ".join(filter(None, (note, leg.note))))
+
+
+def along(stroke: Stroke, at: float) -> Position:
+    """Return the position at an arc length of a stroke, its ends for lengths beyond them."""
+    left = max(at, 0.0)
+    for start, end in pairwise(stroke.points):
+        leg = dist(start, end)
+        if left <= leg and leg > 0:
+            part = left / leg
+            return (
+                start[0] + part * (end[0] - start[0]),
+                start[1] + part * (end[1] - start[1]),
+                start[2] + part * (end[2] - start[2]),
+            )
+        left -= leg
+    return stroke.points[-1]
+
+
+def _bars(steps: Iterable[Step]) -> Iterator[Bar]:
+    for step in steps:
+        match step:
+            case Launch() | Recover() | Transit() | Serve() | Recharge():
+                yield Bar(_KINDS[type(step)], step.begin, step.end, step.task)
+            case Await(until=until):
+                note = f"not before {clock(until)}" if until is not None else ""
+                yield Bar("wait", step.begin, step.end, step.task, note)
+            case Branch(arms=arms):
+                longest = max((arm for _, arm in arms), key=_end_of, default=())
+                yield from (replace(bar, note="the longer of the ways") for bar in _bars(longest))
+
+
+_KINDS: dict[type[Step], str] = {
+    Launch: "launch",
+    Recover: "recover",
+    Transit: "transit",
+    Serve: "work",
+    Recharge: "recharge",
+}
+
+
+def _end_of(steps: tuple[Step, ...]) -> float:
+    return steps[-1].end if steps else 0.0
+
+
+def heights_of(home: Position, legs: Iterable[Leg]) -> Iterator[tuple[float, float]]:
+    """Yield (time, up) at every corner of the way, each leg at an even pace."""
+    yield 0.0, home[2]
+    for leg in legs:
+        lengths = [0.0, *accumulate(dist(a, b) for a, b in pairwise(leg.points))]
+        whole = lengths[-1] or 1.0
+        for point, so_far in zip(leg.points, lengths, strict=True):
+            yield leg.begin + (leg.end - leg.begin) * so_far / whole, point[2]
+
+
+def _handovers(plan: Plan) -> Iterator[Handover]:
+    released = {
+        (robot.robot, signal): step
+        for robot in plan.robots
+        for step in _flat(robot.steps)
+        if isinstance(step, Await)
+        for signal in step.signals
+    }
+    for robot in plan.robots:
+        for step in _flat(robot.steps):
+            if isinstance(step, Signal):
+                for receiver in step.receivers:
+                    waiting = released.get((receiver, step.signal))
+                    if waiting is not None:
+                        yield Handover(robot.robot, step.end, receiver, waiting.end, step.task)
+
+
+def _flat(steps: Iterable[Step]) -> Iterator[Step]:
+    for step in steps:
+        yield step
+        if isinstance(step, Branch):
+            for _, arm in step.arms:
+                yield from _flat(arm)

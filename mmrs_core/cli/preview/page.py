@@ -1,0 +1,194 @@
+"""Makes the one page that shows a mission: map, heights, timeline, figures; it needs no network."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+
+from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.preview.map_drawing import leg_tip, map_markup
+from mmrs_core.cli.preview.markup import element, style_sheet, text
+from mmrs_core.cli.preview.palette import Style, style_of
+from mmrs_core.cli.preview.picture import Picture, RobotPicture
+from mmrs_core.cli.preview.profile import profile_markup
+from mmrs_core.cli.preview.projection import projection_of
+from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
+from mmrs_core.cli.preview.timeline import timeline_markup
+
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+_LAYERS = (
+    ("coverage", "ground covered"),
+    ("clearance", "clearance"),
+    ("areas", "areas and obstacles"),
+    ("emergency", "emergency areas"),
+    ("tasks", "tasks"),
+    ("ways", "ways"),
+    ("labels", "names"),
+    ("grid", "grid"),
+)
+
+
+def page(picture: Picture) -> str:
+    """Return a whole HTML document; nothing in it refers to another file."""
+    title = picture.title or "mission"
+    head = (
+        '<meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{text(_POLICY)}">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        element("title", None, text(title)),
+        element("style", None, style_sheet("page.css")),
+    )
+    body = (
+        element("header", None, element("h1", None, text(title)), element("p", None, text(_lead(picture)))),
+        element(
+            "section",
+            {"class": "place"},
+            _controls(picture),
+            _frame(picture),
+        ),
+        _player(picture),
+        element(
+            "section",
+            None,
+            element("h2", None, "Who does what, and who waits for whom"),
+            timeline_markup(picture),
+        ),
+        element("section", None, element("h2", None, "Heights above the origin"), profile_markup(picture)),
+        element("section", None, element("h2", None, "Robots"), _table(picture)),
+        _notes(picture),
+        '<div id="tip" role="status" hidden></div>',
+        _data(picture),
+        f"<script>{_script()}</script>",
+    )
+    return (
+        f'<!doctype html>\n<html lang="en"><head>{"".join(head)}</head><body>{"".join(body)}</body></html>\n'
+    )
+
+
+def _lead(picture: Picture) -> str:
+    robots, tasks = len(picture.robots), len(picture.tasks)
+    return (
+        f"{robots} robot{'s' * (robots != 1)}, {tasks} task{'s' * (tasks != 1)}, done after "
+        f"{clock(picture.makespan)}. Origin: {picture.origin}."
+    )
+
+
+def _frame(picture: Picture) -> str:
+    shown = projection_of(picture)
+    shape = f"aspect-ratio: {shown.width:.0f} / {shown.height:.0f}"
+    return element("div", {"class": "frame", "style": shape}, map_markup(picture))
+
+
+def _controls(picture: Picture) -> str:
+    robots = (_robot_box(i, robot) for i, robot in enumerate(picture.robots))
+    layers = (_box({"data-toggle": name}, text(words)) for name, words in _LAYERS)
+    return element(
+        "aside",
+        None,
+        element("h2", None, "Robots"),
+        robots,
+        element("h2", None, "Shown"),
+        layers,
+        element("h2", None, "Key"),
+        _key(),
+        '<p class="hint">Drag to move, wheel to zoom, double click to see all.</p>',
+    )
+
+
+def _robot_box(index: int, robot: RobotPicture) -> str:
+    style = style_of(index)
+    words = f"{_sample(style)}<b>{text(robot.name)}</b> <small>{text(robot.type_name)}</small>"
+    return _box({"data-toggle-robot": index}, words)
+
+
+def _box(attributes: dict[str, str | int], words: str) -> str:
+    box = element("input", {"type": "checkbox", "checked": "", **attributes})
+    return f"<label>{box}{words}</label>"
+
+
+def _sample(style: Style) -> str:
+    line = {
+        "d": "M1 6H33",
+        "stroke": style.colour,
+        "stroke-width": 3,
+        "stroke-dasharray": style.dashes or None,
+    }
+    return element("svg", {"class": "sample", "width": 34, "height": 12}, element("path", line))
+
+
+def _key() -> str:
+    rows = (
+        ("work", "thick line: doing a task"),
+        ("transit", "thin line: on the way"),
+        ("action", "dot: device action"),
+        ("home", "home"),
+        ("forbidden", "forbidden area"),
+        ("obstacle", "obstacle"),
+        ("kept", "kept clear"),
+        ("emergency", "emergency area"),
+        ("task", "task"),
+    )
+    return element(
+        "ul", {"class": "key"}, (f'<li><i class="{name}"></i>{words}</li>' for name, words in rows)
+    )
+
+
+def _player(picture: Picture) -> str:
+    slider = {"type": "range", "id": "time", "min": 0, "max": picture.makespan, "value": 0, "step": "any"}
+    return element(
+        "section",
+        {"class": "player"},
+        '<button type="button" id="play" aria-label="play">▶</button>',
+        element("input", {**slider, "aria-label": "time"}),
+        '<output id="now">0:00</output>',
+    )
+
+
+def _table(picture: Picture) -> str:
+    titles = [title for title, _ in picture.robots[0].summary] if picture.robots else []
+    head = element("tr", None, (element("th", None, text(title)) for title in ("robot", "type", *titles)))
+    return element(
+        "div", {"class": "wide"}, element("table", None, head, (_row(robot) for robot in picture.robots))
+    )
+
+
+def _row(robot: RobotPicture) -> str:
+    cells = (robot.name, robot.type_name, *(value for _, value in robot.summary))
+    return element("tr", None, (f"<td><bdi>{text(cell)}</bdi></td>" for cell in cells))
+
+
+def _notes(picture: Picture) -> str:
+    if not picture.notes:
+        return ""
+    items = (element("li", None, text(note)) for note in picture.notes)
+    return element("section", None, element("h2", None, "Assumptions"), element("ul", None, items))
+
+
+def _data(picture: Picture) -> str:
+    """Return the ways over time for the player, as JSON that cannot end the script element."""
+    robots = [
+        {
+            "home": robot.home[:2],
+            "colour": style_of(index).colour,
+            "legs": [
+                {
+                    "begin": leg.begin,
+                    "end": leg.end,
+                    "points": [[round(p[0], 2), round(p[1], 2)] for p in leg.points],
+                    "tip": leg_tip(robot.name, leg),
+                }
+                for leg in robot.legs
+            ],
+        }
+        for index, robot in enumerate(picture.robots)
+    ]
+    shown = projection_of(picture)
+    projection = {"west": shown.west, "north": shown.north, "scale": shown.scale}
+    axis = {"left": LEFT, "right": WIDTH - RIGHT, "end": picture.makespan}
+    dumped = json.dumps({"robots": robots, "axis": axis, "projection": projection})
+    safe = dumped.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    return f'<script type="application/json" id="data">{safe}</script>'
+
+
+def _script() -> str:
+    return (files("mmrs_core.cli.preview") / "page.js").read_text(encoding="utf-8")

@@ -1,0 +1,77 @@
+"""What the preview shows of a scene: its areas, its tasks, where it lies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+
+from mmrs_core.cli.preview.picture import TaskPicture, Zone
+from mmrs_core.geometry.clearance import grow, shrink
+from mmrs_core.geometry.polygons import parts, rings
+from mmrs_core.scene import Area, AreaUse, Frame, Part, Point, Ring, Scene, Task, Value
+
+
+def origin_of(frame: Frame) -> str:
+    """Return where the origin of the local frame lies, for people."""
+    if frame.latitude is None or frame.longitude is None:
+        return "local coordinates"
+    return f"{frame.latitude:.6f}, {frame.longitude:.6f} ({frame.crs})"
+
+
+def zones_of(scene: Scene) -> tuple[Zone, ...]:
+    """Return the areas as drawn, with the outline that the robot of the widest clearance keeps to."""
+    widest = max((robot.clearance for robot in scene.robots), default=0.0)
+    return tuple(_zone(area, area.safety_distance + widest) for area in scene.areas)
+
+
+def _zone(area: Area, clearance: float) -> Zone:
+    change = shrink if area.use is AreaUse.EMERGENCY else grow
+    pieces = parts(change(area.shell, clearance))
+    outlines = tuple(ring for piece in pieces for ring in (rings(piece)[0], *rings(piece)[1]))
+    return Zone(area.name, area.use, area.shell, area.low, area.high, outlines, clearance)
+
+
+def task_pictures(
+    scene: Scene, begins: Mapping[str, float], ends: Mapping[str, float]
+) -> tuple[TaskPicture, ...]:
+    """Return the tasks, those without a place (Fork, Join) included.
+
+    A task's place is found by the shape of its attributes: ``shell`` and ``holes`` make an area,
+    ``points`` a line, ``point`` a point, whichever plug-in the task comes from.
+    """
+    return tuple(_task_picture(task, begins.get(task.name), ends.get(task.name)) for task in scene.tasks)
+
+
+def _task_picture(task: Task, begin: float | None, end: float | None) -> TaskPicture:
+    attributes = task.part.attributes
+    shell = _points(attributes.get("shell"))
+    return TaskPicture(
+        name=task.name,
+        kind=task.part.metaclasses[0][1] if task.part.metaclasses else "",
+        rings=(shell, *_holes(attributes.get("holes"))) if shell else (),
+        line=_points(attributes.get("points")),
+        point=_point(attributes.get("point")),
+        begin=begin,
+        end=end,
+    )
+
+
+def _holes(value: Value) -> Iterator[Ring]:
+    for hole in value if isinstance(value, tuple) else ():
+        ring = _points(hole.attributes.get("points") if isinstance(hole, Part) else hole)
+        if ring:
+            yield ring
+
+
+def _points(value: Value) -> tuple[Point, ...]:
+    found = tuple(_point(item) for item in value) if isinstance(value, tuple) else ()
+    return tuple(point for point in found if point is not None)
+
+
+def _point(value: Value) -> Point | None:
+    if not isinstance(value, tuple) or len(value) != 3:
+        return None
+    east, north = value[0], value[1]
+    if isinstance(east, float | int) and isinstance(north, float | int) and isfinite(east + north):
+        return float(east), float(north)
+    return None

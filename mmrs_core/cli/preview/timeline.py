@@ -1,0 +1,154 @@
+"""Draws who does what when, and who waits for whom, as SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.preview.labels import shortened, width_of
+from mmrs_core.cli.preview.markup import element, number, style_sheet, text
+from mmrs_core.cli.preview.palette import style_of
+from mmrs_core.cli.preview.picture import Bar, Handover, Picture, RobotPicture, TaskPicture
+from mmrs_core.cli.preview.time_axis import LEFT, WIDTH, TimeAxis
+
+_ROW = 40.0
+_BAR = 22.0
+_TASK_ROW = 22.0
+_TASK_BAR = 12.0
+_GAP = 16.0
+_TOP = 8.0
+_NAMES = 20
+_WHATS = {
+    "launch": "takes off",
+    "transit": "travels",
+    "work": "works",
+    "recover": "lands",
+    "wait": "waits",
+    "hold": "holds",
+    "recharge": "recharges",
+}
+
+
+def timeline_markup(picture: Picture) -> str:
+    """Return the timeline as one ``svg`` element with its own style, readable by itself."""
+    axis = TimeAxis(picture.makespan or 1.0)
+    tasks = [task for task in picture.tasks if task.begin is not None and task.end is not None]
+    start = _TOP + len(tasks) * _TASK_ROW + (_GAP if tasks else 0)
+    bottom = start + len(picture.robots) * _ROW
+    rows = {robot.name: start + i * _ROW + _ROW / 2 for i, robot in enumerate(picture.robots)}
+    height = bottom + 26
+    children = (
+        element("title", None, "timeline"),
+        element("style", None, style_sheet("charts.css")),
+        _defs(),
+        axis.markup(_TOP, bottom),
+        "".join(_task_row(task, axis, _TOP + (i + 0.5) * _TASK_ROW) for i, task in enumerate(tasks)),
+        "".join(_row(i, robot, axis, rows[robot.name]) for i, robot in enumerate(picture.robots)),
+        "".join(_arrow(handover, axis, rows) for handover in picture.handovers),
+    )
+    attributes = {"xmlns": "http://www.w3.org/2000/svg", "class": "chart timeline", "role": "img"}
+    view = {"viewBox": f"0 0 {number(WIDTH)} {number(height)}", "width": WIDTH, "height": height}
+    return element("svg", {**attributes, **view}, children)
+
+
+def _task_row(task: TaskPicture, axis: TimeAxis, middle: float) -> str:
+    begin, end = task.begin or 0.0, task.end or 0.0
+    name = {"class": "task-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end"}
+    words = element("text", name, text(shortened(task.name, _NAMES)))
+    title = element("title", None, text(f"{task.name}: {task.kind}, {clock(begin)} to {clock(end)}"))
+    left, right = axis.at(begin), axis.at(end)
+    if right - left < 1:
+        diamond = f"M{number(left)} {number(middle - 6)}l6 6l-6 6l-6-6Z"
+        return words + element("path", {"class": "task-mark", "d": diamond}, title)
+    bar = {"x": left, "y": middle - _TASK_BAR / 2, "width": right - left, "height": _TASK_BAR, "rx": 3}
+    return words + element("rect", {"class": "task-bar", **bar}, title)
+
+
+def _row(index: int, robot: RobotPicture, axis: TimeAxis, middle: float) -> str:
+    colour = style_of(index).colour
+    name = {"class": "robot-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end", "fill": colour}
+    bars = (_bar(robot.name, bar, axis, middle) for bar in robot.bars)
+    base = element("line", {"class": "row", "x1": LEFT, "x2": axis.at(axis.end), "y1": middle, "y2": middle})
+    words = element("text", name, text(shortened(robot.name, _NAMES)))
+    return element(
+        "g",
+        {"class": "robot", "data-robot": index, "color": colour},
+        words,
+        base,
+        bars,
+        task_words(robot, axis, middle),
+    )
+
+
+def _bar(robot: str, bar: Bar, axis: TimeAxis, middle: float) -> str:
+    left, right = axis.at(bar.begin), axis.at(bar.end)
+    height = _BAR if bar.kind == "work" else _BAR * 0.55
+    place = {"x": left, "y": middle - height / 2, "width": max(right - left, 0.8), "height": height}
+    return element(
+        "rect", {"class": f"bar {bar.kind}", **place}, element("title", None, text(bar_tip(robot, bar)))
+    )
+
+
+def bar_tip(robot: str, bar: Bar) -> str:
+    """Return what a bar is, for people."""
+    what = f"{_WHATS[bar.kind]} for {bar.task}" if bar.task else _WHATS[bar.kind]
+    parts = (what, f"{clock(bar.begin)} to {clock(bar.end)}", bar.note)
+    return f"{robot} " + ", ".join(part for part in parts if part)
+
+
+def stretches(robot: RobotPicture) -> Iterator[tuple[str, float, float]]:
+    """Yield (task, begin, end) of each stretch of time that a robot works on one task."""
+    task, begin, end = "", 0.0, 0.0
+    for bar in robot.bars:
+        if bar.kind != "work":
+            continue
+        if bar.task == task:
+            end = bar.end
+            continue
+        if task:
+            yield task, begin, end
+        task, begin, end = bar.task, bar.begin, bar.end
+    if task:
+        yield task, begin, end
+
+
+def task_words(robot: RobotPicture, axis: TimeAxis, middle: float) -> Iterator[str]:
+    """Yield the names of tasks over the stretches that are wide enough for them."""
+    for task, begin, end in stretches(robot):
+        left, right = axis.at(begin), axis.at(end)
+        fitting = int((right - left - 6) / width_of("m", 11.0))
+        if fitting >= 4:
+            place = {"class": "bar-words", "x": (left + right) / 2, "y": middle + 4, "text_anchor": "middle"}
+            yield element("text", place, text(shortened(task, fitting)))
+
+
+def _arrow(handover: Handover, axis: TimeAxis, rows: dict[str, float]) -> str:
+    x1, x2 = axis.at(handover.sent), axis.at(handover.released)
+    y1, y2 = rows[handover.sender], rows[handover.receiver]
+    way = 1 if y2 > y1 else -1
+    start, end = y1 + way * _BAR / 2, y2 - way * _BAR / 2
+    bend = (end - start) * 0.5
+    curve = (
+        f"M{number(x1)} {number(start)}C{number(x1)} {number(start + bend)} "
+        f"{number(x2)} {number(end - bend)} {number(x2)} {number(end)}"
+    )
+    words = f"{handover.sender} tells {handover.receiver} at {clock(handover.sent)}"
+    tip = f"{words}: {handover.note} has ended" if handover.note else words
+    return element(
+        "path",
+        {"class": "handover", "d": curve, "marker-end": "url(#arrow)"},
+        element("title", None, text(tip)),
+    )
+
+
+def _defs() -> str:
+    head = element("path", {"d": "M0 0L8 4L0 8Z", "fill": "#222"})
+    size = {"markerWidth": 8, "markerHeight": 8, "refX": 7, "refY": 4, "orient": "auto"}
+    hatch = element("path", {"d": "M0 0V6", "stroke": "#777", "stroke-width": 2})
+    common = {"width": 6, "height": 6, "patternUnits": "userSpaceOnUse", "patternTransform": "rotate(45)"}
+    return element(
+        "defs",
+        None,
+        element("marker", {"id": "arrow", **size}, head),
+        element("pattern", {"id": "waiting", **common}, hatch),
+    )
