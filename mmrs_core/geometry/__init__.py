@@ -1,1 +1,1 @@
-"""Pure geometry: frames, polygons, clearance, segments."""
+"""Pure geometry over arrays, in metres: frames, polygons, distances, clearance."""

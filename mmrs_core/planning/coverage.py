@@ -1,0 +1,202 @@
+"""Works over areas: what a robot may cover of a polygon, and the strokes that cover it.
+
+The entry point for rules is `work_over`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import ceil, floor
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.clearance import grow
+from mmrs_core.geometry.polygons import parts, polygon, rings
+from mmrs_core.planning.strips import Swath
+from mmrs_core.planning.swaths import GRID, swaths
+from mmrs_core.scene import ActionAt, Area, Coverage, Look, Point, Ring, Robot, Scene, Stroke, Work
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_SMALLEST = 1e-6
+"""Square metres under which a part of a target is rounding."""
+
+_POCKETS = 5e-4
+"""Share of a target that walled-in pockets may have to be left alone."""
+
+_CUTS = 8
+"""Places at most at which one stroke may be split."""
+
+
+def work_over(
+    scene: Scene,
+    robot: Robot,
+    shell: Ring,
+    holes: Sequence[Ring] = (),
+    *,
+    altitude: float,
+    width: float,
+    rule: str,
+    length: float = 0.0,
+    action: str | None = None,
+    device: str = "",
+    parameters: tuple[tuple[str, str], ...] = (),
+    speed: float | None = None,
+    slow_down: float | None = None,
+    look: Look | None = None,
+    angle: float | None = None,
+    start: Point | None = None,
+) -> Work:
+    """Return the work that covers a polygon at one height: strokes in a good order, and the coverage.
+
+    What is covered is the shell less its holes less what the robot's clearance forbids it at that
+    height. Strokes stay inside that. With an `action`, it is done along the strokes so that rectangles
+    `length` along and `width` across the stroke, centred on the actions' points, cover the same.
+
+    Args:
+        scene: for its areas.
+        robot: for its clearance. Robots of one clearance get equal works and so can share them.
+        shell: of the polygon, (east, north) in metres.
+        holes: of the polygon; strokes keep out of them, hops may cross them.
+        altitude: height above the origin, metres.
+        width: of the strip that a stroke covers, metres, overlap taken off.
+        rule: name of the rule that asks.
+        length: of what one action covers along the stroke, metres, overlap taken off; 0: no actions.
+        action: name of the device action; needs a `length`.
+        device: identifier of its device; empty: the only one that supports the action.
+        parameters: of the action.
+        speed: largest speed on the strokes, metres per second; None: see `Stroke`.
+        slow_down: see `Stroke`.
+        look: see `Stroke`.
+        angle: direction of the strokes, radians from east to north; None: the best one.
+        start: where the first stroke should be near, such as the task's initial position; None: anywhere.
+
+    Raises:
+        ValueError: a width or length is not positive where it must be, or a ring is unsound.
+        InfeasibleError: clearance leaves nothing of the polygon.
+    """
+    if action is not None and not length > 0:
+        raise ValueError(f"action {action!r} needs a length to cover along the stroke, {length} is none")
+    target = target_of(scene, robot, shell, holes, altitude)
+    asked = sum(
+        part.area for part in parts(shapely.difference(polygon(shell), _union(holes), grid_size=GRID))
+    )
+    area = sum(piece.area for piece in target)
+    if not target:
+        raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
+    lines = swaths(_worth(target, scene, robot, altitude), width, angle=angle, start=start)
+    strokes = tuple(
+        _stroke(line, altitude, width, length, action, device, parameters, speed, slow_down, look)
+        for line in lines
+    )
+    covered = Coverage(
+        shell=tuple(shell),
+        holes=tuple(tuple(hole) for hole in holes),
+        target=tuple(rings(piece) for piece in target),
+        width=width,
+        length=length if action is not None else 0.0,
+        unreachable=max(0.0, asked - area),
+    )
+    return Work(strokes=strokes, divisible=True, rule=rule, ordered=False, coverage=covered)
+
+
+def target_of(
+    scene: Scene, robot: Robot, shell: Ring, holes: Sequence[Ring], altitude: float
+) -> tuple[Polygon, ...]:
+    """Return the shell less its holes less what the robot must keep from at a height, largest first."""
+    taken = [polygon(hole) for hole in holes] + grown_areas(scene, robot, altitude)
+    whole = polygon(shell)
+    left = shapely.difference(whole, shapely.union_all(taken, grid_size=GRID), grid_size=GRID)
+    return parts(left, smallest=_SMALLEST)
+
+
+def grown_areas(scene: Scene, robot: Robot, altitude: float) -> list[Polygon]:
+    """Return the areas that a robot keeps from at a height, grown by its clearance."""
+    return [
+        grow(area.shell, area.safety_distance + robot.clearance)
+        for area in scene.kept_from()
+        if blocks_at(area, robot.clearance, altitude)
+    ]
+
+
+def blocks_at(area: Area, clearance: float, height: float) -> bool:
+    """Return whether an area, grown up and down by its distance and a clearance, reaches a height."""
+    c = area.safety_distance + clearance
+    return area.low - c < height < area.high + c
+
+
+def _union(holes: Sequence[Ring]) -> shapely.Geometry:
+    return shapely.union_all([polygon(hole) for hole in holes], grid_size=GRID)
+
+
+def _worth(target: tuple[Polygon, ...], scene: Scene, robot: Robot, altitude: float) -> tuple[Polygon, ...]:
+    """Return the target without tiny pockets between grown areas, which no way leads into."""
+    whole = sum(piece.area for piece in target)
+    closed = shapely.union_all(grown_areas(scene, robot, altitude), grid_size=GRID)
+    pockets = [Polygon(hole) for part in parts(closed) for hole in part.interiors]
+    walled = [piece for piece in target if any(pocket.covers(piece) for pocket in pockets)]
+    if sum(piece.area for piece in walled) > _POCKETS * whole:
+        return target
+    return tuple(piece for piece in target if piece not in walled)
+
+
+def _stroke(
+    line: Swath,
+    altitude: float,
+    width: float,
+    length: float,
+    action: str | None,
+    device: str,
+    parameters: tuple[tuple[str, str], ...],
+    speed: float | None,
+    slow_down: float | None,
+    look: Look | None,
+) -> Stroke:
+    at = positions_along(line, length) if action is not None else []
+    return Stroke(
+        points=tuple((float(east), float(north), altitude) for east, north in line.points),
+        actions=tuple(ActionAt(where, action, device, parameters) for where in at) if action else (),
+        look=look,
+        speed=speed,
+        slow_down=slow_down,
+        cuts=_between(at) if action is not None else _even(line.length, width),
+        reversible=True,
+    )
+
+
+def positions_along(line: Swath, length: float) -> list[float]:
+    """Return arc lengths such that stretches of `length` metres centred on them cover the swath.
+
+    Each leg that covers has its own positions, in its inside, so that the direction of travel at a
+    position is that of the leg.
+    """
+    legs = np.hypot(*np.diff(line.points, axis=0).T).tolist()
+    positions: list[float] = []
+    done = 0.0
+    for leg, covers in zip(legs, line.covers.tolist(), strict=True):
+        if covers:
+            count = max(1, ceil(leg / length - 1e-9))
+            positions += [done + (i + 0.5) * leg / count for i in range(count)]
+        done += leg
+    return positions
+
+
+def _between(at: Sequence[float]) -> tuple[float, ...]:
+    """Return cuts midway between neighbouring actions, evenly thinned."""
+    middles = [(one + two) / 2 for one, two in pairwise(at)]
+    if len(middles) <= _CUTS:
+        return tuple(middles)
+    picks = np.unique(np.linspace(0, len(middles) - 1, _CUTS + 2).round().astype(int)[1:-1])
+    return tuple(middles[i] for i in picks)
+
+
+def _even(length: float, width: float) -> tuple[float, ...]:
+    """Return cuts at even distances, not nearer to each other than twice the strip's width."""
+    count = min(_CUTS, floor(length / (2 * width)))
+    return tuple(length * i / (count + 1) for i in range(1, count + 1)) if count else ()

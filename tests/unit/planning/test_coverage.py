@@ -1,0 +1,162 @@
+from math import inf
+
+import pytest
+import shapely
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.coverage import target_of, work_over
+from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Robot, RobotType, Scene
+
+SQUARE = ((0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0))
+TYPE = RobotType("quad", (), (), 0.5, None, (Capability(0.0, None, (0.0, 10.0)),), (), {}, Part((), {}))
+
+
+def robot(clearance=1.0):
+    return Robot("r1", TYPE, (0.0, 0.0, 0.0), True, 0.0, "NORMAL", clearance)
+
+
+def scene(*areas):
+    return Scene("s", Frame("wgs84", 42.0, 13.0), (), (), (robot(),), areas=areas)
+
+
+def box(low, high, use=AreaUse.OBSTACLE, bottom=-inf, top=inf, safety=2.0):
+    (x0, y0), (x1, y1) = low, high
+    return Area("box", use, ((x0, y0), (x1, y0), (x1, y1), (x0, y1)), bottom, top, safety)
+
+
+def covered(work):
+    """The share of the target under rectangles about straight pieces of strokes, laid out by hand."""
+    width = work.coverage.width
+    pieces = [
+        shapely.buffer(shapely.LineString([one[:2], two[:2]]), width / 2, cap_style="flat")
+        for stroke in work.strokes
+        for one, two in zip(stroke.points[:-1], stroke.points[1:], strict=True)
+    ]
+    target = shapely.union_all([shapely.Polygon(*piece) for piece in work.coverage.target], grid_size=1e-6)
+    union = shapely.union_all(pieces, grid_size=1e-6)
+    return shapely.intersection(target, union, grid_size=1e-6).area / target.area
+
+
+def test_a_free_square_is_covered_whole_by_as_few_strokes_as_fit():
+    work = work_over(scene(), robot(), SQUARE, altitude=20.0, width=20.0, rule="test")
+    assert len(work.strokes) == 5
+    assert covered(work) == pytest.approx(1.0)
+    assert work.coverage.unreachable == 0.0
+    assert work.divisible
+    assert not work.ordered
+
+
+def test_strokes_are_at_the_altitude():
+    work = work_over(scene(), robot(), SQUARE, altitude=33.0, width=20.0, rule="test")
+    assert {point[2] for stroke in work.strokes for point in stroke.points} == {33.0}
+
+
+def test_an_obstacle_takes_its_grown_shape_away():
+    work = work_over(scene(box((40, 40), (60, 60))), robot(), SQUARE, altitude=20.0, width=10.0, rule="test")
+    drawn = shapely.box(40, 40, 60, 60)
+    lines = [shapely.LineString([p[:2] for p in stroke.points]) for stroke in work.strokes]
+    assert min(line.distance(drawn) for line in lines) >= 3.0
+    assert covered(work) >= 0.9999
+    assert 26 * 26 - 9 < work.coverage.unreachable < 26 * 26 + 1
+
+
+def test_an_obstacle_that_ends_below_is_flown_over():
+    work = work_over(
+        scene(box((40, 40), (60, 60), top=10.0)), robot(), SQUARE, altitude=20.0, width=10.0, rule="test"
+    )
+    assert work.coverage.unreachable == 0.0
+
+
+def test_an_obstacle_just_within_the_clearance_below_is_not_flown_over():
+    area = box((40, 40), (60, 60), top=17.5)
+    assert target_of(scene(area), robot(), SQUARE, (), 20.0)[0].area < 10_000
+    assert target_of(scene(area), robot(), SQUARE, (), 20.5)[0].area == 10_000
+
+
+def test_an_emergency_area_takes_nothing_away():
+    area = box((40, 40), (60, 60), use=AreaUse.EMERGENCY)
+    assert target_of(scene(area), robot(), SQUARE, (), 20.0)[0].area == 10_000
+
+
+def test_holes_are_not_covered_and_not_reported_as_unreachable():
+    hole = ((30.0, 30.0), (70.0, 30.0), (70.0, 70.0), (30.0, 70.0))
+    work = work_over(scene(), robot(), SQUARE, (hole,), altitude=20.0, width=10.0, rule="test")
+    inside = shapely.box(30.01, 30.01, 69.99, 69.99)
+    assert not any(
+        shapely.LineString([p[:2] for p in stroke.points]).intersects(inside) for stroke in work.strokes
+    )
+    assert work.coverage.unreachable == pytest.approx(0.0, abs=1e-3)
+    assert covered(work) >= 0.9999
+
+
+def test_actions_tile_the_target():
+    work = work_over(
+        scene(box((40, 40), (60, 60))),
+        robot(),
+        SQUARE,
+        altitude=20.0,
+        width=12.0,
+        length=12.0,
+        action="sample",
+        rule="test",
+    )
+    tiles = []
+    for stroke in work.strokes:
+        line = shapely.LineString([p[:2] for p in stroke.points])
+        for action in stroke.actions:
+            ahead = shapely.LineString(
+                [line.interpolate(action.at - 1e-4), line.interpolate(action.at + 1e-4)]
+            )
+            here, (one, two) = line.interpolate(action.at), ahead.coords
+            east, north = (two[0] - one[0]) / 2e-4 * 6.0, (two[1] - one[1]) / 2e-4 * 6.0
+            along = shapely.LineString([(here.x - east, here.y - north), (here.x + east, here.y + north)])
+            tiles.append(shapely.buffer(along, 6.0, cap_style="flat"))
+    target = shapely.union_all([shapely.Polygon(*piece) for piece in work.coverage.target], grid_size=1e-6)
+    union = shapely.union_all(tiles, grid_size=1e-6)
+    assert shapely.intersection(target, union, grid_size=1e-6).area / target.area >= 0.9999
+    assert work.coverage.length == 12.0
+
+
+def test_cuts_lie_between_actions():
+    work = work_over(
+        scene(), robot(), SQUARE, altitude=9.0, width=20.0, length=10.0, action="photo", rule="test"
+    )
+    for stroke in work.strokes:
+        at = [action.at for action in stroke.actions]
+        assert stroke.cuts == tuple(sorted(stroke.cuts))
+        assert all(min(abs(cut - where) for where in at) > 1.0 for cut in stroke.cuts)
+
+
+def test_a_polygon_within_a_forbidden_area_is_refused():
+    area = box((-10, -10), (110, 110), use=AreaUse.FORBIDDEN)
+    with pytest.raises(InfeasibleError, match=r"10000\.0 m²"):
+        work_over(scene(area), robot(), SQUARE, altitude=20.0, width=10.0, rule="test")
+
+
+def test_an_action_without_a_length_is_a_mistake():
+    with pytest.raises(ValueError, match="photo"):
+        work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, action="photo", rule="test")
+
+
+@pytest.mark.parametrize("width", [0.0, -1.0, float("nan")])
+def test_a_width_that_is_not_positive_is_a_mistake(width):
+    with pytest.raises(ValueError, match="swath width"):
+        work_over(scene(), robot(), SQUARE, altitude=9.0, width=width, rule="test")
+
+
+def test_the_direction_can_be_given():
+    work = work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, rule="test", angle=0.0)
+    assert all(abs(s.points[0][1] - s.points[-1][1]) < 1e-9 for s in work.strokes)
+
+
+def test_the_first_stroke_is_near_the_start():
+    work = work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, rule="test", start=(100.0, 100.0))
+    assert abs(work.strokes[0].points[0][0] - 100) + abs(work.strokes[0].points[0][1] - 100) <= 10.01
+
+
+def test_a_sliver_narrower_than_the_strip_gets_one_stroke():
+    work = work_over(
+        scene(), robot(), ((0, 0), (80, 0), (80, 1.5), (0, 1.5)), altitude=9.0, width=20.0, rule="test"
+    )
+    assert len(work.strokes) == 1
+    assert covered(work) == pytest.approx(1.0)
