@@ -1,16 +1,50 @@
-"""What this plug-in contributes."""
+"""What this plug-in contributes: the metamodel, how drones move, what must hold, how they look."""
 
 from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
 
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
+from mmrs_multicopter.names import DRONE, MULTICOPTER
 
 
 @hookimpl
 def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
-    """Return the metamodel of this plug-in."""
+    """Contribute drones to the Robot Language, take-off, landing and trajectories to behaviours."""
     ecore = Path(str(files("mmrs_multicopter"))) / "metamodels" / "multicopter.ecore"
-    return (MetamodelSource("urn:mmrs:multicopter:1.0", ecore, "multicopter"),)
+    return (MetamodelSource(MULTICOPTER, ecore, "mmrs-multicopter"),)
+
+
+@hookimpl
+def mmrs_constraints() -> tuple[Constraint, ...]:
+    """Contribute what must hold for drones and for behaviours that fly them."""
+    from mmrs_multicopter.constraints import CONSTRAINTS
+
+    return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_robot_kinds() -> tuple[RobotKind, ...]:
+    """Contribute how drones move on a mission."""
+    from mmrs_multicopter.kinds import MULTICOPTER_KIND
+
+    return (MULTICOPTER_KIND,)
+
+
+@hookimpl
+def mmrs_move_kinds() -> tuple[MoveKind, ...]:
+    """Contribute what take-off, landing and going to a target along a trajectory do."""
+    from mmrs_multicopter.kinds import MOVE_KINDS
+
+    return MOVE_KINDS
+
+
+@hookimpl
+def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
+    """Contribute how drones look on maps."""
+    return (MapSymbol(DRONE, "drone", "#1f6fb2", "✈", ("name", "maxAltitude", "positionHold", "maxPayload")),)

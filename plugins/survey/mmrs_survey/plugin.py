@@ -1,16 +1,52 @@
-"""What this plug-in contributes."""
+"""What this plug-in contributes: six types of task, what they are made of, what must hold, how they look."""
 
 from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
 
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
+from mmrs_survey import names
 
 
 @hookimpl
 def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
-    """Return the metamodel of this plug-in."""
+    """Contribute survey tasks to the mission layer."""
     ecore = Path(str(files("mmrs_survey"))) / "metamodels" / "survey.ecore"
-    return (MetamodelSource("urn:mmrs:survey:1.0", ecore, "survey"),)
+    return (MetamodelSource(names.SURVEY, ecore, "mmrs-survey"),)
+
+
+@hookimpl
+def mmrs_constraints() -> tuple[Constraint, ...]:
+    """Contribute what must hold for survey tasks and the devices that do them."""
+    from mmrs_survey.constraints import CONSTRAINTS
+
+    return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_rules() -> tuple[Rule, ...]:
+    """Contribute what survey tasks are made of."""
+    from mmrs_survey.grids import PHOTO_GRID_RULE
+    from mmrs_survey.measuring import MEASURE_RULE
+    from mmrs_survey.points import POINT_RULES
+    from mmrs_survey.roads import ROAD_RULE
+
+    return (PHOTO_GRID_RULE, *POINT_RULES, ROAD_RULE, MEASURE_RULE)
+
+
+@hookimpl
+def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
+    """Contribute how survey tasks look on maps."""
+    return (
+        MapSymbol(names.PHOTO_GRID_TASK, "photo grid", "#c2571a", "▦", ("altitude", "gridResolution")),
+        MapSymbol(names.GO_TO_TASK, "go to", "#5b3fa0", "➤", ("type",)),
+        MapSymbol(names.ROAD_TASK, "road", "#8a6d1f", "≋", ("altitude", "width", "inverted")),
+        MapSymbol(names.OBSERVE_TASK, "observe", "#a0235d", "◉", ("duration", "deviceId", "altitude")),
+        MapSymbol(names.MEASURE_TASK, "measure", "#2d7a3a", "✚", ("actionName", "spacing", "altitude")),
+        MapSymbol(names.APPROACH_TASK, "approach", "#37474f", "⌖", ("object", "distance", "tolerance")),
+    )

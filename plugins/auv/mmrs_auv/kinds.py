@@ -1,0 +1,82 @@
+"""How underwater vehicles move: between the surface and the depth that their parts bear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_core.contributions.rules import MoveSpec, RobotKind
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Kinematics, Part, Robot, RobotType, Scene
+from mmrs_core.transformation.kinds import capability_for, kinematics_for, straight_travel
+
+ATMOSPHERE = 101_325.0
+"""Pressure at the surface, pascals."""
+
+GRAVITY = 9.80665
+"""Metres per second squared."""
+
+SEA_WATER = 1025.0
+"""Kilograms per cubic metre; stands in where the context does not state the density: in fresh water
+the same pressure comes a little deeper, so nothing is risked."""
+
+
+def kinematics(robot: Robot, scene: Scene) -> Kinematics:
+    """Return what an underwater vehicle can do: between the surface and its largest depth.
+
+    Raises:
+        InfeasibleError: the type says nothing of the depth that it bears, or not for that payload.
+    """
+    density = scene.environment.get("waterDensity", SEA_WATER)
+    surface = scene.frame.surface
+    deepest = largest_depth(robot.type, robot.payload, density)
+    return kinematics_for(robot, scene, floor=surface - deepest, ceiling=surface)
+
+
+def largest_depth(robot_type: RobotType, payload: float, density: float) -> float:
+    """Return the depth in metres that every thruster and the hull bear, in water of that density.
+
+    Raises:
+        InfeasibleError: neither thrusters nor hull have a figure, or none holds for that payload.
+    """
+    limits = [*_thruster_depths(capability_for(robot_type, payload).part)]
+    pressure = robot_type.part.attributes.get("maxOperatingPressure")
+    if isinstance(pressure, (int, float)):
+        limits.append((float(pressure) - ATMOSPHERE) / (density * GRAVITY))
+    if not limits:
+        raise InfeasibleError(f"robot type '{robot_type.name}' does not say how deep it may go")
+    return max(0.0, min(limits))
+
+
+def _thruster_depths(movement: Part) -> Iterator[float]:
+    thrusters = movement.attributes.get("thrusters")
+    for thruster in thrusters if isinstance(thrusters, tuple) else ():
+        depth = thruster.attributes.get("maxDepth") if isinstance(thruster, Part) else None
+        if isinstance(depth, (int, float)):
+            yield float(depth)
+
+
+def _no_launch(height: float) -> tuple[MoveSpec, ...]:
+    return ()
+
+
+def _no_recovery() -> tuple[MoveSpec, ...]:
+    return ()
+
+
+AUV_KIND = RobotKind(
+    name="auv",
+    metaclass=AUV_MOVEMENT,
+    kinematics=kinematics,
+    launch=_no_launch,
+    recover=_no_recovery,
+    travel=straight_travel,
+    policies={
+        # Radio does not reach under water: a lost link is the ordinary state of things there.
+        "LINK_LOST": "CONTINUE",
+        "PEER_LOST": "SURFACE",
+        "BATTERY_LOW": "SURFACE",
+        "WAIT_TOO_LONG": "SURFACE",
+        "DEVICE_SILENT": "SURFACE",
+    },
+)

@@ -1,0 +1,198 @@
+"""What must hold for drones, for missions that use them, and for behaviours that fly them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element, container_of, is_kind, label_of
+from mmrs_core.languages.grounding_values import child, number, text
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_multicopter.heights import too_high
+from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, TAKE_OFF
+
+MISSION = ("urn:mmrs:mission:1.0", "Mission")
+TEAM_MEMBER = ("urn:mmrs:mission:1.0", "Robot")
+
+FEWEST_PROPELLERS = 3
+SMALLEST_PROPELLER = 20.0
+"""Millimetres under which a propeller's size was most likely given in inches or metres."""
+
+
+def _altitude_not_positive(drone: Element, models: ModelSet) -> Iterator[Finding]:
+    highest = number(drone, "maxAltitude")
+    if highest is not None and highest <= 0.0:
+        yield Finding(drone, f"maxAltitude of '{label_of(drone)}' is {highest:g} m, it must be above 0")
+
+
+def _not_upright(drone: Element, models: ModelSet) -> Iterator[Finding]:
+    how = text(drone, "launchType")
+    if how and how != "VTOL":
+        yield Finding(
+            drone, f"launchType of '{label_of(drone)}' is {how}, but launches are planned straight up"
+        )
+
+
+def _plain_size(drone: Element, models: ModelSet) -> Iterator[Finding]:
+    size = child(drone, "size")
+    if size is not None and not is_kind(size, *DRONE_SIZE):
+        yield Finding(size, f"size of '{label_of(drone)}' does not tell its propellers")
+
+
+def _too_few_propellers(size: Element, models: ModelSet) -> Iterator[Finding]:
+    count = number(size, "propellers")
+    if count is not None and count < FEWEST_PROPELLERS:
+        yield Finding(size, f"propellers is {count:g}, a multicopter has at least {FEWEST_PROPELLERS}")
+
+
+def _propeller_not_positive(size: Element, models: ModelSet) -> Iterator[Finding]:
+    diameter = number(size, "propellerSize")
+    if diameter is not None and diameter <= 0.0:
+        yield Finding(size, f"propellerSize is {diameter:g} mm, it must be above 0")
+
+
+def _propeller_tiny(size: Element, models: ModelSet) -> Iterator[Finding]:
+    diameter = number(size, "propellerSize")
+    if diameter is not None and 0.0 < diameter < SMALLEST_PROPELLER:
+        yield Finding(size, f"propellerSize is {diameter:g} mm, which is smaller than any propeller in use")
+
+
+def _hold_not_positive(drone: Element, models: ModelSet) -> Iterator[Finding]:
+    wind = number(drone, "positionHold")
+    if wind is not None and wind <= 0.0:
+        yield Finding(drone, f"positionHold of '{label_of(drone)}' is {wind:g} m/s, it must be above 0")
+
+
+def _windier_than_held(member: Element, models: ModelSet) -> Iterator[Finding]:
+    drone = _type_of(member, "type", models)
+    environment = child(models.context, "environment") if models.context is not None else None
+    if drone is None or environment is None or not is_kind(drone, *DRONE):
+        return
+    wind, held = number(environment, "windSpeed"), number(drone, "positionHold")
+    if wind is not None and held is not None and wind > held:
+        yield Finding(
+            member,
+            f"robot '{label_of(member)}' holds a position in wind of up to {held:g} m/s, "
+            f"the context has {wind:g} m/s",
+        )
+
+
+def _take_off_not_up(take_off: Element, models: ModelSet) -> Iterator[Finding]:
+    altitude = number(take_off, "altitude")
+    if altitude is not None and altitude <= 0.0:
+        yield Finding(take_off, f"altitude of the take-off is {altitude:g} m, it must be above the ground")
+
+
+def _take_off_too_high(take_off: Element, models: ModelSet) -> Iterator[Finding]:
+    drone = _type_of(container_of(take_off), "typeName", models)
+    altitude = number(take_off, "altitude")
+    highest = number(drone, "maxAltitude") if drone is not None else None
+    if altitude is not None and highest is not None and altitude > highest:
+        yield Finding(
+            take_off, f"altitude of the take-off is {altitude:g} m, the type's maxAltitude is {highest:g} m"
+        )
+
+
+def _flown_by_no_drone(move: Element, models: ModelSet) -> Iterator[Finding]:
+    robot_type = _type_of(container_of(move), "typeName", models)
+    if robot_type is not None and not is_kind(robot_type, *DRONE):
+        yield Finding(move, f"robot type '{label_of(robot_type)}' is no Drone and cannot do this move")
+
+
+def _type_of(robot: Element | None, feature: str, models: ModelSet) -> Element | None:
+    return models.robots.get(text(robot, feature)) if robot is not None else None
+
+
+CONSTRAINTS = (
+    Constraint(
+        "MUL001",
+        "The largest altitude of a drone is above zero",
+        DRONE,
+        _altitude_not_positive,
+        "give the height above the take-off point that the drone reaches, in metres",
+    ),
+    Constraint(
+        "MUL002",
+        "Drones take off and land upright",
+        DRONE,
+        _not_upright,
+        "check that the place for the launch suits the drone, or use a type with VTOL",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MUL003",
+        "The size of a drone is a DroneSize",
+        DRONE,
+        _plain_size,
+        'write xsi:type="multicopter:DroneSize" and add propellers and propellerSize',
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MUL004",
+        "A drone has at least three propellers",
+        DRONE_SIZE,
+        _too_few_propellers,
+        "count each propeller, of coaxial pairs too",
+    ),
+    Constraint(
+        "MUL005",
+        "The size of propellers is above zero",
+        DRONE_SIZE,
+        _propeller_not_positive,
+        "give the diameter in millimetres",
+    ),
+    Constraint(
+        "MUL006",
+        "The size of propellers is given in millimetres",
+        DRONE_SIZE,
+        _propeller_tiny,
+        "one inch is 25.4 mm, one metre is 1000 mm",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MUL007",
+        "The wind in which a drone holds its position is above zero",
+        DRONE,
+        _hold_not_positive,
+        "give the wind speed in metres per second, or leave it out where it is not known",
+    ),
+    Constraint(
+        "MUL008",
+        "Every drone can hold its position in the wind of the context",
+        TEAM_MEMBER,
+        _windier_than_held,
+        "use another type of robot or wait for calmer weather",
+    ),
+    Constraint(
+        "MUL009",
+        "Some robot of the team reaches the height of each task",
+        MISSION,
+        too_high,
+        "lower the task or add a robot that flies higher",
+    ),
+    Constraint(
+        "MUL010",
+        "A take-off leads up",
+        TAKE_OFF,
+        _take_off_not_up,
+        "give the height above the take-off point, in metres",
+    ),
+    Constraint(
+        "MUL011",
+        "A take-off ends below the drone's largest altitude",
+        TAKE_OFF,
+        _take_off_too_high,
+        "lower the take-off's altitude",
+    ),
+    *(
+        Constraint(
+            code,
+            f"Only drones do the move {metaclass[1]} of multicopters",
+            metaclass,
+            _flown_by_no_drone,
+            "use moves that the robot's kind knows, or make its type a Drone",
+        )
+        for code, metaclass in (("MUL012", TAKE_OFF), ("MUL013", LAND), ("MUL014", GO_TO))
+    ),
+)

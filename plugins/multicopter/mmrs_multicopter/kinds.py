@@ -1,0 +1,112 @@
+"""How multicopters move: figures for planning, launch and landing, and what each move does."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from mmrs_core.behaviour.program import Move
+from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Kinematics, Position, Robot, Scene
+from mmrs_core.transformation.kinds import kinematics_for, leg_seconds, path_seconds
+from mmrs_multicopter import trajectories
+from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
+
+LOWEST_FLIGHT = 1.0
+"""Metres above home below which a drone only launches and lands."""
+
+SPIN_UP = 5.0
+"""Seconds from the command to take off until the drone climbs."""
+
+TOUCH_DOWN = 5.0
+"""Seconds from touching the ground until the motors stand still."""
+
+HOME_RADIUS = 2.0
+"""Metres from home within which the ground has the height of home; elsewhere it has the origin's."""
+
+
+def kinematics(robot: Robot, scene: Scene) -> Kinematics:
+    """Return what a drone can do: between 1 m and its largest altitude above home.
+
+    Raises:
+        InfeasibleError: the type does not say how high the drone goes, or not for that payload.
+    """
+    highest = robot.type.part.attributes.get("maxAltitude")
+    if not isinstance(highest, (int, float)):
+        raise InfeasibleError(f"robot type '{robot.type.name}' does not say its maxAltitude")
+    return kinematics_for(
+        robot,
+        scene,
+        floor=robot.home[2] + LOWEST_FLIGHT,
+        ceiling=robot.home[2] + float(highest),
+        launch=SPIN_UP,
+        recovery=TOUCH_DOWN,
+        launches=True,
+    )
+
+
+def launch(height: float) -> tuple[MoveSpec, ...]:
+    """Return the take-off to so many metres above home."""
+    return (MoveSpec(TAKE_OFF, {"altitude": height}),)
+
+
+def recover() -> tuple[MoveSpec, ...]:
+    """Return the landing where the drone is."""
+    return (MoveSpec(LAND),)
+
+
+def take_off_path(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:
+    """Return the way straight up to the move's altitude above where the drone stands."""
+    altitude = move.attributes.get("altitude")
+    climb = float(altitude) if isinstance(altitude, (int, float)) else 0.0
+    return (here, (here[0], here[1], here[2] + climb))
+
+
+def land_path(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:
+    """Return the way straight down to the ground."""
+    return (here, (here[0], here[1], ground_height(here, home)))
+
+
+def ground_height(here: Position, home: Position | None) -> float:
+    """Return the height of the ground: that of home near home, that of the origin elsewhere."""
+    near = home is not None and hypot(here[0] - home[0], here[1] - home[1]) <= HOME_RADIUS
+    return home[2] if home is not None and near else 0.0
+
+
+def take_off_seconds(
+    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
+) -> tuple[float, float]:
+    """Return the duration of spinning up and climbing, as the plan counts it."""
+    whole = kinematics.launch + leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
+    return whole, whole
+
+
+def land_seconds(
+    move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
+) -> tuple[float, float]:
+    """Return the duration of descending and stopping the motors, as the plan counts it."""
+    whole = kinematics.recovery + leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
+    return whole, whole
+
+
+MULTICOPTER_KIND = RobotKind(
+    name="multicopter",
+    metaclass=DRONE,
+    kinematics=kinematics,
+    launch=launch,
+    recover=recover,
+    travel=trajectories.travel,
+    policies={
+        "LINK_LOST": "RETURN",
+        "PEER_LOST": "RETURN",
+        "BATTERY_LOW": "RETURN",
+        "WAIT_TOO_LONG": "RETURN",
+        "DEVICE_SILENT": "RETURN",
+    },
+)
+
+MOVE_KINDS = (
+    MoveKind(TAKE_OFF, take_off_path, take_off_seconds, frozenset({"grounded"}), "airborne"),
+    MoveKind(LAND, land_path, land_seconds, frozenset({"airborne"}), "grounded"),
+    MoveKind(GO_TO, trajectories.path, path_seconds, frozenset({"airborne"})),
+)

@@ -1,0 +1,73 @@
+"""What a camera sees of the ground, from its properties.
+
+Keys of device properties, as text: ``sensor.width`` and ``sensor.height`` in millimetres (width is
+across the direction of travel), ``focal.length`` in millimetres, ``image.width`` and
+``image.height`` in pixels. A pinhole camera that looks straight down on level ground sees
+``sensor · distance / focal length``; the ground resolution is that over the pixels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mmrs_core.errors import InfeasibleError
+
+SENSOR_KEYS = ("sensor.width", "sensor.height")
+IMAGE_KEYS = ("image.width", "image.height")
+FOCAL_KEY = "focal.length"
+CAMERA_KEYS = (*SENSOR_KEYS, FOCAL_KEY, *IMAGE_KEYS)
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """What one photo or sample covers: metres across and along the direction of travel."""
+
+    width: float
+    length: float
+
+
+def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | None:
+    """Return what the camera sees from so many metres; None where its optics are not described.
+
+    >>> footprint_at({"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}, 40.0)
+    Footprint(width=60.0, length=40.0)
+    """
+    figures = [_figure(properties, key) for key in (*SENSOR_KEYS, FOCAL_KEY)]
+    if None in figures or distance <= 0.0:
+        return None
+    width, height, focal = (figure or 0.0 for figure in figures)
+    return Footprint(width * distance / focal, height * distance / focal)
+
+
+def footprint_of(properties: Mapping[str, str], distance: float, resolution: float, device: str) -> Footprint:
+    """Return what a photo covers if a pixel may be at most `resolution` metres large.
+
+    Where the optics are known, this is what the camera really sees from so many metres; else what
+    its pixels make at exactly that resolution.
+
+    Raises:
+        InfeasibleError: the image size is not known, or the camera is too coarse from there.
+    """
+    pixels = [_figure(properties, key) for key in IMAGE_KEYS]
+    if None in pixels:
+        raise InfeasibleError(f"device '{device}' does not state {' and '.join(IMAGE_KEYS)}")
+    across, along = (figure or 0.0 for figure in pixels)
+    seen = footprint_at(properties, distance)
+    if seen is None:
+        return Footprint(resolution * across, resolution * along)
+    reached = max(seen.width / across, seen.length / along)
+    if reached > resolution * (1 + 1e-9):
+        raise InfeasibleError(
+            f"device '{device}' resolves {reached:.4g} m on the ground from {distance:g} m, "
+            f"{resolution:.4g} m is asked for"
+        )
+    return seen
+
+
+def _figure(properties: Mapping[str, str], key: str) -> float | None:
+    try:
+        figure = float(properties[key])
+    except (KeyError, ValueError):
+        return None
+    return figure if 0.0 < figure < float("inf") else None

@@ -1,0 +1,82 @@
+"""The rule for covering an area with photos or samples."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.coverage import work_over
+from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
+from mmrs_survey.attributes import holes, number, position, ring, text
+from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
+from mmrs_survey.devices import device_for
+from mmrs_survey.names import PHOTO_GRID_TASK
+from mmrs_survey.places import refuse_blocked, refuse_heights
+
+RULE = "photo_grid"
+
+
+def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return the swaths from which photos or samples cover the area."""
+    part = task.part
+    altitude = number(part, "altitude")
+    if altitude is None:
+        raise InfeasibleError("altitude is missing")
+    initial = position(part, "initialPosition")
+    entry = (initial[0], initial[1], altitude)
+    refuse_heights(robot, (entry,))
+    refuse_blocked(robot, scene, (entry,), "the initial position")
+    action = text(part, "actionName")
+    device = device_for(robot.type, action, text(part, "deviceId"))
+    spacing = spacing_of(part, device, altitude)
+    work = work_over(
+        scene,
+        robot,
+        ring(part, "shell"),
+        holes(part),
+        altitude=altitude,
+        width=spacing.width,
+        length=spacing.length,
+        rule=RULE,
+        action=action,
+        device=device.id,
+        speed=number(part, "speed"),
+        start=(entry[0], entry[1]),
+    )
+    return replace(work, entry=entry)
+
+
+def spacing_of(part: Part, device: Device, altitude: float) -> Footprint:
+    """Return how far apart swaths, and photos along them, may be: footprints less their overlaps.
+
+    The ground is taken to be level at the height of the origin.
+
+    Raises:
+        InfeasibleError: neither the task nor the device says what one photo covers, or the camera is
+            too coarse.
+    """
+    grid = number(part, "gridResolution")
+    seen = Footprint(grid, grid) if grid is not None else _footprint(part, device, altitude)
+    side, front = number(part, "sideOverlap") or 0.0, number(part, "frontOverlap") or 0.0
+    left = Footprint(seen.width * (1.0 - side), seen.length * (1.0 - front)) if grid is None else seen
+    if not (left.width > 0.0 and left.length > 0.0):
+        raise InfeasibleError("grid, footprint and overlaps leave no distance between photos")
+    return left
+
+
+def _footprint(part: Part, device: Device, altitude: float) -> Footprint:
+    width, length = number(part, "footprintWidth"), number(part, "footprintLength")
+    if width is not None and length is not None:
+        return Footprint(width, length)
+    resolution = number(part, "groundResolution")
+    if resolution is not None:
+        return footprint_of(device.properties, altitude, resolution, device.id)
+    seen = footprint_at(device.properties, altitude)
+    if seen is None:
+        keys = ", ".join(CAMERA_KEYS[:3])
+        raise InfeasibleError(f"device '{device.id}' does not state what one photo covers ({keys})")
+    return seen
+
+
+PHOTO_GRID_RULE = Rule(RULE, PHOTO_GRID_TASK, photo_grid_work)

@@ -1,0 +1,11 @@
+"""The names of the metaclasses that this plug-in brings."""
+
+from __future__ import annotations
+
+SURVEY = "urn:mmrs:survey:1.0"
+PHOTO_GRID_TASK = (SURVEY, "PhotoGridTask")
+GO_TO_TASK = (SURVEY, "GoToTask")
+ROAD_TASK = (SURVEY, "RoadTask")
+OBSERVE_TASK = (SURVEY, "ObserveTask")
+MEASURE_TASK = (SURVEY, "MeasureTask")
+APPROACH_TASK = (SURVEY, "ApproachTask")

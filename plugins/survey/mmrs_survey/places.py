@@ -1,0 +1,89 @@
+"""Where a robot may be: between its floor and ceiling, and clear of everything as drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import atan2, cos, pi, sin
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.segments import legs_of, prism_distance
+from mmrs_core.scene import Area, Position, Robot, Scene
+
+MARGIN = 1.01
+"""Stand-off positions keep a little more than the clearance, because planners round it up."""
+
+BEARINGS = 24
+
+
+def refuse_heights(robot: Robot, points: Iterable[Position]) -> None:
+    """Check that positions lie between a robot's floor and ceiling.
+
+    Raises:
+        InfeasibleError: one does not; says by how much.
+    """
+    if robot.kinematics is None:
+        return
+    floor, ceiling = robot.kinematics.floor, robot.kinematics.ceiling
+    for _, _, up in points:
+        if up > ceiling + 1e-6:
+            raise InfeasibleError(
+                f"{_metres(up)} is {_metres(up - ceiling)} above the ceiling {_metres(ceiling)}"
+            )
+        if up < floor - 1e-6:
+            raise InfeasibleError(f"{_metres(up)} is {_metres(floor - up)} below the floor {_metres(floor)}")
+
+
+def refuse_blocked(robot: Robot, scene: Scene, points: Sequence[Position], what: str) -> None:
+    """Check that a polyline keeps the robot's clearance from every area as drawn.
+
+    Raises:
+        InfeasibleError: it does not; names the area and what is short.
+    """
+    for area in scene.kept_from():
+        short = area.safety_distance + robot.clearance - _distance(points, area)
+        if short > 1e-6:
+            raise InfeasibleError(f"{what} comes {_metres(short)} too near to '{area.name}'")
+
+
+def stand_off(
+    robot: Robot, scene: Scene, point: Position, near: float, far: float
+) -> tuple[Position, Position]:
+    """Return the ends of a clear level leg towards a point: from `far` to `near` metres before it.
+
+    The side that faces the team's homes comes first, then others by how little they differ from it.
+
+    Raises:
+        InfeasibleError: no side is clear.
+    """
+    for bearing in _bearings(scene, point):
+        east, north = sin(bearing), cos(bearing)
+        begin = (point[0] + far * east, point[1] + far * north, point[2])
+        end = (point[0] + near * east, point[1] + near * north, point[2])
+        if _is_clear(robot, scene, (begin, end)):
+            return begin, end
+    raise InfeasibleError(f"no clear place is {_metres(far)} from the point on any side")
+
+
+def _metres(value: float) -> str:
+    return f"{value:.2f} m"
+
+
+def _distance(points: Sequence[Position], area: Area) -> float:
+    return float(prism_distance(legs_of(points), area.shell, area.low, area.high).min())
+
+
+def _is_clear(robot: Robot, scene: Scene, points: Sequence[Position]) -> bool:
+    return all(
+        _distance(points, area) >= MARGIN * (area.safety_distance + robot.clearance)
+        for area in scene.kept_from()
+    )
+
+
+def _bearings(scene: Scene, point: Position) -> Iterator[float]:
+    count = len(scene.robots) or 1
+    east = sum(robot.home[0] for robot in scene.robots) / count - point[0]
+    north = sum(robot.home[1] for robot in scene.robots) / count - point[1]
+    first = atan2(east, north)
+    for step in range(BEARINGS):
+        turn = (step + 1) // 2 * (1 if step % 2 else -1)
+        yield first + turn * 2 * pi / BEARINGS
