@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, Value
+from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
 
 SlotId: TypeAlias = tuple[str, str]
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
@@ -145,7 +145,7 @@ class RobotProgram:
 
     id: str
     type_name: str
-    travel_mode: str
+    travel_mode: TravelMode
     payload: float
     home: Position | None
     slots: tuple[str, ...]

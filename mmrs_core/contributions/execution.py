@@ -1,14 +1,17 @@
-"""What executes behaviours: backends that move robots, conditions that decide Choices."""
+"""What executes behaviours: backends that move robots, buses that carry notifies, conditions.
+
+Times are seconds of the run's clock throughout.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
+from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId
 from mmrs_core.contributions.rules import MoveKind, RobotKind
-from mmrs_core.scene import Name, Position, RobotType
+from mmrs_core.scene import Area, Name, Policy, Position, RobotType
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +32,48 @@ class RobotState:
     energy: float | None
 
 
-class Backend(Protocol):
-    """Moves one robot. Times are seconds of the run's clock; calls return at once."""
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A point of the way that a robot has come; between two of them it went straight and evenly.
 
-    def begin(self, move: Move, now: float) -> None:
-        """Begin a movement."""
+    Attributes:
+        time: seconds of the run's clock. east, north, up: metres.
+        energy: joules left; inf for a wired robot, None where nothing is known.
+    """
+
+    time: float
+    east: float
+    north: float
+    up: float
+    energy: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that ends a robot's mission.
+
+    Attributes:
+        which: a literal of PolicyEvent where policies answer it, otherwise a word of the backend's,
+            such as ``BATTERY_EMPTY``.
+        reason: for people; may be empty.
+    """
+
+    which: str
+    reason: str = ""
+
+    def __str__(self) -> str:
+        """Return both, as logs write them."""
+        return f"{self.which}: {self.reason}" if self.reason else self.which
+
+
+class Backend(Protocol):
+    """Moves one robot. Calls return at once; any may raise LinkLostError.
+
+    The interpreter begins one movement or action at a time and asks until it has finished.
+    """
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement, Start and Stop included; `through`: it need not stop at the end."""
         ...
 
     def act(self, action: Action, now: float) -> None:
@@ -44,8 +84,12 @@ class Backend(Protocol):
         """Return whether what was begun last has finished."""
         ...
 
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong up to now, if anything; asked before `finished`."""
+        ...
+
     def next_event(self, now: float) -> float | None:
-        """Return when it will be worth asking again; None: at the clock's own pace."""
+        """Return when it will be worth asking again, inf: never; None: at the clock's own pace."""
         ...
 
     def wait(self, now: float) -> None:
@@ -56,14 +100,24 @@ class Backend(Protocol):
         """Return what is known of the robot."""
         ...
 
-    def stop(self, now: float) -> None:
-        """Bring the robot to a safe halt, from any state; idempotent."""
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Bring the robot to a safe halt, from any state; idempotent.
+
+        Args:
+            now: time at which it begins.
+            response: a literal of PolicyResponse: how.
+        """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class BackendInput:
-    """All that a backend may use."""
+    """All that a backend may use.
+
+    Attributes:
+        policies: of the robot, in the order in which they go: the first for an event counts.
+        areas: of the context as drawn; empty where none was given.
+    """
 
     program: Program
     robot: RobotProgram
@@ -72,6 +126,8 @@ class BackendInput:
     move_kinds: Mapping[Name, MoveKind]
     environment: Mapping[str, float]
     options: Mapping[str, str]
+    policies: tuple[Policy, ...] = ()
+    areas: tuple[Area, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +138,7 @@ class BackendFactory:
         name: as in ``--backend``.
         description: one line for people.
         connect: a backend for one robot. Raises LinkLostError where the robot does not answer,
-            ValueError for an option it does not know.
+            ValueError for an option it does not know, UnsupportedError for what it cannot do.
         simulated: whether its time is simulated: the run then jumps from event to event.
     """
 
@@ -98,8 +154,90 @@ class Condition:
 
     Attributes:
         identifier: as in Choice.conditionIdentifier.
-        holds: whether it holds for a robot in that state.
+        holds: whether it holds for a robot in that state. What it raises is a fault of the robot.
     """
 
     identifier: str
     holds: Callable[[RobotState], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class CommandId:
+    """What makes a notify recognisable however often it arrives.
+
+    Attributes:
+        run: identifier of the run. sender: the notifying robot. incarnation: differs each time that
+            the sender is started. sequence: counted by the sender, never used twice.
+    """
+
+    run: str
+    sender: str
+    incarnation: str
+    sequence: int
+
+
+@dataclass(frozen=True, slots=True)
+class SlotCommand:
+    """Has the owners of slots set them; the same command may arrive several times.
+
+    Attributes:
+        slots: (owner, slot name), at least one.
+        active: the value to set, never to toggle.
+        lamport: logical time of the notify.
+    """
+
+    id: CommandId
+    slots: tuple[SlotId, ...]
+    active: bool
+    lamport: int
+
+
+@dataclass(frozen=True, slots=True)
+class SlotState:
+    """The state of a slot.
+
+    Attributes:
+        version: how many commands its owner has applied to it.
+        lamport: logical time of the last step that set it or passed a wait for it.
+        writer: who set it last; empty if nobody has.
+    """
+
+    active: bool = False
+    version: int = 0
+    lamport: int = 0
+    writer: str = ""
+
+
+class Bus(Protocol):
+    """Carries notifies between robots. Only a slot's owner changes it; waits look at its state."""
+
+    def notify(self, command: SlotCommand) -> None:
+        """Deliver a command; return when every owner has applied and acknowledged it.
+
+        Owners apply a command once, however often it arrives. Owners that share the bus apply it in
+        one instant.
+
+        Raises:
+            LinkLostError: if an owner does not acknowledge in time; names each such owner.
+        """
+        ...
+
+    def state(self, slot: SlotId) -> SlotState:
+        """Return the state of a slot, as far as it is known here; one's own is always known."""
+        ...
+
+    def passed(self, slots: Iterable[SlotId], lamport: int) -> None:
+        """Record that a wait for these slots was passed, so that later notifies are ordered after it."""
+        ...
+
+
+class Clock(Protocol):
+    """The time of a run."""
+
+    def now(self) -> float:
+        """Return the seconds since the run began."""
+        ...
+
+    def sleep_until(self, time: float) -> None:
+        """Return when that time has come."""
+        ...

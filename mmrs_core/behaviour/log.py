@@ -1,0 +1,205 @@
+"""Logs of runs: JSON Lines, one file a robot; the schema lies beside this module."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, fields
+from hashlib import sha256
+from math import inf
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, TextIO
+from urllib.parse import quote
+
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.diagnostics import Diagnostic, Place, Severity
+from mmrs_core.errors import InvalidModelError, UnreadableError
+
+SCHEMA = Path(__file__).with_name("log.schema.json")
+SUFFIX = ".jsonl"
+LABELS = ("act", "ntf", "begin", "end", "take", "choose", "fault")
+LONGEST_LINE = 100_000
+
+_FIELDS = tuple(field.name for field in fields(StepRecord))
+_COUNTS = ("seq", "lamport")
+_NEVER_EMPTY = ("run", "robot", "move")
+_LONGEST_NAME = 120
+
+
+def log_name(robot: str) -> str:
+    """Return the name of a robot's log; different robots have different ones, whatever their names."""
+    name = quote(robot, safe="").replace(".", "%2E")
+    if len(name) > _LONGEST_NAME or not name:
+        name = f"{name[:_LONGEST_NAME]}%{sha256(robot.encode()).hexdigest()[:16]}"
+    return name + SUFFIX
+
+
+def to_line(record: StepRecord) -> str:
+    """Return the record as one line of a log, without the line's end."""
+    return json.dumps(asdict(record), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+class LogWriter:
+    """Appends steps to one log a robot in a folder.
+
+    Every step is flushed; a notify or a fault is on the disk when `write` returns, so that a notify
+    written before it is delivered survives whatever happens next.
+    """
+
+    def __init__(self, folder: Path, *, append: bool = False, durable: bool = True) -> None:
+        """Open no file yet.
+
+        Args:
+            folder: made where it is missing.
+            append: continue a robot's log that is there already, as after a restart within a run;
+                otherwise the first step written for a robot replaces it.
+            durable: whether to wait for the disk at notifies and faults.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        self._folder = folder
+        self._mode: Literal["a", "w"] = "a" if append else "w"
+        self._durable = durable
+        self._files: dict[str, TextIO] = {}
+
+    def write(self, record: StepRecord) -> None:
+        """Append a step to its robot's log."""
+        file = self._files.get(record.robot)
+        if file is None:
+            path = self._folder / log_name(record.robot)
+            file = path.open(self._mode, encoding="utf-8", newline="\n")
+            self._files[record.robot] = file
+        file.write(to_line(record) + "\n")
+        file.flush()
+        if self._durable and record.label in ("ntf", "fault"):
+            os.fsync(file.fileno())
+
+    def close(self) -> None:
+        """Close all files."""
+        while self._files:
+            self._files.popitem()[1].close()
+
+    def __enter__(self) -> LogWriter:
+        """Return the writer."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close all files."""
+        self.close()
+
+
+def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
+    """Return the steps in a log, in the order of its lines.
+
+    Args:
+        path: of the log.
+        partial: accept a last line that was cut off while it was written.
+
+    Raises:
+        UnreadableError: if the file cannot be read as text.
+        InvalidModelError: if lines are not steps; every such line is reported.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UnreadableError(f"{path}: cannot be read as a log: {error}") from error
+    lines = text.split("\n")
+    rest = lines.pop()
+    if rest and not partial:
+        lines.append(rest)
+    return _records(lines, str(path))
+
+
+def read_logs(paths: Iterable[Path], *, partial: bool = False) -> tuple[StepRecord, ...]:
+    """Return the steps of several logs, merged; a folder stands for all logs in it.
+
+    Raises:
+        UnreadableError: if a file cannot be read, or a folder holds no log.
+        InvalidModelError: if lines are not steps.
+    """
+    records: list[StepRecord] = []
+    for path in paths:
+        for file in _logs_in(path):
+            records.extend(read_log(file, partial=partial))
+    return merge(records)
+
+
+def clear_logs(folder: Path) -> None:
+    """Remove the logs of an earlier run, so that robots of that run leave none behind."""
+    for path in folder.glob(f"*{SUFFIX}"):
+        path.unlink()
+
+
+def merge(records: Iterable[StepRecord]) -> tuple[StepRecord, ...]:
+    """Return the steps of all robots in one order in which they may have happened."""
+    return tuple(sorted(records, key=lambda record: (record.lamport, record.robot, record.seq)))
+
+
+def faults_of(value: object) -> tuple[str, ...]:
+    """Return what keeps a JSON value from being a step; empty if nothing does."""
+    if not isinstance(value, Mapping):
+        return (f"{type(value).__name__}: not an object",)
+    missing = [f"{name}: missing" for name in _FIELDS if name not in value]
+    unknown = [f"{name}: unknown field" for name in value if name not in _FIELDS]
+    wrong = [fault for name in _FIELDS if name in value and (fault := _field_fault(name, value[name]))]
+    return (*missing, *unknown, *wrong)
+
+
+def _field_fault(name: str, value: object) -> str:
+    if name in _COUNTS:
+        whole = isinstance(value, int | float) and not isinstance(value, bool) and value == value // 1
+        return "" if whole and value >= 0 else f"{name}: {value!r} is not a whole number from 0 on"  # type: ignore[operator]
+    if name == "time":
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        return "" if number and 0 <= value < inf else f"time: {value!r} is not a number from 0 on"  # type: ignore[operator]
+    if not isinstance(value, str):
+        return f"{name}: {value!r} is not text"
+    if name == "label" and value not in LABELS:
+        return f"label: {value!r} is none of {', '.join(LABELS)}"
+    return f"{name}: empty" if name in _NEVER_EMPTY and not value else ""
+
+
+def _records(lines: Iterable[str], file: str) -> tuple[StepRecord, ...]:
+    records: list[StepRecord] = []
+    faults: list[Diagnostic] = []
+    for number, line in enumerate(lines, start=1):
+        place = Place(file, number)
+        try:
+            records.append(_record(line))
+        except ValueError as error:
+            faults.append(Diagnostic("LOG001", Severity.ERROR, str(error), place))
+    if faults:
+        raise InvalidModelError(f"{file}: {len(faults)} lines are not steps", faults)
+    return tuple(records)
+
+
+def _record(line: str) -> StepRecord:
+    if len(line) > LONGEST_LINE:
+        raise ValueError(f"line of {len(line)} characters: longer than any step")
+    try:
+        value: object = json.loads(line, parse_constant=_refuse)
+    except RecursionError:
+        raise ValueError("line nested too deeply to be a step") from None
+    except json.JSONDecodeError as error:
+        raise ValueError(f"line is not JSON: {error.msg} at column {error.colno}") from None
+    if faults := faults_of(value):
+        raise ValueError("; ".join(faults))
+    assert isinstance(value, dict)
+    counts = {name: int(value[name]) for name in _COUNTS}
+    return StepRecord(**{**value, **counts, "time": float(value["time"])})
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(f"{constant}: not a number of JSON")
+
+
+def _logs_in(path: Path) -> tuple[Path, ...]:
+    if not path.is_dir():
+        return (path,)
+    found = tuple(sorted(path.glob(f"*{SUFFIX}")))
+    if not found:
+        raise UnreadableError(f"{path}: no log in this folder")
+    return found

@@ -1,0 +1,251 @@
+"""The judge of every log: replays it through the step rules and says where it goes wrong.
+
+The oracle for interpreter, simulators, exports, generated code and logs from the field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from mmrs_core.behaviour.log import merge
+from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram, SlotId
+from mmrs_core.behaviour.semantics import (
+    Phase,
+    Point,
+    State,
+    Step,
+    Waiting,
+    entry,
+    fault,
+    missing,
+    steps,
+    waiting,
+)
+from mmrs_core.behaviour.steps import StepRecord
+
+HOLD_POSITION = (BEHAVIOUR, "HoldPosition")
+
+
+class Outcome(Enum):
+    """How a run ended."""
+
+    SUCCESS = "success"
+    FAILED = "failed"
+    STUCK = "stuck"
+    INCOMPLETE = "incomplete"
+
+
+@dataclass(frozen=True, slots=True)
+class Complaint:
+    """Where a log and the behaviour disagree.
+
+    Attributes:
+        robot, seq, move: of the record; seq is -1 and move empty where no record is to blame.
+        message: what the record says and what was expected.
+    """
+
+    robot: str
+    seq: int
+    move: str
+    message: str
+
+    def __str__(self) -> str:
+        """Return one line for people."""
+        where = f"{self.robot}: step {self.seq} at '{self.move}'" if self.seq >= 0 else self.robot
+        return f"{where}: {self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayResult:
+    """What a replay found.
+
+    Attributes:
+        outcome: where the replayed steps lead.
+        complaints: empty if the log is one of the behaviour's traces.
+        waiting: robots that wait for slots at the end.
+        faults: by robot, which fault ended it.
+        steps: how many were replayed.
+        duration: seconds of the run's clock until the last step.
+    """
+
+    outcome: Outcome
+    complaints: tuple[Complaint, ...]
+    waiting: tuple[Waiting, ...]
+    faults: Mapping[str, str]
+    steps: int
+    duration: float
+
+    @property
+    def accepted(self) -> bool:
+        """Return whether there was nothing to complain of."""
+        return not self.complaints
+
+
+@dataclass(slots=True)
+class _Robot:
+    program: RobotProgram
+    point: Point
+    began: float = 0.0
+    last: StepRecord | None = None
+
+
+@dataclass(slots=True)
+class _Replay:
+    robots: dict[str, _Robot]
+    tolerance: float
+    active: set[SlotId] = field(default_factory=set)
+    faults: dict[str, str] = field(default_factory=dict)
+    steps: int = 0
+
+
+def replay(
+    program: Program, records: Iterable[StepRecord], *, partial: bool = False, tolerance: float = 1e-3
+) -> ReplayResult:
+    """Return whether the records are a trace of the program, and how it ended.
+
+    The first step that the rules do not allow ends the replay: what follows it has no meaning.
+    Linear in the number of records, merging aside.
+
+    Args:
+        program: what the robots should do.
+        records: of all robots; those of one robot in the order of its log.
+        partial: accept a log that ends before the run does.
+        tolerance: seconds by which a hold may seem shorter than its duration.
+    """
+    in_file_order = tuple(records)
+    complaints = list(_order_complaints(in_file_order))
+    run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.robots}, tolerance)
+    if not complaints:
+        complaints.extend(_replayed(run, merge(in_file_order)))
+    state = State(tuple(robot.point for robot in run.robots.values()), frozenset(run.active))
+    outcome = _outcome(run, state)
+    if outcome is Outcome.INCOMPLETE and not complaints and not partial:
+        complaints.extend(_unfinished(run))
+    duration = max((record.time for record in in_file_order), default=0.0)
+    return ReplayResult(outcome, tuple(complaints), waiting(program, state), run.faults, run.steps, duration)
+
+
+def _order_complaints(records: tuple[StepRecord, ...]) -> Iterable[Complaint]:
+    """Yield what is wrong with counters and clocks, one robot at a time."""
+    last: dict[str, StepRecord] = {}
+    for record in records:
+        before = last.get(record.robot)
+        last[record.robot] = record
+        if message := _order_fault(before, record, records[0].run):
+            yield _complaint(record, message)
+
+
+def _order_fault(before: StepRecord | None, record: StepRecord, run: str) -> str:
+    if record.run != run:
+        return f"belongs to run '{record.run}', the first record to '{run}'"
+    expected = before.seq + 1 if before else 0
+    if record.seq != expected:
+        return f"is numbered {record.seq}, expected {expected}"
+    if before and record.lamport <= before.lamport:
+        return f"logical time {record.lamport} does not follow {before.lamport}"
+    if before and record.time < before.time:
+        return f"time goes back from {before.time:g} s to {record.time:g} s"
+    return ""
+
+
+def _replayed(run: _Replay, records: tuple[StepRecord, ...]) -> Iterable[Complaint]:
+    """Advance along the records; yield the first complaint, if any."""
+    for record in records:
+        robot = run.robots.get(record.robot)
+        if robot is None:
+            yield _complaint(record, "no such robot in the behaviour")
+            return
+        step = _matching(run, robot, record)
+        if step is None:
+            yield _complaint(record, f"is {_shown(record)}, expected {_expected(run, robot)}")
+            return
+        if message := _too_short(run, robot, record):
+            yield _complaint(record, message)
+            return
+        _advance(run, robot, step, record)
+
+
+def _matching(run: _Replay, robot: _Robot, record: StepRecord) -> Step | None:
+    if record.label == "fault":
+        if robot.point.is_final or record.slot or record.move != _move_id(robot):
+            return None
+        return fault(robot.program, robot.point, record.detail)
+    for step in steps(robot.program, robot.point, run.active):
+        if (step.label, step.move, step.detail, step.slot) == (
+            record.label,
+            record.move,
+            record.detail,
+            record.slot,
+        ):
+            return step
+    return None
+
+
+def _too_short(run: _Replay, robot: _Robot, record: StepRecord) -> str:
+    if record.label != "end":
+        return ""
+    move = robot.program.moves[robot.point.move]
+    duration = move.attributes.get("duration")
+    if not move.is_a(HOLD_POSITION) or not isinstance(duration, int | float):
+        return ""
+    held = record.time - robot.began
+    return (
+        f"holds for {held:g} s, expected at least {duration:g} s" if held < duration - run.tolerance else ""
+    )
+
+
+def _advance(run: _Replay, robot: _Robot, step: Step, record: StepRecord) -> None:
+    if step.label == "begin":
+        robot.began = record.time
+    if step.label == "fault":
+        run.faults[record.robot] = record.detail
+    if step.sets and step.active:
+        run.active.update(step.sets)
+    elif step.sets:
+        run.active.difference_update(step.sets)
+    robot.point, robot.last = step.leads_to, record
+    run.steps += 1
+
+
+def _outcome(run: _Replay, state: State) -> Outcome:
+    if any(steps(robot.program, robot.point, state.active) for robot in run.robots.values()):
+        return Outcome.INCOMPLETE
+    if run.faults:
+        return Outcome.FAILED
+    done = all(robot.point.phase is Phase.DONE for robot in run.robots.values())
+    return Outcome.SUCCESS if done else Outcome.STUCK
+
+
+def _unfinished(run: _Replay) -> Iterable[Complaint]:
+    for robot in run.robots.values():
+        if not steps(robot.program, robot.point, run.active):
+            continue
+        message = f"log ends although the robot can go on: expected {_expected(run, robot)}"
+        if robot.last is None:
+            yield Complaint(robot.program.id, -1, "", message)
+        else:
+            yield _complaint(robot.last, message)
+
+
+def _complaint(record: StepRecord, message: str) -> Complaint:
+    return Complaint(record.robot, record.seq, record.move, message)
+
+
+def _move_id(robot: _Robot) -> str:
+    return robot.program.moves[robot.point.move].id
+
+
+def _expected(run: _Replay, robot: _Robot) -> str:
+    possible = steps(robot.program, robot.point, run.active)
+    if possible:
+        return " or ".join(map(_shown, possible))
+    if lacking := missing(robot.program, robot.point, run.active):
+        return f"no step before {', '.join(lacking)} {'is' if len(lacking) == 1 else 'are'} active"
+    return f"no step after it has {'finished' if robot.point.phase is Phase.DONE else 'failed'}"
+
+
+def _shown(step: StepRecord | Step) -> str:
+    parts = (step.label, step.detail, step.slot)
+    return " ".join(part for part in parts if part) + f" of '{step.move}'"

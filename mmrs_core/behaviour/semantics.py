@@ -1,0 +1,218 @@
+"""The step rules of the Behaviour Language as pure functions.
+
+Each robot is at a control point; a step of one robot leads it to its next point and may set slots.
+Steps of different robots interleave. Slots are latches: passing a wait leaves them as they are.
+All awaited slots are tested in one state, after the post-actions of the move. A Choice may go either
+way here; an interpreter asks its condition once, at the instant when it fires.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from dataclasses import dataclass
+from enum import Enum
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId, Transition
+
+NOTIFY = (BEHAVIOUR, "Notify")
+
+
+class Phase(Enum):
+    """How far a robot is with a move; the values of BEFORE and AFTER stand in the logs."""
+
+    BEFORE = "pre"
+    READY = "ready"
+    BUSY = "busy"
+    AFTER = "post"
+    OUT = "out"
+    DONE = "done"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A control point: the index of a move, how far the robot is with it, and at which action."""
+
+    move: int
+    phase: Phase
+    index: int = 0
+
+    @property
+    def is_final(self) -> bool:
+        """Return whether the robot makes no further step, whatever the others do."""
+        return self.phase is Phase.DONE or self.phase is Phase.FAILED
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step that a robot may make.
+
+    Attributes:
+        robot, label, move, detail, slot: as in `mmrs_core.behaviour.steps.StepRecord`.
+        leads_to: where the robot is afterwards.
+        sets: the slots that it sets to `active`; empty unless the label is ``ntf``.
+    """
+
+    robot: str
+    label: str
+    move: str
+    detail: str
+    slot: str
+    leads_to: Point
+    sets: tuple[SlotId, ...] = ()
+    active: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A robot that waits after a move, and the own slots that it lacks."""
+
+    robot: str
+    move: str
+    slots: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where all robots are, in the program's order, and which slots are active."""
+
+    points: tuple[Point, ...]
+    active: frozenset[SlotId] = frozenset()
+
+
+def initial(program: Program) -> State:
+    """Return the state in which every run begins."""
+    return State(tuple(entry(robot, robot.start) for robot in program.robots))
+
+
+def entry(robot: RobotProgram, move: int) -> Point:
+    """Return the first control point of a move."""
+    return Point(move, Phase.BEFORE if robot.moves[move].before else Phase.READY)
+
+
+def steps(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[Step, ...]:
+    """Return the steps that the robot may make; two only at a Choice, none if it waits or is final.
+
+    A fault may happen at any point and is not among them.
+    """
+    if point.phase is Phase.BEFORE or point.phase is Phase.AFTER:
+        return (_action_step(robot, point),)
+    if point.phase is Phase.READY:
+        return (_move_step(robot, "begin", point, Point(point.move, Phase.BUSY)),)
+    if point.phase is Phase.BUSY:
+        return (_move_step(robot, "end", point, _after_movement(robot, point.move)),)
+    if point.phase is Phase.OUT and not missing(robot, point, active):
+        return _ways_on(robot, point)
+    return ()
+
+
+def fault(robot: RobotProgram, point: Point, which: str) -> Step:
+    """Return the step by which a robot that is not at a final point stops for ever."""
+    return Step(robot.id, "fault", robot.moves[point.move].id, which, "", Point(point.move, Phase.FAILED))
+
+
+def missing(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[str, ...]:
+    """Return the names of the slots that hold the robot up at the end of a move; empty elsewhere."""
+    if point.phase is not Phase.OUT:
+        return ()
+    waits = robot.transitions[point.move].waits
+    return tuple(name for name in waits if (robot.id, name) not in active)
+
+
+def action_at(robot: RobotProgram, point: Point) -> Action | None:
+    """Return the action that the robot is about to do; None where it is about to do none."""
+    move = robot.moves[point.move]
+    if point.phase is Phase.BEFORE:
+        return move.before[point.index]
+    return move.after[point.index] if point.phase is Phase.AFTER else None
+
+
+def slot_text(action: Action) -> str:
+    """Return the slots that a notify sets as logs write them."""
+    names = " ".join(f"{robot}.{slot}" for robot, slot in action.sets)
+    return ("+" if action.active else "-") + names
+
+
+def enabled(program: Program, state: State) -> Iterator[Step]:
+    """Yield every step that some robot may make in that state."""
+    for robot, point in zip(program.robots, state.points, strict=True):
+        yield from steps(robot, point, state.active)
+
+
+def apply(program: Program, state: State, step: Step) -> State:
+    """Return the state after an enabled step."""
+    points = tuple(
+        step.leads_to if robot.id == step.robot else point
+        for robot, point in zip(program.robots, state.points, strict=True)
+    )
+    return State(points, frozenset(with_slots(state.active, step)))
+
+
+def with_slots(active: Set[SlotId], step: Step) -> Set[SlotId]:
+    """Return which slots are active after a step."""
+    if not step.sets:
+        return active
+    return active | set(step.sets) if step.active else active - set(step.sets)
+
+
+def waiting(program: Program, state: State) -> tuple[Waiting, ...]:
+    """Return the robots that wait in that state."""
+    return tuple(
+        Waiting(robot.id, robot.moves[point.move].id, lacking)
+        for robot, point in zip(program.robots, state.points, strict=True)
+        if (lacking := missing(robot, point, state.active))
+    )
+
+
+def is_success(state: State) -> bool:
+    """Return whether every robot has done all that it should."""
+    return all(point.phase is Phase.DONE for point in state.points)
+
+
+def is_deadlock(program: Program, state: State) -> bool:
+    """Return whether no step is possible any more although not every robot has come to its end."""
+    return not is_success(state) and next(enabled(program, state), None) is None
+
+
+def _action_step(robot: RobotProgram, point: Point) -> Step:
+    move = robot.moves[point.move]
+    before = point.phase is Phase.BEFORE
+    actions = move.before if before else move.after
+    action = actions[point.index]
+    if point.index + 1 < len(actions):
+        leads_to = Point(point.move, point.phase, point.index + 1)
+    else:
+        leads_to = Point(point.move, Phase.READY) if before else _out(robot, point.move)
+    detail = f"{point.phase.value}:{point.index}"
+    if action.is_a(NOTIFY):
+        return Step(robot.id, "ntf", move.id, detail, slot_text(action), leads_to, action.sets, action.active)
+    return Step(robot.id, "act", move.id, detail, "", leads_to)
+
+
+def _move_step(robot: RobotProgram, label: str, point: Point, leads_to: Point) -> Step:
+    return Step(robot.id, label, robot.moves[point.move].id, "", "", leads_to)
+
+
+def _after_movement(robot: RobotProgram, move: int) -> Point:
+    return Point(move, Phase.AFTER) if robot.moves[move].after else _out(robot, move)
+
+
+def _out(robot: RobotProgram, move: int) -> Point:
+    return Point(move, Phase.DONE if move == robot.stop else Phase.OUT)
+
+
+def _ways_on(robot: RobotProgram, point: Point) -> tuple[Step, ...]:
+    transition = robot.transitions[point.move]
+    move = robot.moves[point.move].id
+    if transition.otherwise is None:
+        next_move = robot.moves[transition.to].id
+        return (Step(robot.id, "take", move, next_move, "", entry(robot, transition.to)),)
+    return tuple(
+        Step(robot.id, "choose", move, detail, "", entry(robot, way))
+        for detail, way in (("true", transition.to), ("false", transition.otherwise))
+    )
+
+
+def transition_at(robot: RobotProgram, point: Point) -> Transition | None:
+    """Return the transition by which the robot leaves a move that it has done; None elsewhere."""
+    return robot.transitions[point.move] if point.phase is Phase.OUT else None

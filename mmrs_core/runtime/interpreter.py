@@ -1,0 +1,284 @@
+"""Runs behaviours: lets every robot make its steps as soon as it can, and drives its backend.
+
+One process may run all robots of a program or some of them; notifies go over the bus. The run jumps
+from event to event of the backends, robots of one instant step in the program's order, so that with
+simulated time the same input gives the same steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from math import inf
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.behaviour.semantics import Phase, Step, Waiting
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.execution import (
+    Backend,
+    Bus,
+    Clock,
+    CommandId,
+    Condition,
+    Fault,
+    SlotCommand,
+)
+from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.runtime.peers import Peers
+from mmrs_core.runtime.robot import RunningRobot
+from mmrs_core.scene import Policy
+
+PACE = 0.05
+"""Seconds between two looks at a backend, or a bus, that cannot say when to look again."""
+
+Observer = Callable[[StepRecord], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a run ended.
+
+    Attributes:
+        outcome: INCOMPLETE where a limit cut it off.
+        waiting: the robots that waited for slots that nobody can set any more, when that first
+            became certain; it stays when policies then end their waits by a fault.
+        faults: by robot.
+        unconfirmed: robots that did not confirm that they have stopped.
+        time: seconds of the run's clock.
+        steps: how many were made.
+    """
+
+    outcome: Outcome
+    waiting: tuple[Waiting, ...]
+    faults: Mapping[str, Fault]
+    unconfirmed: tuple[str, ...]
+    time: float
+    steps: int
+
+
+def interpret(
+    program: Program,
+    backends: Mapping[str, Backend],
+    *,
+    bus: Bus,
+    clock: Clock,
+    conditions: Mapping[str, Condition],
+    run: str = "run-0",
+    incarnation: str = "0",
+    policies: Mapping[str, tuple[Policy, ...]] | None = None,
+    observe: Callable[[StepRecord], None] | None = None,
+    seconds: float = inf,
+    steps: int = 1_000_000,
+) -> Generator[StepRecord, None, Ending]:
+    """Yield the steps of the robots that have a backend; return how the run ended.
+
+    A notify is yielded, and observed, before it is delivered. When the generator ends or is closed,
+    every robot that has not come to its end has been stopped.
+
+    Args:
+        program: of all robots, those of other processes included.
+        backends: by robot.
+        conditions: by identifier; all that Choices of these robots name.
+        run: identifier of the run.
+        incarnation: differs each time that these robots are started within a run.
+        policies: by robot: those of its type and kind, which go after the program's own.
+        observe: called with each step before it has an effect; a log, for example.
+        seconds: of the run's clock, after which it is cut off.
+        steps: number of them after which it is cut off, since a Choice can go round for ever.
+
+    Raises:
+        ValueError: if a backend is for a robot that the program does not have.
+        UnsupportedError: if a condition is unknown; lists all of them.
+    """
+    _refuse_unknown(program, backends, conditions)
+    robots = [
+        RunningRobot(robot, backends[robot.id], bus, conditions, (policies or {}).get(robot.id, ()))
+        for robot in program.robots
+        if robot.id in backends
+    ]
+    whole = len(robots) == len(program.robots)
+    return _Run(program, robots, bus, clock, run, incarnation, observe, seconds, steps, whole).go()
+
+
+def _refuse_unknown(
+    program: Program, backends: Mapping[str, Backend], conditions: Mapping[str, Condition]
+) -> None:
+    known = {robot.id for robot in program.robots}
+    for id in backends:
+        if id not in known:
+            raise ValueError(f"robot '{id}': not in the behaviour")
+    unknown = [
+        f"robot '{robot.id}', after move '{robot.moves[source].id}': condition '{transition.condition}'"
+        for robot in program.robots
+        if robot.id in backends
+        for source, transition in sorted(robot.transitions.items())
+        if transition.condition is not None and transition.condition not in conditions
+    ]
+    if unknown:
+        raise UnsupportedError(f"{len(unknown)} choices have conditions that nobody decides", unknown)
+
+
+class _Run:
+    def __init__(
+        self,
+        program: Program,
+        robots: list[RunningRobot],
+        bus: Bus,
+        clock: Clock,
+        run: str,
+        incarnation: str,
+        observe: Observer | None,
+        seconds: float,
+        steps: int,
+        whole: bool,
+    ) -> None:
+        self._robots, self._bus, self._clock = robots, bus, clock
+        self._by_id = {robot.id: order for order, robot in enumerate(robots)}
+        self._run, self._incarnation, self._observe = run, incarnation, observe
+        self._seconds, self._limit, self._whole = seconds, steps, whole
+        self._peers = Peers(program)
+        self._made = 0
+        self._ready = list(range(len(robots)))
+        self._wakes: list[tuple[float, int]] = []
+        self._deadlock: tuple[Waiting, ...] = ()
+        self._unconfirmed: list[str] = []
+
+    def go(self) -> Generator[StepRecord, None, Ending]:
+        try:
+            while True:
+                yield from self._settled()
+                if not self._deadlock and self._is_quiet():
+                    self._deadlock = self._waiting()
+                until = self._next_wake()
+                if self._made >= self._limit or until == inf or until > self._seconds:
+                    break
+                self._clock.sleep_until(until)
+                self._wake()
+        finally:
+            self._halt()
+        return self._ending()
+
+    def _settled(self) -> Iterator[StepRecord]:
+        """Make every step that is due now, the program's first robot first."""
+        while self._ready and self._made < self._limit:
+            order = heappop(self._ready)
+            while self._ready and self._ready[0] == order:
+                heappop(self._ready)
+            robot = self._robots[order]
+            yield from self._advanced(robot)
+            robot.wake = self._wake_time(robot)
+            if robot.wake < inf:
+                heappush(self._wakes, (robot.wake, order))
+
+    def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
+        while not robot.point.is_final and self._made < self._limit:
+            step = robot.due(self._clock.now(), self._peers)
+            if step is None:
+                return
+            yield from self._make(robot, step)
+
+    def _make(self, robot: RunningRobot, step: Step) -> Iterator[StepRecord]:
+        waits = robot.awaited() if step.label in ("take", "choose") else ()
+        clocks = (self._bus.state(slot).lamport for slot in (*step.sets, *waits))
+        robot.lamport = max((robot.lamport, *clocks)) + 1
+        record = self._record(robot, step)
+        if self._observe is not None:
+            self._observe(record)
+        yield record
+        self._bus.passed(waits, robot.lamport)
+        robot.follow(step)
+        self._made += 1
+        if step.label == "ntf":
+            self._deliver(robot, step, record.seq)
+        if robot.point.is_final:
+            self._retire(robot)
+
+    def _record(self, robot: RunningRobot, step: Step) -> StepRecord:
+        time = round(self._clock.now(), 6)
+        return StepRecord(
+            self._run,
+            robot.id,
+            robot.take_number(),
+            robot.lamport,
+            time,
+            step.label,
+            step.move,
+            step.detail,
+            step.slot,
+        )
+
+    def _deliver(self, robot: RunningRobot, step: Step, sequence: int) -> None:
+        id = CommandId(self._run, robot.id, self._incarnation, sequence)
+        try:
+            self._bus.notify(SlotCommand(id, step.sets, step.active, robot.lamport))
+        except LinkLostError as error:
+            robot.pending = Fault("PEER_LOST", str(error))
+        for owner, _ in step.sets:
+            if owner in self._by_id:
+                heappush(self._ready, self._by_id[owner])
+
+    def _retire(self, robot: RunningRobot) -> None:
+        """Note that a robot makes no further step, and have those look that may wait for it."""
+        self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
+        if robot.point.phase is Phase.FAILED:
+            self._stop(robot, robot.response)
+        for order, other in enumerate(self._robots):
+            if other.point.phase is Phase.OUT:
+                heappush(self._ready, order)
+
+    def _wake_time(self, robot: RunningRobot) -> float:
+        now = self._clock.now()
+        event = robot.next_event(now)
+        if event is None or event <= now:
+            event = now + PACE
+        if not self._whole and robot.point.phase is Phase.OUT:
+            event = min(event, now + PACE)
+        return event
+
+    def _next_wake(self) -> float:
+        """Return when to look again; inf when the run has ended."""
+        if self._is_quiet() and not any(robot.deadline < inf for robot in self._robots if robot.is_waiting):
+            return inf
+        while self._wakes and self._robots[self._wakes[0][1]].wake != self._wakes[0][0]:
+            heappop(self._wakes)
+        return self._wakes[0][0] if self._wakes else inf
+
+    def _wake(self) -> None:
+        now = self._clock.now()
+        while self._wakes and self._wakes[0][0] <= now:
+            time, order = heappop(self._wakes)
+            if self._robots[order].wake == time:
+                heappush(self._ready, order)
+
+    def _is_quiet(self) -> bool:
+        """Return whether every robot is at its end or waits, so that no slot changes any more."""
+        return self._whole and all(robot.point.is_final or robot.is_waiting for robot in self._robots)
+
+    def _waiting(self) -> tuple[Waiting, ...]:
+        return tuple(
+            Waiting(robot.id, robot.move.id, robot.lacking) for robot in self._robots if robot.lacking
+        )
+
+    def _halt(self) -> None:
+        for robot in self._robots:
+            if not robot.point.is_final:
+                self._stop(robot, "HOLD")
+
+    def _stop(self, robot: RunningRobot, response: str) -> None:
+        try:
+            robot.backend.stop(self._clock.now(), response)
+        except LinkLostError:
+            self._unconfirmed.append(robot.id)
+
+    def _ending(self) -> Ending:
+        faults = {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
+        done = all(robot.point.phase is Phase.DONE for robot in self._robots)
+        if not self._is_quiet() and not all(robot.point.is_final for robot in self._robots):
+            outcome = Outcome.INCOMPLETE
+        else:
+            outcome = Outcome.FAILED if faults else Outcome.SUCCESS if done else Outcome.STUCK
+        return Ending(
+            outcome, self._deadlock, faults, tuple(self._unconfirmed), self._clock.now(), self._made
+        )

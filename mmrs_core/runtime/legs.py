@@ -1,0 +1,198 @@
+"""How a simulated robot gets along: straight legs, evenly travelled, and what they cost.
+
+Cost is counted in seconds at mean power. It grows by `CLIMBING` times the share of the largest climb
+rate that is used, and by the square of the headwind's share of the largest speed; a robot that holds
+its position has the whole wind against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import atan2, cos, degrees, hypot, inf, radians, sin, sqrt
+from typing import TypeAlias
+
+from mmrs_core.scene import Kinematics, Position
+
+CLIMBING = 0.3
+"""How much more power a robot takes when it climbs as fast as it can, as a part of the mean power."""
+
+Flow: TypeAlias = tuple[float, float]
+STILL: Flow = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A stretch of time in which a robot goes straight and evenly, or stays where it is.
+
+    Attributes:
+        begin, end: seconds of the run's clock; `end` may be inf.
+        start, finish: where it is then.
+        headings: degrees clockwise from north at both ends; it turns the shorter way round.
+        charge: seconds at mean power that its batteries hold at the beginning; inf: wired.
+        rate: seconds at mean power that it spends in one second.
+    """
+
+    begin: float
+    end: float
+    start: Position
+    finish: Position
+    headings: tuple[float, float]
+    charge: float
+    rate: float
+
+    @property
+    def speed(self) -> float:
+        """Return its speed in metres per second."""
+        way = hypot(*(b - a for a, b in zip(self.start, self.finish, strict=True)))
+        return way / (self.end - self.begin) if way > 0.0 else 0.0
+
+    @property
+    def empty_at(self) -> float:
+        """Return when the batteries would be empty; inf: never."""
+        return self.begin + self.charge / self.rate if self.rate > 0.0 else inf
+
+    def part(self, time: float) -> float:
+        """Return how much of the leg is behind at that time, 0 to 1."""
+        if self.end == inf:
+            return 0.0
+        return (
+            min(1.0, max(0.0, (time - self.begin) / (self.end - self.begin)))
+            if self.end > self.begin
+            else 1.0
+        )
+
+    def position(self, time: float) -> Position:
+        """Return where the robot is."""
+        part = self.part(time)
+        east, north, up = (a + part * (b - a) for a, b in zip(self.start, self.finish, strict=True))
+        return (east, north, up)
+
+    def heading(self, time: float) -> float:
+        """Return degrees clockwise from north, 0 to 360."""
+        first, last = self.headings
+        return (first + self.part(time) * turn(first, last)) % 360.0
+
+    def charge_at(self, time: float) -> float:
+        """Return the seconds at mean power that are left."""
+        spent = self.rate * (max(self.begin, time) - self.begin)
+        return max(0.0, self.charge - spent)
+
+    def until(self, time: float) -> Leg:
+        """Return the part of the leg before that time."""
+        return replace(
+            self,
+            end=max(self.begin, time),
+            finish=self.position(time),
+            headings=(self.headings[0], self.heading(time)),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A straight part of a path: where it begins and ends, seconds, and cost in a second."""
+
+    start: Position
+    finish: Position
+    seconds: float
+    rate: float
+
+
+def stretches(
+    path: tuple[Position, ...],
+    speed: float,
+    kinematics: Kinematics,
+    bounds: tuple[float, float],
+    *,
+    flow: Flow = STILL,
+    stops: int = 2,
+) -> tuple[Stretch, ...]:
+    """Return how a robot travels along a path; empty if the flow is too strong for it.
+
+    Args:
+        path: straight legs; one position: it stays there.
+        speed: commanded, over ground, metres per second.
+        kinematics: of the robot.
+        bounds: shortest and longest duration in still air or water, which its move kind declares.
+        flow: velocity of the air or water, east and north, metres per second.
+        stops: at how many ends of the path the robot stands still: accelerating takes time.
+    """
+    legs = tuple(pairwise(path)) or ((path[0], path[0]),)
+    nominal = [_leg_seconds(a, b, speed, kinematics) for a, b in legs]
+    whole = sum(nominal)
+    length = sum(hypot(*(y - x for x, y in zip(a, b, strict=True))) for a, b in legs)
+    wanted = whole + _acceleration_seconds(length, speed, kinematics.acceleration, stops)
+    seconds = min(max(wanted, bounds[0]), bounds[1])
+    found = []
+    for (start, finish), share in zip(legs, nominal, strict=True):
+        own = seconds * (share / whole if whole > 0.0 else 1.0 / len(legs))
+        slower = _slowed(start, finish, own, kinematics.fastest, flow)
+        if slower is None:
+            return ()
+        found.append(Stretch(start, finish, slower, cost(start, finish, slower, kinematics, flow)))
+    return tuple(found)
+
+
+def cost(start: Position, finish: Position, seconds: float, kinematics: Kinematics, flow: Flow) -> float:
+    """Return the power of a stretch as a multiple of the mean power."""
+    level = hypot(finish[0] - start[0], finish[1] - start[1])
+    if level > 0.0:
+        against = -((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
+    else:
+        against = hypot(*flow)
+    climb = (finish[2] - start[2]) / seconds if seconds > 0.0 else 0.0
+    climbing = CLIMBING * min(1.0, max(0.0, climb) / kinematics.climb) if kinematics.climb > 0.0 else 0.0
+    headwind = max(0.0, against) / kinematics.fastest if kinematics.fastest > 0.0 else 0.0
+    return 1.0 + climbing + headwind**2
+
+
+def bearing(start: Position, finish: Position) -> float | None:
+    """Return degrees clockwise from north; None straight up, straight down or on the spot."""
+    east, north = finish[0] - start[0], finish[1] - start[1]
+    return degrees(atan2(east, north)) % 360.0 if hypot(east, north) > 1e-9 else None
+
+
+def turn(first: float, last: float) -> float:
+    """Return the degrees to turn from one heading to another, clockwise positive, -180 to 180."""
+    return (last - first + 180.0) % 360.0 - 180.0
+
+
+def wind(environment: Mapping[str, float]) -> Flow:
+    """Return the velocity of the air, east and north; its direction is where it comes from."""
+    speed, direction = environment.get("windSpeed", 0.0), radians(environment.get("windDirection", 0.0))
+    return (-speed * sin(direction), -speed * cos(direction))
+
+
+def current(environment: Mapping[str, float]) -> Flow:
+    """Return the velocity of the water, east and north; its direction is where it goes to."""
+    speed, direction = environment.get("currentSpeed", 0.0), radians(environment.get("currentDirection", 0.0))
+    return (speed * sin(direction), speed * cos(direction))
+
+
+def _leg_seconds(start: Position, finish: Position, speed: float, kinematics: Kinematics) -> float:
+    level, rise = hypot(finish[0] - start[0], finish[1] - start[1]), finish[2] - start[2]
+    times = [(level, speed), (rise, kinematics.climb), (-rise, kinematics.descent)]
+    return (
+        max(way / pace if pace > 0.0 else inf for way, pace in times if way > 0.0) if level or rise else 0.0
+    )
+
+
+def _acceleration_seconds(length: float, speed: float, acceleration: float, stops: int) -> float:
+    """Return what `stops` standstills at the ends of a path cost against constant speed."""
+    if acceleration == inf or length <= 0.0 or speed <= 0.0 or stops == 0:
+        return 0.0
+    if length >= stops * speed**2 / (2.0 * acceleration):
+        return stops * speed / (2.0 * acceleration)
+    return sqrt(2.0 * stops * length / acceleration) - length / speed
+
+
+def _slowed(start: Position, finish: Position, seconds: float, fastest: float, flow: Flow) -> float | None:
+    """Return how long the stretch takes in the flow; None if the robot cannot make headway."""
+    level = hypot(finish[0] - start[0], finish[1] - start[1])
+    if flow == STILL or level <= 0.0 or seconds <= 0.0:
+        return seconds
+    along = ((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
+    inside = along**2 - flow[0] ** 2 - flow[1] ** 2 + fastest**2
+    largest = along + sqrt(inside) if inside >= 0.0 else 0.0
+    return max(seconds, level / largest) if largest > 1e-6 else None

@@ -1,0 +1,151 @@
+"""Whole runs: all robots of a behaviour with backends of one sort, from Start to the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, field
+from math import inf
+
+from mmrs_core.behaviour.policies import in_precedence
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.execution import BackendInput, Condition, RobotState, Sample
+from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.runtime.clock import SimulatedClock
+from mmrs_core.runtime.interpreter import Ending, interpret
+from mmrs_core.runtime.simulation import SimulatedRobot
+from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.scene import Area, Name, Part, Policy, RobotType
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What happened in a run.
+
+    Attributes:
+        records: the steps, in the order in which they were made.
+        ending: how it ended.
+        tracks: by robot, the way that it came; empty where the backend does not tell.
+        notes: what was taken for granted, each line with its robot.
+    """
+
+    records: tuple[StepRecord, ...]
+    ending: Ending
+    tracks: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def simulate(
+    program: Program,
+    *,
+    types: Mapping[str, RobotType],
+    robot_kinds: Mapping[Name, RobotKind],
+    move_kinds: Mapping[Name, MoveKind],
+    conditions: Mapping[str, Condition] | None = None,
+    environment: Mapping[str, float] | None = None,
+    areas: tuple[Area, ...] = (),
+    run: str = "run-0",
+    observe: Callable[[StepRecord], None] | None = None,
+    seconds: float = inf,
+    steps: int = 1_000_000,
+) -> Run:
+    """Return the simulated run of a behaviour; the same input gives the same run.
+
+    Args:
+        program: the behaviour.
+        types: robot types by name.
+        robot_kinds, move_kinds: by metaclass.
+        conditions: by identifier; see `assumed` for fixed answers.
+        environment: of the context, by attribute name; still air and water where it says nothing.
+        areas: of the context as drawn; robots flee to its emergency areas.
+        run: identifier of the run.
+        observe: called with each step before it has an effect, to write a log.
+        seconds, steps: after which the run is cut off.
+
+    Raises:
+        UnsupportedError: if a robot type is missing, or robots, moves, actions or conditions are of
+            kinds that nobody contributed; lists them.
+    """
+    policies = {robot.id: _policies(types, robot.type_name, robot_kinds) for robot in program.robots}
+    robots = {
+        robot.id: SimulatedRobot(
+            BackendInput(
+                program,
+                robot,
+                _type_of(types, robot.id, robot.type_name),
+                robot_kinds,
+                move_kinds,
+                environment or {},
+                {},
+                policies[robot.id],
+                areas,
+            )
+        )
+        for robot in program.robots
+    }
+    made: list[StepRecord] = []
+    ending = _collected(
+        interpret(
+            program,
+            robots,
+            bus=InProcessBus(program),
+            clock=SimulatedClock(),
+            conditions=conditions or {},
+            run=run,
+            policies=policies,
+            observe=observe,
+            seconds=seconds,
+            steps=steps,
+        ),
+        made,
+    )
+    tracks = {id: robot.track() for id, robot in robots.items()}
+    notes = tuple(f"robot '{id}', {note}" for id, robot in robots.items() for note in robot.notes)
+    return Run(tuple(made), ending, tracks, notes)
+
+
+def assumed(answers: Mapping[str, bool]) -> dict[str, Condition]:
+    """Return conditions that always hold, or never, by identifier."""
+    return {identifier: Condition(identifier, _always(holds)) for identifier, holds in answers.items()}
+
+
+def type_policies(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> tuple[Policy, ...]:
+    """Return the policies of a robot type, then those of its kind."""
+    declared = robot_type.part.attributes.get("policies")
+    parts = declared if isinstance(declared, tuple) else ()
+    kind = robot_kind_of(robot_type, kinds)
+    own = [_policy(part) for part in parts if isinstance(part, Part)]
+    return in_precedence(robot_type=own, kind=kind.policies if kind else None)
+
+
+def _always(holds: bool) -> Callable[[RobotState], bool]:
+    return lambda state: holds
+
+
+def _policy(part: Part) -> Policy:
+    event, response, after = (part.attributes.get(name) for name in ("event", "response", "after"))
+    return Policy(event, response, after)  # type: ignore[arg-type]  # literals by the metamodel
+
+
+def _policies(
+    types: Mapping[str, RobotType], name: str, kinds: Mapping[Name, RobotKind]
+) -> tuple[Policy, ...]:
+    return type_policies(types[name], kinds) if name in types else ()
+
+
+def _type_of(types: Mapping[str, RobotType], robot: str, name: str) -> RobotType:
+    if name not in types:
+        raise UnsupportedError(
+            f"robot '{robot}': type '{name}' is not known", [f"robot '{robot}': type '{name}'"]
+        )
+    return types[name]
+
+
+def _collected(steps: Generator[StepRecord, None, Ending], made: list[StepRecord]) -> Ending:
+    while True:
+        try:
+            made.append(next(steps))
+        except StopIteration as stop:
+            ending: Ending = stop.value
+            return ending

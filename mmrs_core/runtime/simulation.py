@@ -1,0 +1,353 @@
+"""The kinematic simulation: a backend that moves a robot as its kind and its moves' kinds say.
+
+A robot follows the path of each move at the commanded speed, in the time that the move kind declares;
+wind and current slow it down where it would have to be faster than it can. Its batteries fall by mean
+power and time, faster in a climb and against the wind (`mmrs_core.runtime.legs`); on the ground, a
+robot that flies takes nothing. Holding a position in more wind than the type's `positionHold` is a
+fault. An object whose place nobody knows is taken to be where the robot looks for it.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from math import hypot, inf
+
+from mmrs_core.behaviour.as_scene import robot_of, scene_of
+from mmrs_core.behaviour.policies import in_precedence, response_to
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
+from mmrs_core.behaviour.semantics import NOTIFY
+from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState, Sample
+from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.runtime.escape import escape_path
+from mmrs_core.runtime.legs import (
+    STILL,
+    Leg,
+    Stretch,
+    bearing,
+    cost,
+    current,
+    stretches,
+    turn,
+    wind,
+)
+from mmrs_core.scene import Kinematics, Position
+
+DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
+FEEDBACK = (BEHAVIOUR, "Feedback")
+RECHARGE = (BEHAVIOUR, "Recharge")
+STOP = (BEHAVIOUR, "Stop")
+
+SLACK = 1e-6
+"""Seconds, and seconds at mean power, that rounding may cost."""
+
+
+class SimulatedRobot:
+    """A robot that exists only here.
+
+    Attributes:
+        notes: what the simulation took for granted, for people.
+    """
+
+    def __init__(self, given: BackendInput) -> None:
+        """Put a robot at its home, with full batteries.
+
+        Raises:
+            UnsupportedError: if nobody contributed what moves its robot, or one of its moves or
+                actions; lists them.
+            ValueError: if an option is given: there are none.
+        """
+        if given.options:
+            raise ValueError(f"option '{sorted(given.options)[0]}': the simulation has none of that name")
+        self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
+        self._kinematics = _kinematics(given)
+        self._kinds = _move_kinds(given)
+        self._capacity = _capacity(self._kinematics)
+        self._policies = in_precedence(given.robot.policies, given.policies)
+        self.notes: list[str] = []
+        self._grounded, self._done, self._halted, self._rolling = True, False, False, False
+        self._move: Move | None = None
+        self._fault: Fault | None = None
+        home = self._robot.home
+        self._legs = [Leg(0.0, 0.0, home, home, (0.0, 0.0), self._capacity, 0.0)]
+        self._first = 0
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement."""
+        self._catch_up(now)
+        self._move = move
+        kind = self._kinds[move.id]
+        if kind.leaves in ("airborne", "moving"):
+            self._grounded = False
+        here = self._legs[-1].finish
+        path = kind.path(move, here, self._given.robot.home)
+        if path is None:
+            self.notes.append(f"move '{move.id}': object taken to be where the robot looks for it")
+            path = (here,)
+        self._travel(move, kind, path, now, through)
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin a device or feedback action; a device that the type does not have stays silent."""
+        self._catch_up(now)
+        seconds = 0.0
+        if action.is_a(DEVICE_ACTION):
+            device = self._given.type.devices.get(action.device)
+            supported = device.actions.get(action.name) if device else None
+            if supported is None:
+                self._fault = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
+                return
+            seconds = supported.duration
+        self._stay(now, seconds)
+
+    def wait(self, now: float) -> None:
+        """Hold the pose; energy goes on falling."""
+        self._catch_up(now)
+        self._stay(now, inf)
+
+    def finished(self, now: float) -> bool:
+        """Return whether the movement or action has finished."""
+        if self._legs[-1].end > now + SLACK:
+            return False
+        if self._move is not None:
+            self._arrive(self._move)
+            self._move = None
+        return True
+
+    def fault(self, now: float) -> Fault | None:
+        """Return a battery that is empty or low, too much wind, or a silent device."""
+        leg = self._leg(now)
+        if leg.rate > 0.0 and leg.charge_at(now) <= SLACK:
+            return Fault("BATTERY_EMPTY", f"after {now - self._legs[0].begin:.0f} s")
+        if self._fault is not None:
+            return self._fault
+        if leg.rate > 0.0 and self._reserve_left(leg, now) <= SLACK:
+            return Fault("BATTERY_LOW", f"{leg.charge_at(now):.0f} s left")
+        return None
+
+    def next_event(self, now: float) -> float | None:
+        """Return when the movement ends or something goes wrong."""
+        if self._fault is not None:
+            return now
+        pending = self._legs[self._leg_index(now) :]
+        events = [self._legs[-1].end]
+        for leg in pending:
+            if leg.empty_at <= leg.end:
+                events.append(leg.empty_at)
+            if (low := self._low_at(leg, now)) is not None:
+                events.append(low)
+        return min((event for event in events if event > now), default=inf)
+
+    def state(self, now: float) -> RobotState:
+        """Return where the robot is."""
+        leg = self._leg(now)
+        speed = leg.speed if now < leg.end else 0.0
+        return RobotState(now, leg.position(now), speed, leg.heading(now), self._energy(leg.charge_at(now)))
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Do what a fault's response says, from wherever the robot is; only the first call counts."""
+        if self._halted:
+            return
+        self._catch_up(now)
+        self._halted, self._move, self._fault = True, None, None
+        path = escape_path(response, self._legs[-1].finish, self._robot.home, self._given)
+        if self._legs[-1].charge_at(now) <= SLACK or len(path) < 2:
+            return
+        self._append(
+            stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=self._flow()), now
+        )
+        self._cut_where_empty()
+
+    def track(self) -> tuple[Sample, ...]:
+        """Return the way that the robot has come, in order of time."""
+        samples: list[Sample] = []
+        for leg in self._legs:
+            end = leg.end if leg.end < inf else leg.begin
+            for time, position in ((leg.begin, leg.start), (end, leg.finish)):
+                sample = Sample(time, *position, self._energy(leg.charge_at(time)))
+                if not samples or samples[-1] != sample:
+                    samples.append(sample)
+        return tuple(samples)
+
+    def _travel(
+        self, move: Move, kind: MoveKind, path: tuple[Position, ...], now: float, through: bool
+    ) -> None:
+        kinematics = self._kinematics
+        bounds = kind.seconds(move, path, kinematics, self._robot.travel_mode)
+        speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
+        stops = 2 - self._rolling - through
+        self._rolling = through
+        found = stretches(path, speed, kinematics, bounds, flow=self._flow(), stops=stops)
+        if not found:
+            self._fault = Fault("WIND", "too strong to make headway")
+            return
+        if len(path) == 1:
+            found = (self._turning(move, found[0], bounds),)
+        self._append(found, now, move.heading, free=move.is_a(RECHARGE))
+        if all(bearing(each.start, each.finish) is None for each in found):
+            self._hold_against_wind(sum(each.seconds for each in found))
+
+    def _turning(self, move: Move, stretch: Stretch, bounds: tuple[float, float]) -> Stretch:
+        """Return a stay on the spot, as long as a turn to the move's heading takes at least."""
+        goal = self._aim(move.heading, stretch.finish)
+        if goal is None:
+            return stretch
+        seconds = abs(turn(self._legs[-1].headings[1], goal)) / self._kinematics.turn_rate
+        seconds = min(max(seconds, bounds[0]), bounds[1])
+        return Stretch(stretch.start, stretch.finish, seconds, stretch.rate)
+
+    def _append(
+        self, found: tuple[Stretch, ...], now: float, look: Heading | None = None, *, free: bool = False
+    ) -> None:
+        self._first = len(self._legs)
+        begin = now
+        for each in found:
+            last = self._legs[-1]
+            heading = self._aim(look, each.finish)
+            if heading is None:
+                heading = bearing(each.start, each.finish)
+            goal = last.headings[1] if heading is None else heading
+            first = last.headings[1] if each.start == each.finish else goal
+            rate = 0.0 if free or self._costs_nothing() else each.rate
+            charge = last.charge_at(last.end if last.end < inf else begin)
+            end = begin + each.seconds
+            self._legs.append(Leg(begin, end, each.start, each.finish, (first, goal), charge, rate))
+            begin = end
+
+    def _stay(self, now: float, seconds: float) -> None:
+        here = self._legs[-1].finish
+        rate = cost(here, here, seconds, self._kinematics, self._flow())
+        self._append((Stretch(here, here, seconds, rate),), now)
+        self._rolling = False
+        self._hold_against_wind(seconds)
+
+    def _arrive(self, move: Move) -> None:
+        if self._kinds[move.id].leaves == "grounded":
+            self._grounded = True
+        if move.is_a(STOP):
+            self._done = True
+        if move.is_a(RECHARGE):
+            last = self._legs[-1]
+            self._legs.append(
+                Leg(
+                    last.end, last.end, last.finish, last.finish, (last.headings[1],) * 2, self._capacity, 0.0
+                )
+            )
+
+    def _catch_up(self, now: float) -> None:
+        """End what is going on at this time, or fill the time since it ended."""
+        while len(self._legs) > 1 and self._legs[-1].begin > now:
+            self._legs.pop()
+        last = self._legs[-1]
+        if last.end > now:
+            self._legs[-1] = last.until(now)
+        elif last.end < now:
+            here = last.finish
+            self._append((Stretch(here, here, now - last.end, 1.0),), last.end)
+
+    def _leg_index(self, now: float) -> int:
+        index = bisect_right(
+            self._legs, now, lo=min(self._first, len(self._legs) - 1), key=lambda leg: leg.begin
+        )
+        return max(0, index - 1)
+
+    def _leg(self, now: float) -> Leg:
+        return self._legs[self._leg_index(now)]
+
+    def _aim(self, look: Heading | None, position: Position) -> float | None:
+        if look is None or look.target.position is None:
+            return None
+        direction = bearing(position, look.target.position)
+        return None if direction is None else (direction - look.angle_degrees) % 360.0
+
+    def _flow(self) -> tuple[float, float]:
+        """Return the velocity of what the robot moves in: the air, the water, or neither."""
+        if self._kinematics.launches:
+            return STILL if self._grounded else wind(self._given.environment)
+        under_water = self._legs[-1].finish[2] < self._given.program.frame.surface
+        afloat = self._kinematics.ceiling <= self._given.program.frame.surface
+        return current(self._given.environment) if under_water or afloat else STILL
+
+    def _costs_nothing(self) -> bool:
+        return self._done or (self._kinematics.launches and self._grounded)
+
+    def _hold_against_wind(self, seconds: float) -> None:
+        limit = self._given.type.part.attributes.get("positionHold")
+        flow = hypot(*self._flow())
+        if isinstance(limit, int | float) and self._kinematics.launches and seconds > 0.0 and flow > limit:
+            self._fault = Fault("WIND", f"{flow:g} m/s, but the robot holds its position up to {limit:g} m/s")
+
+    def _energy(self, charge: float) -> float | None:
+        if charge == inf:
+            return inf
+        return charge * self._kinematics.power if self._kinematics.power > 0.0 else None
+
+    def _reserve_left(self, leg: Leg, time: float) -> float:
+        """Return the seconds left beyond what the response to a low battery takes; inf: no response."""
+        response = response_to("BATTERY_LOW", self._policies)
+        if response in ("HOLD", "CONTINUE", "STOP_THRUST"):
+            return inf
+        path = escape_path(response, leg.position(time), self._robot.home, self._given)
+        back = stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=self._flow())
+        return leg.charge_at(time) - sum(each.seconds * each.rate for each in back)
+
+    def _low_at(self, leg: Leg, now: float) -> float | None:
+        """Return when in this leg the battery gets low, by bisection; None: not in it."""
+        early, late = max(leg.begin, now), min(leg.end, leg.empty_at)
+        if leg.rate <= 0.0 or late == inf or self._reserve_left(leg, late) > 0.0:
+            return None
+        while late - early > SLACK:
+            middle = (early + late) / 2.0
+            early, late = (middle, late) if self._reserve_left(leg, middle) > 0.0 else (early, middle)
+        return late
+
+    def _cut_where_empty(self) -> None:
+        for index in range(self._first, len(self._legs)):
+            if self._legs[index].empty_at < self._legs[index].end:
+                self._legs[index:] = [self._legs[index].until(self._legs[index].empty_at)]
+                return
+
+
+def _kinematics(given: BackendInput) -> Kinematics:
+    kind = robot_kind_of(given.type, given.robot_kinds)
+    if kind is None:
+        raise UnsupportedError(
+            f"robot '{given.robot.id}': nobody contributed how type '{given.type.name}' moves"
+        )
+    types = {robot.type_name: given.type for robot in given.program.robots}
+    scene = scene_of(given.program, types, environment=given.environment, reserve=0.0)
+    return kind.kinematics(scene.robot(given.robot.id), scene)
+
+
+def _move_kinds(given: BackendInput) -> dict[str, MoveKind]:
+    """Return the kind of every move; a move or action that nobody knows is refused, never skipped."""
+    kinds: dict[str, MoveKind] = {}
+    unknown: list[str] = []
+    for move in given.robot.moves:
+        name = most_specific(move.metaclasses, given.move_kinds)
+        if name is None:
+            unknown.append(f"robot '{given.robot.id}', move '{move.id}': {move.kind}")
+        else:
+            kinds[move.id] = given.move_kinds[name]
+        for action in (*move.before, *move.after):
+            if not any(action.is_a(known) for known in (DEVICE_ACTION, FEEDBACK, NOTIFY)):
+                unknown.append(
+                    f"robot '{given.robot.id}', move '{move.id}': action {action.metaclasses[0][1]}"
+                )
+    if unknown:
+        raise UnsupportedError(f"robot '{given.robot.id}': moves or actions of unknown kinds", unknown)
+    return kinds
+
+
+def _capacity(kinematics: Kinematics) -> float:
+    """Return for how many seconds at mean power full batteries last."""
+    if kinematics.endurance < inf:
+        return kinematics.endurance
+    return kinematics.energy / kinematics.power if kinematics.power > 0.0 else inf
+
+
+SIMULATION = BackendFactory(
+    name="simulation",
+    description="moves robots in simulated time, without dynamics",
+    connect=SimulatedRobot,
+    simulated=True,
+)
