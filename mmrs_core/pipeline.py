@@ -5,7 +5,7 @@ Stages print nothing, read no clock and no environment; only `write` and `save` 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from mmrs_core.errors import InvalidModelError, UnsupportedError
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
+    from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
@@ -140,7 +141,7 @@ def program_of(behaviour: bl.Behaviour, contributions: Contributions) -> Program
 
 def verify(program: Program, place: Place, contributions: Contributions) -> tuple[Verdict, ...]:
     """Return what is known of every property of a behaviour."""
-    from mmrs_core.analysis.verdicts import verify as verified
+    from mmrs_core.analysis.verification import verify as verified
     from mmrs_core.contributions.checks import CheckInput
 
     given = CheckInput(
@@ -159,9 +160,9 @@ def verify(program: Program, place: Place, contributions: Contributions) -> tupl
 
 def refusals(verdicts: Iterable[Verdict], program: Program) -> tuple[Verdict, ...]:
     """Return the verdicts that stand against a behaviour: violations, and unknowns nobody accepted."""
-    from mmrs_core.analysis.verdicts import refusing
+    from mmrs_core.analysis.verification import refuses
 
-    return refusing(verdicts, program.accepted_unknowns)
+    return refuses(verdicts, program.accepted_unknowns)
 
 
 def render(
@@ -191,7 +192,6 @@ def render(
         move_kinds=contributions.move_kinds,
         areas=place.areas or (),
         policies=policies,
-        position_error=program.position_error,
     )
     return rendered(contributions.targets[target], given, allow_lossy=allow_lossy)
 
@@ -210,8 +210,22 @@ def save(behaviour: bl.Behaviour, path: Path, contributions: Contributions) -> N
     write_model((behaviour,), path, contributions.languages)
 
 
-def simulate(program: Program, place: Place, contributions: Contributions, *, run: str = "run-0") -> Run:
-    """Return the simulated run of a behaviour in still air unless the environment says otherwise."""
+def simulate(
+    program: Program,
+    place: Place,
+    contributions: Contributions,
+    *,
+    run: str = "run-0",
+    assume: Mapping[str, bool] | None = None,
+    observe: Callable[[StepRecord], None] | None = None,
+) -> Run:
+    """Return the simulated run of a behaviour, in still air and water unless the environment says otherwise.
+
+    Args:
+        assume: fixed answers by condition identifier, which go before contributed conditions.
+        observe: called with each step before it has an effect, to write a log.
+    """
+    from mmrs_core.runtime.run import assumed
     from mmrs_core.runtime.run import simulate as simulated
 
     return simulated(
@@ -219,7 +233,9 @@ def simulate(program: Program, place: Place, contributions: Contributions, *, ru
         types=place.types,
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
-        conditions=contributions.conditions,
-        environment=place.environment or {},
+        conditions={**contributions.conditions, **assumed(assume or {})},
+        environment=place.environment,
+        areas=place.areas or (),
         run=run,
+        observe=observe,
     )

@@ -8,6 +8,7 @@ piece after the other, recharging in between. Missions of the wild sort promise 
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import hypot
 from random import Random
 
@@ -49,8 +50,8 @@ class Maker:
         self.far = 0.0
         self.inside: list[tuple[float, float, float]] = []
 
-    def make(self, namespace: str, name: str, **features):
-        return self.registry.create(namespace, name, **features)
+    def make(self, namespace: str, metaclass: str, /, **features):
+        return self.registry.create(namespace, metaclass, **features)
 
     def point(self, x: float, y: float, z: float = 0.0):
         self.far = max(self.far, hypot(x, y))
@@ -160,7 +161,7 @@ class Maker:
 
     def _dependencies(self, tasks):
         if len(tasks) < 3 or self.random.random() < 0.3:
-            pairs = [(a, b) for a, b in zip(tasks, tasks[1:], strict=False) if self.random.random() < 0.3]
+            pairs = [(a, b) for a, b in pairwise(tasks) if self.random.random() < 0.3]
         else:
             fork = self.make(MISSION, "Fork", name="fork")
             join = self.make(MISSION, "Join", name="join")

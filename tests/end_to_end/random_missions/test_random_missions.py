@@ -1,0 +1,30 @@
+"""Random missions through the whole chain: nothing unsafe comes out, nothing solvable is refused."""
+
+from collections import Counter
+
+import pytest
+from mission_generator.outcome import outcome_of
+
+BATCH = 10
+
+
+def check(first, contributions, tmp_path):
+    outcomes = [outcome_of(seed, contributions, tmp_path / str(seed)) for seed in range(first, first + BATCH)]
+    tally = Counter(
+        ("solvable, " if outcome.solvable else "wild, ") + ("refused" if outcome.refused else "planned")
+        for outcome in outcomes
+    )
+    print(f"seeds {first} to {first + BATCH - 1}: {dict(sorted(tally.items()))}")
+    assert {o.seed: o.complaints for o in outcomes if o.complaints} == {}
+    assert {o.seed: o.refused for o in outcomes if o.solvable and o.refused} == {}
+
+
+@pytest.mark.parametrize("first", range(0, 100, BATCH))
+def test_behaviours_pass_and_solvable_missions_are_not_refused(first, contributions, tmp_path):
+    check(first, contributions, tmp_path)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("first", range(100, 1000, BATCH))
+def test_a_thousand_behaviours_pass_and_solvable_missions_are_not_refused(first, contributions, tmp_path):
+    check(first, contributions, tmp_path)

@@ -1,0 +1,67 @@
+"""Built wheels carry everything they need: they run from another directory without the checkout."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROJECTS = (ROOT, *(folder.parent for folder in sorted(ROOT.glob("plugins/*/pyproject.toml"))))
+
+QUESTION = """
+import json, sys
+import mmrs_core
+from mmrs_core.plugins import load_plugins
+from mmrs_core.resources import shipped
+contributions = load_plugins().contributions
+print(json.dumps({
+    "core": mmrs_core.__file__,
+    "packages": sorted(package.ns_uri for package in contributions.languages.packages),
+    "examples": sorted(folder.name for folder in shipped("examples").iterdir() if folder.is_dir()),
+    "templates": sorted(str(target.templates) for target in contributions.targets.values()),
+    "missing": [str(t.templates) for t in contributions.targets.values() if not t.templates.is_dir()],
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Return a folder in which the wheels of the core and of every plug-in are installed."""
+    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
+    offline = ["--no-deps", "--no-build-isolation", "--no-index"]
+    for project in PROJECTS:
+        subprocess.run([*pip, "wheel", *offline, "--wheel-dir", wheels, project], check=True)
+    built = sorted(wheels.glob("*.whl"))
+    assert len(built) == len(PROJECTS)
+    subprocess.run([*pip, "install", "--no-deps", "--no-index", "--target", site, *built], check=True)
+    return site
+
+
+def run(site, directory, *command):
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    return subprocess.run(
+        [sys.executable, *command], cwd=directory, env=environment, capture_output=True, text=True, check=True
+    ).stdout
+
+
+def test_wheels_find_their_metamodels_templates_and_examples(site, tmp_path):
+    found = json.loads(run(site, tmp_path, "-c", QUESTION))
+    assert Path(found["core"]).is_relative_to(site)
+    assert {f"urn:mmrs:{name}:1.0" for name in ("mission", "context", "robot", "behaviour")} <= set(
+        found["packages"]
+    )
+    assert {"urn:mmrs:multicopter:1.0", "urn:mmrs:auv:1.0", "urn:mmrs:survey:1.0"} <= set(found["packages"])
+    assert "carbon-dioxide" in found["examples"]
+    assert found["templates"]
+    assert all(Path(folder).is_relative_to(site) for folder in found["templates"])
+    assert found["missing"] == []
+
+
+def test_an_installed_example_validates_from_another_directory(site, tmp_path):
+    example = site / "mmrs_core" / "_shipped" / "examples" / "carbon-dioxide"
+    out = run(site, tmp_path, "-m", "mmrs_core", "validate", str(example))
+    assert "0 errors" in out

@@ -1,0 +1,186 @@
+"""What the whole chain makes of a random mission, judged by code that shares nothing with it."""
+
+import time
+from collections import defaultdict
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+import shapely
+
+from mission_generator.missions import sample
+from mmrs_core import pipeline
+from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.errors import InfeasibleError, InvalidModelError
+from mmrs_core.languages.writing import write_model
+
+GRID = 1e-6
+NEAR = 1e-3
+"""Metres by which a track may come nearer than allowed: the rounding of coordinates in a file."""
+
+
+@dataclass
+class Outcome:
+    """What became of one mission.
+
+    `refused` is why it was refused, empty if it was not. `complaints` are broken promises.
+    `coverage` is the share of each polygon task's target that was covered.
+    """
+
+    seed: int
+    solvable: bool
+    refused: str = ""
+    complaints: list[str] = field(default_factory=list)
+    coverage: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+    makespan: float = 0.0
+
+
+def outcome_of(seed, contributions, folder):
+    """Return what becomes of the random mission of that seed; its files are written to the folder."""
+    made = sample(seed, contributions.languages)
+    outcome = Outcome(seed, made.witness is not None)
+    started = time.process_time()
+    write_project(made, contributions.languages, folder)
+    try:
+        _carry_out(folder, contributions, outcome)
+    except InvalidModelError as error:
+        outcome.refused = "; ".join(f"{fault.code} {fault.message}" for fault in error.diagnostics)
+    except InfeasibleError as error:
+        outcome.refused = "; ".join(error.reasons)
+    outcome.seconds = time.process_time() - started
+    return outcome
+
+
+def write_project(made, registry, folder):
+    """Write mission, context and robot types as a project folder."""
+    (folder / "robots").mkdir(parents=True, exist_ok=True)
+    write_model((made.mission,), folder / "mission.xmi", registry)
+    write_model((made.context,), folder / "context.xmi", registry)
+    for name, robot in made.robots.items():
+        write_model((robot,), folder / "robots" / f"{name}.xmi", registry)
+
+
+def _carry_out(folder, contributions, outcome):
+    models, _ = pipeline.valid_models(folder, contributions)
+    scene = pipeline.expand(pipeline.ground(models), contributions)
+    plan = pipeline.plan(scene)
+    behaviour, _ = pipeline.transform(scene, plan, contributions)
+    pipeline.save(behaviour, folder / "behaviour.xmi", contributions)
+    program = pipeline.program_of(behaviour, contributions)
+    place = pipeline.place_of_scene(scene)
+    against = pipeline.refusals(pipeline.verify(program, place, contributions), program)
+    outcome.complaints += [f"verify: {verdict}" for verdict in against]
+    run = pipeline.simulate(program, place, contributions)
+    replayed = replay(program, run.records)
+    if not replayed.ok:
+        outcome.complaints.append(f"replay: {replayed}")
+    outcome.makespan = run.ending.time
+    outcome.complaints += list(_intrusions(scene, run.tracks))
+    outcome.coverage = dict(_coverage(scene, program))
+    for task, share in outcome.coverage.items():
+        if share < 0.999:
+            outcome.complaints.append(f"coverage of '{task}': {share:.5f}")
+
+
+def _intrusions(scene, tracks):
+    """Yield where a track comes nearer to an area than allowed, by distances in the plane.
+
+    Below and above an obstacle the vertical distance alone is looked at, which is never more than
+    what was asked for.
+    """
+    areas = list(scene.kept_from())
+    for name, track in tracks.items():
+        own = scene.robot(name).clearance
+        points = np.array([sample.position for sample in track])
+        for area in areas:
+            keep = own + area.safety_distance
+            low, high = area.low - keep + NEAR, area.high + keep - NEAR
+            shape = shapely.Polygon(area.shell)
+            near = _parts_between(points, low, high)
+            distances = shapely.distance(shape, near) if len(near) else np.array([inf])
+            if distances.min() < keep - NEAR:
+                yield f"track of '{name}' comes to {distances.min():.3f} m of '{area.name}', not {keep:.3f} m"
+
+
+def _parts_between(points, low, high):
+    """Return the parts of a track between two heights as lines in the plane."""
+    starts, ends = points[:-1], points[1:]
+    rise = ends[:, 2] - starts[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        to_low, to_high = (low - starts[:, 2]) / rise, (high - starts[:, 2]) / rise
+    flat = rise == 0
+    inside = (starts[:, 2] > low) & (starts[:, 2] < high)
+    enter = np.where(flat, np.where(inside, 0.0, 2.0), np.clip(np.fmin(to_low, to_high), 0.0, None))
+    leave = np.where(flat, np.where(inside, 1.0, -1.0), np.clip(np.fmax(to_low, to_high), None, 1.0))
+    kept = enter < leave
+    begin = starts[kept, :2] + (ends - starts)[kept, :2] * enter[kept, None]
+    end = starts[kept, :2] + (ends - starts)[kept, :2] * leave[kept, None]
+    return shapely.linestrings(np.stack([begin, end], axis=1)) if kept.any() else np.array([])
+
+
+def _coverage(scene, program):
+    """Yield each polygon task's name and the share of its target that lies in footprints."""
+    prints = defaultdict(list)
+    robots = defaultdict(set)
+    for robot in program.robots:
+        for task, shape in _footprints(scene, robot):
+            prints[task].append(shape)
+            robots[task].add(robot.id)
+    for task in scene.tasks:
+        if "shell" in task.part.attributes and ("gridResolution" in task.part.attributes):
+            if not robots[task.name]:
+                yield task.name, 0.0
+                continue
+            target = _target(scene, task, robots[task.name])
+            covered = shapely.union_all(prints[task.name], grid_size=GRID)
+            common = shapely.intersection(target, covered, grid_size=GRID)
+            yield task.name, common.area / target.area if target.area else 1.0
+
+
+def _target(scene, task, robots):
+    """Return shell minus holes minus all that is too near to an area at the task's height."""
+    attributes = task.part.attributes
+    shell = [point[:2] for point in attributes["shell"]]
+    holes = [[point[:2] for point in ring.attributes["points"]] for ring in attributes["holes"]]
+    target = shapely.Polygon(shell, holes)
+    own = max(scene.robot(name).clearance for name in robots)
+    for area in scene.kept_from():
+        keep = own + area.safety_distance
+        if area.low - keep < attributes["altitude"] < area.high + keep:
+            target = target.difference(shapely.Polygon(area.shell).buffer(keep, quad_segs=64))
+    return target
+
+
+def _footprints(scene, robot):
+    """Yield the task and the ground rectangle of each photo, laid along the way the robot flies."""
+    home = robot.home
+    places = [home]
+    for move in robot.moves:
+        here = places[-1]
+        end = move.target.position if move.target and move.target.position else here
+        photos = [*((a, here) for a in move.before), *((a, end) for a in move.after)]
+        for action, at in photos:
+            if action.is_a((BEHAVIOUR, "DeviceAction")) and action.name == "TakePicture":
+                shape = _rectangle(scene.task(move.task).part.attributes, at, here, end)
+                if shape is not None:
+                    yield move.task, shape
+        places.append(end)
+
+
+def _rectangle(attributes, at, here, end):
+    if "shell" not in attributes:
+        return None
+    grid = attributes.get("gridResolution")
+    width = attributes.get("footprintWidth") or grid
+    length = attributes.get("footprintLength") or grid
+    way = np.array(end[:2]) - np.array(here[:2])
+    norm = np.hypot(*way)
+    along = way / norm if norm > 0 else np.array([1.0, 0.0])
+    across = np.array([-along[1], along[0]])
+    corners = [
+        np.array(at[:2]) + a * along * length / 2 + b * across * width / 2
+        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
+    return shapely.Polygon(corners)
