@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
@@ -42,6 +43,14 @@ def mmrs_move_kinds() -> tuple[MoveKind, ...]:
     from mmrs_multicopter.kinds import MOVE_KINDS
 
     return MOVE_KINDS
+
+
+@hookimpl
+def mmrs_conditions() -> tuple[Condition, ...]:
+    """Contribute conditions on the energy that is left: ``energy_above_100_kJ`` and the like."""
+    from mmrs_multicopter.conditions import CONDITIONS
+
+    return CONDITIONS
 
 
 @hookimpl
