@@ -1,0 +1,122 @@
+"""The commands by name: the core's own, and those that plug-ins add."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli import (
+    check,
+    demo,
+    generate,
+    metamodel,
+    plan,
+    plugin,
+    replay,
+    show,
+    simulate,
+    validate,
+)
+from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.preview import command as preview
+from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
+from mmrs_core.errors import PluginError
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.commands import Command
+
+_HELP = "Missions of mobile multi-robot systems: from a mission model to robots that carry it out."
+_EPILOG = (
+    "Exit codes: 0 done, 1 model invalid or mission failed, 2 wrong usage, 3 file not readable or writable, "
+    "4 no feasible plan, 5 link or robot lost, 130 interrupted."
+)
+_COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
+    ("demo", demo.demo),
+    ("validate", validate.validate),
+    ("plan", plan.plan),
+    ("check", check.check),
+    ("generate", generate.generate),
+    ("simulate", simulate.simulate),
+    ("replay", replay.replay),
+    ("preview", preview.preview),
+    ("show", show.show),
+)
+
+
+def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
+    """Return the application for a command line.
+
+    Plug-ins are asked for their commands only if no command of the core is called: for the help,
+    or for a command that the core does not know.
+    """
+    app = _core_app()
+    called = next((argument for argument in arguments if not argument.startswith("-")), None)
+    if called not in {*(name for name, _ in _COMMANDS), "plugin", "metamodel"}:
+        _add_plugin_commands(app, settings)
+    return app
+
+
+def generate_app() -> typer.Typer:
+    """Return the application ``mmrs-gen``."""
+    app = typer.Typer(rich_markup_mode=None, add_completion=False)
+    app.command()(generate.generate)
+    return app
+
+
+def _core_app() -> typer.Typer:
+    app = typer.Typer(rich_markup_mode=None, help=_HELP, epilog=_EPILOG, no_args_is_help=True)
+    app.callback()(_global_options)
+    for name, command in _COMMANDS:
+        app.command(name)(command)
+    app.add_typer(plugin.app, name="plugin")
+    app.add_typer(metamodel.app, name="metamodel")
+    return app
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        say(f"mmrs {version('mmrs-core')}")
+        raise typer.Exit
+
+
+def _global_options(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
+    ] = False,
+    no_plugins: Annotated[bool, typer.Option(NO_PLUGINS, help="Load nothing but the core.")] = False,
+    debug: Annotated[bool, typer.Option(DEBUG, help="Show where errors come from.")] = False,
+) -> None:
+    """Describe the global options, which `taken_from` has taken off the command line before."""
+
+
+def _add_plugin_commands(app: typer.Typer, settings: Settings) -> None:
+    try:
+        commands = settings.plugins().contributions.commands
+    except PluginError as error:
+        tell(f"mmrs: {error}")
+        return
+    for command in commands:
+        passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+        app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
+            _runner(command)
+        )
+
+
+def _runner(command: Command) -> Callable[[typer.Context], int]:
+    def run(context: typer.Context) -> int:
+        module, _, function = command.entry.partition(":")
+        try:
+            entry = getattr(import_module(module), function)
+        except (ImportError, AttributeError) as error:
+            raise PluginError(
+                f"command '{command.name}': {command.entry} cannot be imported: {error}"
+            ) from error
+        result = entry(list(context.args))
+        return result if isinstance(result, int) else 0
+
+    return run

@@ -1,0 +1,40 @@
+"""``mmrs check``: is this behaviour safe?"""
+
+from __future__ import annotations
+
+import typer
+
+from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.settings import Json, settings_of
+
+
+def check(
+    call: typer.Context,
+    behaviour: Behaviour,
+    context: Context = None,
+    robots: Robots = None,
+    json: Json = False,
+) -> int:
+    """Say what is known of the safety of a behaviour.
+
+    It may be planned or written by hand."""
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.journey import Workshop, verdicts_of
+    from mmrs_core.cli.verdict_words import verdict_line, verdict_table
+    from mmrs_core.pipeline import refusals
+
+    workshop = Workshop(settings_of(call))
+    file = behaviour_file(behaviour)
+    loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
+    verdicts = verdicts_of(workshop, loaded.program, loaded.place)
+    against = refusals(verdicts, loaded.program)
+    if json:
+        say_json({"safe": not against, "verdicts": verdicts, "against": against})
+    else:
+        for line in verdict_table(verdicts):
+            say(line)
+        say(f"{file}: {'not safe' if against else 'safe'}")
+        for verdict in against:
+            say(f"  - {verdict_line(verdict)}")
+    return 1 if against else 0

@@ -1,0 +1,75 @@
+"""``mmrs demo``: a whole mission, from models to a simulated run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.errors import UnreadableError
+
+DEFAULT = "carbon-dioxide"
+
+
+def demo(
+    call: typer.Context,
+    example: Annotated[
+        str, typer.Argument(metavar="[EXAMPLE]", help="Name of an example; --list shows them.")
+    ] = DEFAULT,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where everything goes.")] = Path(
+        "mmrs-demo"
+    ),
+    list_examples: Annotated[bool, typer.Option("--list", help="List the examples.")] = False,
+    json: Json = False,
+) -> int:
+    """Take an example all the way, into one folder.
+
+    Plans it, checks the behaviour, generates code, simulates, replays the logs, and draws everything."""
+    if list_examples:
+        return _list_examples(json)
+    folder = example_folder(example)
+
+    from mmrs_core.cli.demonstration import demonstrate
+    from mmrs_core.cli.journey import Journey, Workshop
+
+    made = demonstrate(Journey(Workshop(settings_of(call)), folder), out)
+    if json:
+        say_json(made.summary())
+    else:
+        for line in made.lines():
+            say(line)
+    return 0 if made.succeeded else 1
+
+
+def example_folder(name: str) -> Path:
+    """Return the folder of a shipped example.
+
+    Raises:
+        UnreadableError: if there is none of that name.
+    """
+    known = examples()
+    if name not in known:
+        raise UnreadableError(f"{name}: no such example; there are {', '.join(known)}")
+    return known[name]
+
+
+def examples() -> dict[str, Path]:
+    """Return the folders of the shipped missions by name, sorted."""
+    from mmrs_core.resources import shipped
+
+    return {
+        mission.parent.name: mission.parent for mission in sorted(shipped("examples").glob("*/mission.xmi"))
+    }
+
+
+def _list_examples(json: bool) -> int:
+    found = examples()
+    if json:
+        say_json({"examples": found})
+    else:
+        for name, folder in found.items():
+            say(f"{name}  ({folder})")
+    return 0

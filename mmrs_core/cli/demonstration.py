@@ -1,0 +1,104 @@
+"""What a demonstration makes, and the screenful that tells of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.cli.journey import Journey, require_safe
+from mmrs_core.cli.output import counted
+from mmrs_core.cli.plan_words import plan_lines, plan_summary
+from mmrs_core.cli.preview.command import write_pictures
+from mmrs_core.cli.preview.from_plan import picture_of_plan
+from mmrs_core.cli.simulation import fly, run_lines, succeeded, write_logs
+from mmrs_core.cli.verdict_words import verdict_table
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.writing import write
+from mmrs_core.pipeline import render, save
+from mmrs_core.runtime.run import Run
+
+TARGETS = ("mavlink-python", "qgc-plan")
+
+
+@dataclass(frozen=True, slots=True)
+class Demonstration:
+    """What was done and made.
+
+    Attributes:
+        files: (what, path, how many files) in the order in which they were made.
+        refused: by target, why it was not generated; a target need not be able to express everything.
+    """
+
+    journey: Journey
+    run: Run
+    replayed: ReplayResult
+    folder: Path
+    files: tuple[tuple[str, Path, int], ...]
+    refused: Mapping[str, str]
+
+    @property
+    def succeeded(self) -> bool:
+        """Return whether the run came to its end and its logs replay."""
+        return succeeded(self.run) and self.replayed.accepted
+
+    def lines(self) -> Iterator[str]:
+        """Yield about a screenful: plan, safety, run, files."""
+        yield from plan_lines(self.journey.scene, self.journey.plan)
+        yield "checked before anything was written:"
+        yield from verdict_table(self.journey.verdicts)
+        outcome, *_ = run_lines(self.run)
+        judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
+        yield f"simulated: {outcome}; {judged}"
+        for target, reason in self.refused.items():
+            yield f"not generated for {target}: {reason}"
+        yield f"in {self.folder}:"
+        for what, path, count in self.files:
+            more = f" ({counted(count, 'file')})" if count > 1 else ""
+            yield f"  {path.relative_to(self.folder).as_posix():<30} {what}{more}"
+
+    def summary(self) -> Mapping[str, object]:
+        """Return the same as values."""
+        return {
+            **plan_summary(self.journey.scene, self.journey.plan),
+            "verdicts": self.journey.verdicts,
+            "ending": self.run.ending,
+            "replay": self.replayed,
+            "refused": self.refused,
+            "files": [{"what": what, "path": path} for what, path, _ in self.files],
+        }
+
+
+def demonstrate(journey: Journey, folder: Path) -> Demonstration:
+    """Take a mission through all stages and leave everything that they make in a folder.
+
+    Raises:
+        MmrsError: as the stages raise it; nothing is written before the behaviour is known to be safe.
+    """
+    workshop = journey.workshop
+    program, place = journey.program, journey.place
+    require_safe(program, journey.verdicts, journey.scene.name or "mission")
+    folder.mkdir(parents=True, exist_ok=True)
+    behaviour = folder / "behaviour.xmi"
+    save(journey.transformed[0], behaviour, workshop.contributions)
+    files: list[tuple[str, Path, int]] = [("what each robot does, move by move", behaviour, 1)]
+    refused: dict[str, str] = {}
+    for target in TARGETS:
+        if target not in workshop.contributions.targets:
+            continue
+        try:
+            rendered = render(program, place, target, workshop.contributions)
+        except UnsupportedError as error:
+            refused[target] = str(error)
+            continue
+        written = write(rendered, folder / "controllers" / target)
+        files.append((f"code for {target}", folder / "controllers" / target, len(written)))
+    run = fly(workshop, program, place, {})
+    logs = write_logs(run, program, folder / "logs")
+    files.append(("what each robot did", folder / "logs", len(logs)))
+    pictures = write_pictures(picture_of_plan(journey.scene, journey.plan), folder)
+    files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
+    replayed = replay(program, read_logs([folder / "logs"]))
+    return Demonstration(journey, run, replayed, folder, tuple(files), refused)

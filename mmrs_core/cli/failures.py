@@ -1,0 +1,92 @@
+"""Turns whatever ends a command into what the user reads and what the shell gets."""
+
+from __future__ import annotations
+
+import traceback
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import typer
+
+from mmrs_core.cli.output import report, say_json, tell
+from mmrs_core.cli.settings import DEBUG, Settings
+from mmrs_core.errors import InfeasibleError, InternalError, InvalidModelError, MmrsError, UnsupportedError
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+
+MODEL_INVALID = 1
+USAGE = 2
+UNREADABLE = 3
+INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """Why a command ended.
+
+    Attributes:
+        message: one line, the culprit first.
+        details: further lines, each a reason of its own.
+        diagnostics: faults of the user's models.
+    """
+
+    exit_code: int
+    message: str
+    details: tuple[str, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def ended_by(error: Exception, settings: Settings) -> int:
+    """Print what an error means for the user; return the exit code."""
+    if settings.debug:
+        tell("".join(traceback.format_exception(error)).rstrip())
+    failure = failure_of(error)
+    report(failure.diagnostics)
+    tell(f"mmrs: {failure.message}")
+    for detail in failure.details:
+        tell(f"  - {detail}")
+    if settings.json:
+        say_json({"error": failure})
+    return failure.exit_code
+
+
+def failure_of(error: Exception) -> Failure:
+    """Return what an error means for the user."""
+    match error:
+        case InvalidModelError():
+            return Failure(error.exit_code, str(error), (), error.diagnostics)
+        case InfeasibleError():
+            reasons = tuple(reason for reason in error.reasons if reason != str(error))
+            return Failure(error.exit_code, str(error), reasons)
+        case UnsupportedError():
+            return Failure(error.exit_code, str(error), error.elements)
+        case InternalError():
+            return Failure(error.exit_code, *_unexpected(error))
+        case MmrsError():
+            return Failure(error.exit_code, str(error))
+        case typer.TyperException():
+            return Failure(error.exit_code, _usage(error))
+        case OSError():
+            return Failure(UNREADABLE, _about_file(error))
+        case _:
+            return Failure(MODEL_INVALID, *_unexpected(error))
+
+
+def _usage(error: typer.TyperException) -> str:
+    message = error.format_message().rstrip(".")
+    command = getattr(getattr(error, "ctx", None), "command_path", "")
+    where = f"; try '{command} --help'" if command else ""
+    return message[:1].lower() + message[1:] + where
+
+
+def _about_file(error: OSError) -> str:
+    name = error.filename2 or error.filename
+    reason = (error.strerror or str(error)).lower()
+    return f"{name}: {reason}" if name else reason
+
+
+def _unexpected(error: Exception) -> tuple[str, tuple[str, ...]]:
+    summary = " ".join(str(error).split()) or "no message"
+    message = f"internal error: {type(error).__name__}: {summary}"
+    return message, (f"please report it with your models and what {DEBUG} shows",)

@@ -1,0 +1,184 @@
+"""Takes a mission through the stages, each when it is first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from mmrs_core.cli.output import progress, report
+from mmrs_core.cli.settings import Settings
+from mmrs_core.errors import MmrsError
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.contributions.checks import Verdict
+    from mmrs_core.contributions.registry import Contributions
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.languages.behaviour import Behaviour
+    from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.pipeline import Place
+    from mmrs_core.plugins import Plugins
+    from mmrs_core.scene import Plan, Scene
+    from mmrs_core.transformation.engine import Trace
+
+Result = TypeVar("Result")
+
+
+class RefusedError(MmrsError):
+    """A behaviour that is not safe, or not known to be.
+
+    Attributes:
+        verdicts: those that stand against it, at least one.
+    """
+
+    def __init__(self, message: str, verdicts: Sequence[Verdict]) -> None:
+        super().__init__(message)
+        self.verdicts = tuple(verdicts)
+
+
+class Workshop:
+    """The plug-ins of a command, and the way stages are run with them: shown, and observed."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+
+    @cached_property
+    def plugins(self) -> Plugins:
+        """Return the plug-ins."""
+        return self._settings.plugins()
+
+    @property
+    def contributions(self) -> Contributions:
+        """Return what the plug-ins contribute."""
+        return self.plugins.contributions
+
+    def stage(self, name: str, doing: str, make: Callable[[], Result]) -> Result:
+        """Return what a stage makes, after telling the observers of it."""
+        with progress(doing):
+            result = make()
+        self.plugins.observe_stage(name, result)
+        return result
+
+
+class Journey:
+    """One mission on its way from models to verdicts."""
+
+    def __init__(
+        self,
+        workshop: Workshop,
+        mission: Path,
+        *,
+        context: Path | None = None,
+        robots: Sequence[Path] = (),
+        seed: int = 0,
+    ) -> None:
+        self.workshop = workshop
+        self._mission = mission
+        self._context = context
+        self._robots = robots
+        self._seed = seed
+
+    @cached_property
+    def _valid(self) -> tuple[ModelSet, tuple[Diagnostic, ...]]:
+        from mmrs_core.pipeline import valid_models
+
+        models, warnings = self.workshop.stage(
+            "check",
+            "checking the models",
+            lambda: valid_models(
+                self._mission, self.workshop.contributions, context=self._context, robots=self._robots
+            ),
+        )
+        report(warnings)
+        return models, warnings
+
+    @property
+    def models(self) -> ModelSet:
+        """Return the valid models; warnings are printed when they are first asked for."""
+        return self._valid[0]
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Return what is doubtful about the models."""
+        return self._valid[1]
+
+    @cached_property
+    def grounded(self) -> Scene:
+        """Return the mission in its local frame."""
+        from mmrs_core.pipeline import ground
+
+        models = self.models
+        return self.workshop.stage("ground", "laying out the place", lambda: ground(models))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """Return the scene with the work of every task."""
+        from mmrs_core.pipeline import expand
+
+        scene = self.grounded
+        return self.workshop.stage(
+            "expand", "finding the work of every task", lambda: expand(scene, self.workshop.contributions)
+        )
+
+    @cached_property
+    def plan(self) -> Plan:
+        """Return who does what, when and by which way."""
+        from mmrs_core.pipeline import plan
+
+        scene = self.scene
+        return self.workshop.stage("plan", "planning", lambda: plan(scene, seed=self._seed))
+
+    @cached_property
+    def transformed(self) -> tuple[Behaviour, Trace]:
+        """Return the behaviour, and what each of its moves is for."""
+        from mmrs_core.pipeline import transform
+
+        scene, plan = self.scene, self.plan
+        return self.workshop.stage(
+            "transform",
+            "writing the behaviour",
+            lambda: transform(scene, plan, self.workshop.contributions),
+        )
+
+    @cached_property
+    def program(self) -> Program:
+        """Return the behaviour as engines use it."""
+        from mmrs_core.pipeline import program_of
+
+        return program_of(self.transformed[0], self.workshop.contributions)
+
+    @property
+    def place(self) -> Place:
+        """Return what the behaviour is checked against."""
+        from mmrs_core.pipeline import place_of_scene
+
+        return place_of_scene(self.scene)
+
+    @cached_property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Return what is known of the behaviour's safety."""
+        return verdicts_of(self.workshop, self.program, self.place)
+
+
+def verdicts_of(workshop: Workshop, program: Program, place: Place) -> tuple[Verdict, ...]:
+    """Return what is known of every property of a behaviour."""
+    from mmrs_core.pipeline import verify
+
+    return workshop.stage(
+        "verify", "checking the behaviour", lambda: verify(program, place, workshop.contributions)
+    )
+
+
+def require_safe(program: Program, verdicts: Sequence[Verdict], name: str) -> None:
+    """Do nothing for a behaviour that may be carried out.
+
+    Raises:
+        RefusedError: if a property is violated, or unknown without the mission accepting that.
+    """
+    from mmrs_core.pipeline import refusals
+
+    against = refusals(verdicts, program)
+    if against:
+        raise RefusedError(f"{name}: the behaviour is not safe", against)

@@ -1,0 +1,119 @@
+"""What commands print: results to standard output, everything else to standard error."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
+from unicodedata import category
+
+import typer
+
+if TYPE_CHECKING:
+    from mmrs_core.diagnostics import Diagnostic
+
+OUTPUT_CLOSED = 141
+"""What shells report of a program whose reader went away: 128 and the number of SIGPIPE."""
+
+_COLOURS = {"error": "31", "warning": "33", "note": "36"}
+_UNSAFE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
+_KEPT = frozenset("\n\t\u200c\u200d")
+
+
+def printable(words: str) -> str:
+    r"""Return words whose characters a terminal cannot take for commands.
+
+    Control characters and those that turn the direction of writing are shown by their code.
+
+    >>> printable("a\x1b[2Jb\u202ec")
+    'a\\x1b[2Jb\\u202ec'
+    """
+    return "".join(map(_printable, words))
+
+
+def _printable(character: str) -> str:
+    if character in _KEPT or category(character) not in _UNSAFE:
+        return character
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def say(words: str = "") -> None:
+    """Print a line of the result.
+
+    Raises:
+        typer.Exit: if nobody reads any more.
+    """
+    _write(sys.stdout, printable(words) + "\n")
+
+
+def tell(words: str) -> None:
+    """Print a line that is not the result: to standard error."""
+    _write(sys.stderr, printable(words) + "\n")
+
+
+def say_json(value: object) -> None:
+    """Print one JSON object, which is the whole result."""
+    from mmrs_core.cli.encoding import plain
+
+    _write(sys.stdout, json.dumps(plain(value), ensure_ascii=False, indent=2, allow_nan=False) + "\n")
+
+
+def report(diagnostics: Iterable[Diagnostic]) -> None:
+    """Print diagnostics to standard error, in colour where a person reads them."""
+    for diagnostic in diagnostics:
+        words = printable(str(diagnostic))
+        severity = diagnostic.severity.value
+        mark = f"{severity}: "
+        if coloured(sys.stderr):
+            words = words.replace(mark, f"\x1b[1;{_COLOURS[severity]}m{severity}:\x1b[0m ", 1)
+        _write(sys.stderr, words + "\n")
+
+
+def coloured(stream: TextIO) -> bool:
+    """Return whether to use colour: on a terminal, unless ``NO_COLOR`` is set."""
+    return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb" and stream.isatty()
+
+
+@contextmanager
+def progress(doing: str) -> Iterator[None]:
+    """Show what is being done while it is done, on a terminal only."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    _write(sys.stderr, f"\r\x1b[K{printable(doing)} …")
+    try:
+        yield
+    finally:
+        _write(sys.stderr, "\r\x1b[K")
+
+
+def counted(number: int, thing: str) -> str:
+    """Return a number of things.
+
+    >>> counted(1, "robot"), counted(3, "robot")
+    ('1 robot', '3 robots')
+    """
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
+def _write(stream: TextIO, words: str) -> None:
+    try:
+        stream.write(words)
+        stream.flush()
+    except BrokenPipeError:
+        _close(stream)
+        raise typer.Exit(OUTPUT_CLOSED) from None
+    except UnicodeEncodeError:
+        encoding = stream.encoding or "ascii"
+        stream.write(words.encode(encoding, "backslashreplace").decode(encoding))
+        stream.flush()
+
+
+def _close(stream: TextIO) -> None:
+    """Let the stream end in nothing, so that flushing it at the exit does not fail again."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, stream.fileno())
+    os.close(nothing)

@@ -1,0 +1,100 @@
+"""The arguments and options that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import takewhile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mmrs_core.errors import UnreadableError
+
+ROBOTS = "--robots"
+
+Project = Annotated[
+    Path, typer.Argument(metavar="PROJECT", help="The project's folder, or the file of its mission.")
+]
+Behaviour = Annotated[
+    Path, typer.Argument(metavar="BEHAVIOUR", help="A behaviour, or the folder with a behaviour.xmi.")
+]
+Context = Annotated[
+    Path | None,
+    typer.Option("--context", metavar="FILE", help="The place; else context.xmi beside the named file."),
+]
+Robots = Annotated[
+    list[Path] | None,
+    typer.Option(ROBOTS, metavar="FILE...", help="Robot types; else robots/*.xmi beside the named file."),
+]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Start of the planner's random numbers.")]
+
+
+def robot_files(given: Iterable[Path] | None) -> tuple[Path, ...]:
+    """Return the files of robot types that were named; a folder stands for all models in it.
+
+    Raises:
+        UnreadableError: if a folder holds no model.
+    """
+    return tuple(file for path in given or () for file in _files_of(path))
+
+
+def _files_of(path: Path) -> tuple[Path, ...]:
+    if not path.is_dir():
+        return (path,)
+    found = tuple(sorted(path.glob("*.xmi")))
+    if not found:
+        raise UnreadableError(f"{path}: no robot type (*.xmi) in this folder")
+    return found
+
+
+def behaviour_file(given: Path) -> Path:
+    """Return the file of a behaviour, which a folder may stand for.
+
+    Raises:
+        UnreadableError: if the folder has none.
+    """
+    if not given.is_dir():
+        return given
+    file = given / "behaviour.xmi"
+    if not file.is_file():
+        raise UnreadableError(f"{given}: no behaviour.xmi in this folder; 'mmrs plan {given}' makes one")
+    return file
+
+
+def spread(arguments: Sequence[str], flags: frozenset[str]) -> list[str]:
+    """Return the arguments with ``--robots A B`` written as ``--robots A --robots B``.
+
+    Where no plain argument stands before, the last file is the command's own argument.
+
+    Args:
+        arguments: of a command, its name left out.
+        flags: options that take no value.
+
+    >>> spread(["m.xmi", "--robots", "a", "b", "--json"], frozenset({"--json"}))
+    ['m.xmi', '--robots', 'a', '--robots', 'b', '--json']
+    >>> spread(["--robots", "a", "m.xmi"], frozenset())
+    ['--robots', 'a', 'm.xmi']
+    """
+    written: list[str] = []
+    rest, named = list(arguments), False
+    while rest:
+        argument = rest.pop(0)
+        if argument == ROBOTS:
+            files = list(takewhile(_is_plain, rest))
+            del rest[: len(files)]
+            own = files.pop() if len(files) > 1 and not named else None
+            written += [part for file in files for part in (ROBOTS, file)] or [ROBOTS]
+            written += [own] if own is not None else []
+            named = named or own is not None
+            continue
+        written.append(argument)
+        if not _is_plain(argument) and argument not in flags and "=" not in argument:
+            written += rest[:1]
+            del rest[:1]
+        named = named or _is_plain(argument)
+    return written
+
+
+def _is_plain(argument: str) -> bool:
+    return not argument.startswith("-")

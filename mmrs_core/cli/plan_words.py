@@ -1,0 +1,75 @@
+"""Says what a plan holds, for people and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from mmrs_core.cli.output import counted
+from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.tables import table
+from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
+
+_JOULES_IN_WATT_HOUR = 3600.0
+_MOST_NOTES = 4
+
+
+def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
+    """Yield who does what, how far, how long."""
+    at_work = sum(bool(robot.steps) for robot in plan.robots)
+    yield (
+        f"{scene.name or 'mission'}: {counted(len(scene.tasks), 'task')}, "
+        f"{counted(at_work, 'robot')} at work, done after {clock(plan.makespan)}"
+    )
+    head = ("robot", "type", "tasks", "way", "time", "energy", "sorties")
+    yield from table(head, [_row(scene, robot) for robot in plan.robots])
+    for note in plan.notes[:_MOST_NOTES]:
+        yield f"  note: {note}"
+    left = len(plan.notes) - _MOST_NOTES
+    if left > 0:
+        yield f"  and {counted(left, 'more note')}"
+
+
+def plan_summary(scene: Scene, plan: Plan) -> Mapping[str, object]:
+    """Return the same as values."""
+    return {
+        "mission": scene.name,
+        "makespan": plan.makespan,
+        "robots": [
+            {
+                "name": robot.robot,
+                "tasks": tasks_of(robot),
+                "length": robot.length,
+                "busy": robot.busy,
+                "energy": robot.energy,
+                "sorties": robot.sorties,
+            }
+            for robot in plan.robots
+        ],
+        "tasks": [
+            {"name": task.name, "begin": plan.begins.get(task.name), "end": plan.ends.get(task.name)}
+            for task in scene.tasks
+        ],
+        "notes": plan.notes,
+    }
+
+
+def tasks_of(robot: RobotPlan) -> tuple[str, ...]:
+    """Return the names of the tasks that a robot serves, in the order in which it begins them."""
+    return tuple(dict.fromkeys(step.task for step in _flat(robot.steps) if isinstance(step, Serve)))
+
+
+def _flat(steps: tuple[Step, ...]) -> Iterator[Step]:
+    for step in steps:
+        yield step
+        if isinstance(step, Branch):
+            for _, arm in step.arms:
+                yield from _flat(arm)
+
+
+def _row(scene: Scene, robot: RobotPlan) -> tuple[str, ...]:
+    kind = scene.robot(robot.robot).type.name
+    if not robot.steps:
+        return robot.robot, kind, "none", "", "", "", ""
+    energy = f"{robot.energy / _JOULES_IN_WATT_HOUR:.1f} Wh" if robot.energy else "not known"
+    tasks = ", ".join(tasks_of(robot)) or "none"
+    return robot.robot, kind, tasks, length(robot.length), clock(robot.busy), energy, str(robot.sorties)

@@ -1,0 +1,118 @@
+"""``mmrs plugin``: who contributed what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.metadata import EntryPoint, entry_points
+
+import typer
+
+from mmrs_core.cli.output import say, say_json, tell
+from mmrs_core.cli.settings import Json, Settings, settings_of
+
+app = typer.Typer(
+    rich_markup_mode=None, help="Plug-ins: who contributed what.", no_args_is_help=True, add_completion=False
+)
+
+
+@app.callback()
+def plugin() -> None:
+    """Plug-ins: who contributed what."""
+
+
+@app.command("list")
+def list_plugins(call: typer.Context, json: Json = False) -> int:
+    """List the plug-ins with everything that they contribute, broken ones too."""
+    from mmrs_core.errors import PluginError
+
+    settings = settings_of(call)
+    try:
+        found = _loaded(settings)
+    except PluginError as error:
+        tell(f"mmrs: {error}")
+        return _list_broken(str(error), json)
+    if json:
+        say_json({"plugins": found})
+        return 0
+    for name, (distribution, version, sorts) in found.items():
+        say(f"{name} ({' '.join(filter(None, (distribution, version)))})")
+        for sort, names in sorts.items():
+            say(f"  {sort.replace('_', ' ')}: {_listed(names)}")
+    return 0
+
+
+_Found = dict[str, tuple[str, str, dict[str, list[str]]]]
+
+
+def _loaded(settings: Settings) -> _Found:
+    from mmrs_core.plugins import load_plugins
+
+    plugins = load_plugins(only_core=settings.only_core)
+    found: _Found = {
+        name: (distribution, _version(distribution), {})
+        for name, distribution in plugins.distributions.items()
+    }
+    for each in plugins.contributions.catalogue():
+        found[each.plugin][2].setdefault(each.sort, []).append(each.name)
+    return found
+
+
+def _version(distribution: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return ""
+
+
+def _listed(names: list[str]) -> str:
+    """Return the names in one line; codes that follow each other are joined.
+
+    >>> _listed(["MML001", "MML002", "MML003", "x"])
+    'MML001 to MML003, x'
+    """
+    return ", ".join(_joined(names))
+
+
+def _joined(names: list[str]) -> Iterator[str]:
+    run: list[str] = []
+    for name in [*names, ""]:
+        if run and _follows(run[-1], name):
+            run.append(name)
+            continue
+        if run:
+            yield f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(run)
+        run = [name]
+
+
+def _follows(before: str, name: str) -> bool:
+    return (
+        before[:-3] == name[:-3]
+        and before[-3:].isdigit()
+        and name[-3:].isdigit()
+        and int(name[-3:]) == int(before[-3:]) + 1
+    )
+
+
+def _list_broken(reason: str, json: bool) -> int:
+    """List the installed plug-ins by their entry points, each with whether it loads by itself."""
+    from mmrs_core.plugins import GROUP
+
+    entries = sorted(entry_points(group=GROUP), key=lambda entry: entry.name)
+    states = [(entry.name, entry.dist.name if entry.dist else "", _state(entry)) for entry in entries]
+    if json:
+        broken = [{"plugin": name, "distribution": dist, "state": state} for name, dist, state in states]
+        say_json({"error": reason, "plugins": broken})
+    else:
+        for name, distribution, state in states:
+            say(f"{name} ({distribution}): {state}")
+    return 1
+
+
+def _state(entry: EntryPoint) -> str:
+    try:
+        entry.load()
+    except Exception as error:
+        return f"does not load: {error!r}"
+    return "loads"

@@ -1,0 +1,42 @@
+"""Runs one command line from arguments to exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import typer
+
+from mmrs_core.cli.app import app_for, generate_app
+from mmrs_core.cli.failures import INTERRUPTED, MODEL_INVALID, ended_by
+from mmrs_core.cli.output import tell
+from mmrs_core.cli.parameters import spread
+from mmrs_core.cli.settings import taken_from
+
+FLAGS = frozenset(
+    {"--json", "--allow-lossy", "--force", "--list-targets", "--list", "--partial", "--help", "--version"}
+)
+
+
+def run_command(arguments: Sequence[str], program: str) -> int:
+    """Run ``mmrs`` or ``mmrs-gen``; return the exit code, whatever happens."""
+    settings, rest = taken_from(arguments)
+    try:
+        app = generate_app() if program == "mmrs-gen" else app_for(rest, settings)
+        result = app(spread(rest, FLAGS), prog_name=program, standalone_mode=False, obj=settings)
+        return result if isinstance(result, int) else 0
+    except typer.Exit as ending:
+        return ending.exit_code
+    except (typer.Abort, KeyboardInterrupt):
+        tell("mmrs: interrupted")
+        return INTERRUPTED
+    except SystemExit as ending:
+        return ending.code if isinstance(ending.code, int) else MODEL_INVALID
+    except Exception as error:
+        return _ended_by(error, arguments)
+
+
+def _ended_by(error: Exception, arguments: Sequence[str]) -> int:
+    try:
+        return ended_by(error, taken_from(arguments)[0])
+    except typer.Exit as ending:
+        return ending.exit_code

@@ -1,0 +1,48 @@
+"""``mmrs simulate``: carries a behaviour out without robots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.settings import Json, settings_of
+
+
+def simulate(
+    call: typer.Context,
+    behaviour: Behaviour,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where to write a log a robot.")
+    ] = None,
+    context: Context = None,
+    robots: Robots = None,
+    assume: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--assume", metavar="CONDITION=yes|no", help="What a condition answers; may be repeated."
+        ),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Carry out a behaviour in simulation, faster than real time."""
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.simulation import answers, fly, run_lines, succeeded, write_logs
+
+    workshop = Workshop(settings_of(call))
+    conditions = answers(assume)
+    loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
+    run = fly(workshop, loaded.program, loaded.place, conditions)
+    logs = write_logs(run, loaded.program, output) if output is not None else ()
+    if json:
+        say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})
+    else:
+        for line in run_lines(run):
+            say(line)
+        for log in logs:
+            say(f"written: {log}")
+    return 0 if succeeded(run) else 1

@@ -1,0 +1,107 @@
+"""Runs a behaviour in simulation and keeps its logs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import dist
+from pathlib import Path
+
+import typer
+
+from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_log
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.errors import MmrsError
+from mmrs_core.pipeline import Place
+from mmrs_core.runtime.run import Run, assumed
+from mmrs_core.runtime.run import simulate as simulated
+
+_HOLDS = {"yes": True, "true": True, "no": False, "false": False}
+
+
+def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
+    """Return what conditions are to answer, from ``IDENTIFIER=yes`` or ``=no``.
+
+    Raises:
+        typer.BadParameter: if it is written otherwise.
+    """
+    found: dict[str, bool] = {}
+    for each in given or ():
+        identifier, _, answer = each.rpartition("=")
+        if not identifier or answer.lower() not in _HOLDS:
+            raise typer.BadParameter(f"'{each}' is not written as CONDITION=yes or CONDITION=no")
+        found[identifier] = _HOLDS[answer.lower()]
+    return found
+
+
+def fly(workshop: Workshop, program: Program, place: Place, conditions: Mapping[str, bool]) -> Run:
+    """Return the simulated run of a behaviour."""
+    contributions = workshop.contributions
+    return workshop.stage(
+        "simulate",
+        "simulating",
+        lambda: simulated(
+            program,
+            types=place.types,
+            robot_kinds=contributions.robot_kinds,
+            move_kinds=contributions.move_kinds,
+            conditions={**contributions.conditions, **assumed(conditions)},
+            environment=place.environment,
+            areas=place.areas or (),
+            observe=workshop.plugins.observe_step,
+        ),
+    )
+
+
+def write_logs(run: Run, program: Program, folder: Path) -> tuple[Path, ...]:
+    """Write the log of every robot; logs of other robots that an earlier run left there go away."""
+    names = [log_name(robot.id) for robot in program.robots]
+    _remove_older(folder, set(names))
+    with LogWriter(folder, durable=False) as writer:
+        for record in run.records:
+            writer.write(record)
+    return tuple(folder / name for name in names if (folder / name).exists())
+
+
+def _remove_older(folder: Path, kept: set[str]) -> None:
+    for path in folder.glob(f"*{SUFFIX}"):
+        if path.name not in kept and _is_log(path):
+            path.unlink()
+
+
+def _is_log(path: Path) -> bool:
+    try:
+        return bool(read_log(path, partial=True))
+    except MmrsError:
+        return False
+
+
+def run_lines(run: Run) -> Iterator[str]:
+    """Yield how a run went: the outcome, each robot's way, faults and waits."""
+    ending = run.ending
+    yield f"{ending.outcome.value} after {clock(ending.time)}, {ending.steps} steps"
+    for robot, track in run.tracks.items():
+        points = [(sample.east, sample.north, sample.up) for sample in track]
+        flown = sum(dist(a, b) for a, b in pairwise(points))
+        left = _energy_left(track[0].energy, track[-1].energy) if track else ""
+        yield f"  {robot}: {length(flown)}{left}"
+    for robot, fault in ending.faults.items():
+        yield f"  fault of '{robot}': {fault}"
+    for waiting in ending.waiting:
+        yield f"  {waiting}"
+    for note in run.notes:
+        yield f"  note: {note}"
+
+
+def _energy_left(full: float | None, left: float | None) -> str:
+    if full is None or left is None or full in (0.0, float("inf")):
+        return ""
+    return f", {100 * left / full:.0f} % of the energy left"
+
+
+def succeeded(run: Run) -> bool:
+    """Return whether every robot came to its end."""
+    return run.ending.outcome is Outcome.SUCCESS

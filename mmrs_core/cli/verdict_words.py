@@ -1,0 +1,47 @@
+"""Says what checks found, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from mmrs_core.contributions.checks import Status, Verdict
+
+_RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """Return one verdict in one line: property, robot, what was found, where, by how much."""
+    who = f" of '{verdict.robot}'" if verdict.robot else ""
+    where = [f"move '{verdict.move}'" if verdict.move else "", f"'{verdict.area}'" if verdict.area else ""]
+    margin = "" if verdict.margin is None else f"margin {verdict.margin:.3g} {verdict.unit}".rstrip()
+    details = ", ".join(part for part in (*where, margin) if part)
+    words = f"{verdict.property}{who}: {verdict.status.value}"
+    words += f", {verdict.message}" if verdict.message else ""
+    return f"{words} ({details})" if details else words
+
+
+def verdict_table(verdicts: Iterable[Verdict]) -> Iterator[str]:
+    """Yield a line for each property, the least margin with it; all that is not safe in full."""
+    by_property: dict[str, list[Verdict]] = {}
+    for verdict in verdicts:
+        by_property.setdefault(verdict.property, []).append(verdict)
+    width = max((len(name) for name in by_property), default=0)
+    for name, found in by_property.items():
+        yield f"  {name:<{width}}  {_summary(found)}"
+        yield from (f"    - {verdict_line(each)}" for each in found if each.status in _SPELT_OUT)
+
+
+_SPELT_OUT = (Status.VIOLATED, Status.UNKNOWN)
+
+
+def _summary(found: Sequence[Verdict]) -> str:
+    worst = min((each.status for each in found), key=_RANK.__getitem__)
+    if worst is Status.NOT_CHECKED:
+        reasons = dict.fromkeys(each.message for each in found if each.status is worst and each.message)
+        return f"{worst.value}: {next(iter(reasons), 'no reason given')}"
+    margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
+    if not margins:
+        return worst.value
+    margin, least = min(margins, key=lambda pair: pair[0])
+    who = f" ({least.robot}{f', near {least.area}' if least.area else ''})" if least.robot else ""
+    return f"{worst.value}, least margin {margin:.3g} {least.unit}".rstrip() + who
