@@ -8,6 +8,7 @@ from enum import Enum
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.diagnostics import Place
 from mmrs_core.scene import Area, Name, Policy, RobotType
 
 
@@ -31,6 +32,7 @@ class Verdict:
             it has no measure. unit: of the margin.
         move: identifier of the move where the margin is smallest; area: name of the area it is to.
         message: what was found, for people; for unknown: what is missing.
+        place: where that move, or else the robot, stands in the user's files.
     """
 
     property: str
@@ -41,6 +43,7 @@ class Verdict:
     move: str = ""
     area: str = ""
     message: str = ""
+    place: Place = Place()
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,7 @@ class CheckInput:
         environment: by attribute name; absent where not known.
         reserve: part of lifetime and energy that must be left; position_error: metres.
         minimum_separation: metres; None: not asked for.
+        shared: what checks of one verification keep for each other, by the function that found it.
     """
 
     program: Program
@@ -65,6 +69,7 @@ class CheckInput:
     position_error: float = 0.0
     minimum_separation: float | None = None
     policies: tuple[Policy, ...] = ()
+    shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,124 @@
+"""Distances that robots keep from forbidden areas and obstacles, as these are drawn.
+
+Every leg of every move counts, launching and landing included, and so does where a robot begins and
+ends. What must be kept is the area's safety distance, half the robot's diagonal and the position
+error, in all three dimensions. Emergency areas forbid nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf
+
+import numpy as np
+
+from mmrs_core.analysis.distance import Floats, prism_distances
+from mmrs_core.analysis.figures import half_diagonal_of, type_of
+from mmrs_core.analysis.motion import Motion, motions
+from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged, not_checked, safe
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.scene import Area, AreaUse
+
+NAME = "clearance"
+
+
+@dataclass(frozen=True, slots=True)
+class _Segments:
+    """All straight pieces of a robot's legs: (n, 3) ends, the moves they belong to, their spread."""
+
+    begins: Floats
+    ends: Floats
+    moves: tuple[int, ...]
+    spread: Floats
+
+
+def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
+    if input.areas is None:
+        yield not_checked(NAME, robot, "no context was given")
+        return
+    areas = [area for area in input.areas if area.use is not AreaUse.EMERGENCY]
+    if not areas:
+        yield safe(NAME, robot, "nothing in the context is forbidden or in the way")
+        return
+    own = half_diagonal_of(type_of(input, robot)) + input.position_error
+    motion = motions(input)[robot.id]
+    segments = _segments(motion)
+    margins = list(_margins(segments, areas, own)) if segments.moves else []
+    yield from judged(NAME, robot, "m", (_described(robot, margin) for margin in margins), motion.gaps)
+
+
+def _segments(motion: Motion) -> _Segments:
+    pieces = [
+        (begin, end, leg.move, leg.radius)
+        for leg in motion.legs
+        for begin, end in pairwise(leg.points if len(leg.points) > 1 else leg.points * 2)
+    ]
+    return _Segments(
+        begins=np.array([piece[0] for piece in pieces], dtype=np.float64).reshape(-1, 3),
+        ends=np.array([piece[1] for piece in pieces], dtype=np.float64).reshape(-1, 3),
+        moves=tuple(piece[2] for piece in pieces),
+        spread=np.array([piece[3] for piece in pieces], dtype=np.float64),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Approach:
+    """How near a robot comes to one area on one move. Attributes: metres kept, metres required."""
+
+    area: Area
+    move: int
+    kept: float
+    required: float
+
+
+def _margins(segments: _Segments, areas: list[Area], own: float) -> Iterator[_Approach]:
+    """Yield the nearest approach to each area that is too near, or may be the nearest of all.
+
+    Boxes tell which legs and areas cannot matter; of these no exact distance is taken.
+    """
+    bounds = [_least_margins(segments, area, own) for area in areas]
+    nearest = inf
+    for index in sorted(range(len(areas)), key=lambda i: float(bounds[i].min())):
+        area = areas[index]
+        chosen = np.flatnonzero(bounds[index] <= max(nearest, TOLERANCE))
+        if not len(chosen):
+            continue
+        required = area.safety_distance + own
+        kept = _distances(segments, chosen, area) - segments.spread[chosen]
+        best = int(kept.argmin())
+        nearest = min(nearest, float(kept[best]) - required)
+        yield _Approach(area, segments.moves[int(chosen[best])], float(kept[best]), required)
+
+
+def _distances(segments: _Segments, chosen: np.typing.NDArray[np.intp], area: Area) -> Floats:
+    return prism_distances(segments.begins[chosen], segments.ends[chosen], area.shell, area.low, area.high)
+
+
+def _least_margins(segments: _Segments, area: Area, own: float) -> Floats:
+    """Return margins that no leg falls below: those of the boxes around legs and area."""
+    shell = np.asarray(area.shell, dtype=np.float64)
+    least = np.append(shell.min(axis=0), area.low)
+    most = np.append(shell.max(axis=0), area.high)
+    low, high = np.minimum(segments.begins, segments.ends), np.maximum(segments.begins, segments.ends)
+    gaps = np.maximum(np.maximum(least - high, low - most), 0.0)
+    distances: Floats = np.sqrt(np.sum(gaps * gaps, axis=1))
+    return distances - segments.spread - (area.safety_distance + own)
+
+
+def _described(robot: RobotProgram, approach: _Approach) -> Margin:
+    move = robot.moves[approach.move]
+    message = (
+        f"{move.kind} '{move.id}' keeps {approach.kept:.2f} m from '{approach.area.name}',"
+        f" {approach.required:.2f} m are required"
+    )
+    return Margin(approach.kept - approach.required, approach.move, message, approach.area.name)
+
+
+CLEARANCE = Check(
+    name=NAME,
+    title="Every leg keeps its distance from forbidden areas and obstacles as drawn.",
+    run=for_each_robot(NAME, _judge),
+)

@@ -1,0 +1,127 @@
+"""How long each move of a robot takes at least and at most, its actions included."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+
+from mmrs_core.analysis.figures import (
+    MissingFigureError,
+    kinematics_of,
+    move_kind_of,
+    seconds_of,
+    type_of,
+)
+from mmrs_core.analysis.motion import Leg, Motion
+from mmrs_core.analysis.verdicts import Gap
+from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
+from mmrs_core.behaviour.walk import reachable_moves
+from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.scene import Kinematics, RobotType
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Between `low` and `high` seconds."""
+
+    low: float = 0.0
+    high: float = 0.0
+
+    def __add__(self, other: Span) -> Span:
+        """Return the span of one thing after the other."""
+        return Span(self.low + other.low, self.high + other.high)
+
+
+UNKNOWN = Span(0.0, inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Slots that a move sets, and how long after its begin it does so."""
+
+    slots: tuple[SlotId, ...]
+    active: bool
+    after: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Duration:
+    """How long a move takes with all its actions, and which slots it sets when."""
+
+    whole: Span
+    settings: tuple[Setting, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Durations:
+    """Attributes: the duration of each reachable move of a robot by index; what is not known."""
+
+    of: Mapping[int, Duration]
+    gaps: tuple[Gap, ...]
+
+
+def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Durations:
+    """Return the durations of one robot's moves: of several ways that a move may lead, the extremes."""
+    moves = sorted(reachable_moves(robot))
+    try:
+        kinematics, robot_type = kinematics_of(input, robot), type_of(input, robot)
+    except MissingFigureError as missing:
+        gap = Gap(robot.start, str(missing).removeprefix(f"{robot.id}: "))
+        return Durations({index: _with_actions(robot.moves[index], UNKNOWN, None) for index in moves}, (gap,))
+    legs: dict[int, list[Leg]] = defaultdict(list)
+    for leg in motion.legs:
+        legs[leg.move].append(leg)
+    gaps = {gap.move: gap for gap in motion.gaps}
+    found: dict[int, Duration] = {}
+    for index in moves:
+        move = robot.moves[index]
+        moving = UNKNOWN if index in gaps else _moving(input, robot, move, legs[index], kinematics)
+        found[index] = _with_actions(move, moving, robot_type)
+        if index not in gaps and found[index].whole.high == inf:
+            gaps[index] = Gap(index, "how long it takes is not known")
+    return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
+
+
+def _moving(
+    input: CheckInput, robot: RobotProgram, move: Move, legs: Iterable[Leg], kinematics: Kinematics
+) -> Span:
+    kind = move_kind_of(input, move)
+    if kind is None:
+        return UNKNOWN
+    spans = [
+        _spread(leg, kind.seconds(move, leg.points, kinematics, robot.travel_mode), move, kinematics)
+        for leg in legs
+    ]
+    if not spans:
+        return UNKNOWN
+    return Span(min(span.low for span in spans), max(span.high for span in spans))
+
+
+def _spread(leg: Leg, seconds: tuple[float, float], move: Move, kinematics: Kinematics) -> Span:
+    """Return the span where the way may be longer or shorter by what is not known of its ends."""
+    if leg.radius == 0.0:
+        return Span(*seconds)
+    slowest = min(move.speed or kinematics.cruise, kinematics.climb, kinematics.descent)
+    more = leg.radius / slowest if slowest > 0.0 else inf
+    return Span(max(0.0, seconds[0] - more), seconds[1] + more)
+
+
+def _with_actions(move: Move, moving: Span, robot_type: RobotType | None) -> Duration:
+    before, first = _actions(move.before, Span(), robot_type)
+    after, second = _actions(move.after, before + moving, robot_type)
+    return Duration(after, (*first, *second))
+
+
+def _actions(
+    actions: Iterable[Action], begin: Span, robot_type: RobotType | None
+) -> tuple[Span, list[Setting]]:
+    settings: list[Setting] = []
+    now = begin
+    for action in actions:
+        seconds = seconds_of(action, robot_type) if robot_type else (None if action.device else 0.0)
+        now = now + (Span(seconds, seconds) if seconds is not None else UNKNOWN)
+        if action.sets:
+            settings.append(Setting(action.sets, action.active, now))
+    return now, settings

@@ -1,0 +1,153 @@
+"""The figures that limits follow from, taken from the robot types themselves.
+
+What the planner computed from the same models is not looked at: of a robot kind's kinematics only
+speeds and limits of height are used, lifetime, energy and dimensions are worked out anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+
+from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.contributions.checks import CheckInput
+from mmrs_core.contributions.rules import MoveKind, RobotKind, most_specific, robot_kind_of
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Capability, Kinematics, Part, Position, Robot, RobotType, Scene, TravelMode
+
+_MODES: Mapping[str, TravelMode] = {"SAFE": "SAFE", "NORMAL": "NORMAL", "AGGRESSIVE": "AGGRESSIVE"}
+
+
+class MissingFigureError(Exception):
+    """Something that a check needs is not known; the message says what, the culprit first."""
+
+
+def type_of(input: CheckInput, robot: RobotProgram) -> RobotType:
+    """Return the robot's type.
+
+    Raises:
+        MissingFigureError: nobody described that type.
+    """
+    try:
+        return input.types[robot.type_name]
+    except KeyError:
+        raise MissingFigureError(f"{robot.id}: robot type '{robot.type_name}' is not described") from None
+
+
+def home_of(robot: RobotProgram) -> Position:
+    """Return where the robot is at the beginning.
+
+    Raises:
+        MissingFigureError: the behaviour does not say.
+    """
+    if robot.home is None:
+        raise MissingFigureError(f"{robot.id}: its home is not given")
+    return robot.home
+
+
+def capability_of(input: CheckInput, robot: RobotProgram) -> Capability:
+    """Return the figures for the smallest listed payload that is not under the robot's own.
+
+    Raises:
+        MissingFigureError: no figures hold for so much payload.
+    """
+    listed = type_of(input, robot).capabilities
+    enough = [capability for capability in listed if capability.payload >= robot.payload]
+    if not enough:
+        raise MissingFigureError(
+            f"{robot.id}: robot type '{robot.type_name}' has no movement capability"
+            f" for a payload of {robot.payload:g} kg"
+        )
+    return min(enough, key=lambda capability: capability.payload)
+
+
+def half_diagonal_of(robot_type: RobotType) -> float:
+    """Return half the diagonal of the robot's outer dimensions, metres.
+
+    It is computed from the dimensions, where the type holds them.
+    """
+    size = robot_type.part.attributes.get("size")
+    if not isinstance(size, Part):
+        return robot_type.half_diagonal
+    sides = [size.attributes.get(name) for name in ("width", "length", "height")]
+    squares = [float(side) ** 2 for side in sides if isinstance(side, int | float)]
+    return sqrt(sum(squares)) / 2 if len(squares) == 3 else robot_type.half_diagonal
+
+
+def number_of(part: Part, attribute: str) -> float | None:
+    """Return an attribute that holds a number; None where it holds none."""
+    value = part.attributes.get(attribute)
+    return float(value) if isinstance(value, int | float) else None
+
+
+def kind_of(input: CheckInput, robot: RobotProgram) -> RobotKind:
+    """Return the kind of the robot.
+
+    Raises:
+        MissingFigureError: nobody contributed how robots of that type move.
+    """
+    kind = robot_kind_of(type_of(input, robot), input.robot_kinds)
+    if kind is None:
+        raise MissingFigureError(
+            f"{robot.id}: nobody contributed how robots of type '{robot.type_name}' move"
+        )
+    return kind
+
+
+def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
+    """Return what the robot's kind says of its speeds and heights.
+
+    Raises:
+        MissingFigureError: the kind is unknown, or lacks a figure itself.
+    """
+    kind = kind_of(input, robot)
+    actor = _as_actor(input, robot, kind)
+    scene = Scene(
+        name=input.program.name,
+        frame=input.program.frame,
+        tasks=(),
+        dependencies=(),
+        robots=(actor,),
+        areas=input.areas or (),
+        environment=input.environment,
+        minimum_separation=input.minimum_separation,
+        reserve=input.reserve,
+        position_error=input.position_error,
+    )
+    try:
+        return kind.kinematics(actor, scene)
+    except InfeasibleError as error:
+        raise MissingFigureError(f"{robot.id}: {error}") from None
+
+
+def move_kind_of(input: CheckInput, move: Move) -> MoveKind | None:
+    """Return what moves of that metaclass do; None where nobody contributed it."""
+    name = most_specific(move.metaclasses, input.move_kinds)
+    return input.move_kinds[name] if name else None
+
+
+def seconds_of(action: Action, robot_type: RobotType) -> float | None:
+    """Return how long an action takes: nothing unless a device acts; None where the type does not say."""
+    if not action.device:
+        return 0.0
+    device = robot_type.devices.get(action.device)
+    found = device.actions.get(action.name) if device else None
+    return found.duration if found else None
+
+
+def _as_actor(input: CheckInput, robot: RobotProgram, kind: RobotKind) -> Robot:
+    robot_type = type_of(input, robot)
+    mode = _MODES.get(robot.travel_mode)
+    if mode is None:
+        raise MissingFigureError(f"{robot.id}: there is no travel mode '{robot.travel_mode}'")
+    return Robot(
+        name=robot.id,
+        type=robot_type,
+        home=home_of(robot),
+        return_home=True,
+        payload=robot.payload,
+        travel_mode=mode,
+        clearance=half_diagonal_of(robot_type) + input.position_error,
+        kind=kind.name,
+        place=robot.place,
+    )

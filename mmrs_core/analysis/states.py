@@ -1,0 +1,100 @@
+"""Whether robots are on the ground or not when moves need it, whatever way Choices go.
+
+A forward pass over the moves of each robot propagates the set of states that it may be in.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from mmrs_core.analysis.figures import kinematics_of, move_kind_of
+from mmrs_core.analysis.verdicts import Gap, for_each_robot, safe, unknown_moves, violated
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+
+NAME = "states"
+GROUNDED = "grounded"
+MOVING = "moving"
+
+
+@dataclass(frozen=True, slots=True)
+class States:
+    """In which states a robot may be before and after each reachable move, by the move's index.
+
+    Attributes:
+        gaps: moves of kinds that nobody contributed: they are taken to leave the state as it was.
+    """
+
+    before: Mapping[int, frozenset[str]]
+    after: Mapping[int, frozenset[str]]
+    gaps: tuple[Gap, ...]
+
+    def only_grounded(self, move: int) -> bool:
+        """Return whether the robot is on the ground all through that move."""
+        return self.before[move] | self.after[move] == {GROUNDED}
+
+    def touches_ground(self, move: int) -> bool:
+        """Return whether the robot may be on the ground when that move begins or ends."""
+        return GROUNDED in self.before[move] | self.after[move]
+
+
+def states_of(input: CheckInput, robot: RobotProgram) -> States:
+    """Return the states of one robot; linear in its moves.
+
+    Raises:
+        MissingFigureError: nothing says whether the robot launches.
+    """
+    first = GROUNDED if kinematics_of(input, robot).launches else MOVING
+    before: dict[int, frozenset[str]] = {}
+    after: dict[int, frozenset[str]] = {}
+    gaps: dict[int, Gap] = {}
+    pending: deque[tuple[int, frozenset[str]]] = deque([(robot.start, frozenset({first}))])
+    while pending:
+        index, states = pending.popleft()
+        if states <= before.get(index, frozenset()):
+            continue
+        before[index] = before.get(index, frozenset()) | states
+        kind = move_kind_of(input, robot.moves[index])
+        if kind is None:
+            reason = f"nobody contributed what a move of kind '{robot.moves[index].kind}' does"
+            gaps[index] = Gap(index, reason)
+        leaves = kind.leaves if kind else None
+        after[index] = frozenset({leaves}) if leaves else before[index]
+        transition = robot.transitions.get(index)
+        pending.extend((way, after[index]) for way in (transition.ways if transition else ()))
+    return States(before, after, tuple(gaps.values()))
+
+
+def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
+    states = states_of(input, robot)
+    broken = False
+    for index in sorted(states.before):
+        move = robot.moves[index]
+        kind = move_kind_of(input, move)
+        wrong = states.before[index] - kind.needs if kind and kind.needs else frozenset()
+        if kind and wrong:
+            broken = True
+            yield violated(
+                NAME,
+                robot,
+                f"{move.kind} '{move.id}' begins while the robot may be {_words(wrong)},"
+                f" it needs it to be {_words(kind.needs)}",
+                index,
+            )
+    if states.gaps:
+        yield unknown_moves(NAME, robot, states.gaps)
+    elif not broken:
+        yield safe(NAME, robot, "every move begins in a state that it needs")
+
+
+def _words(states: frozenset[str]) -> str:
+    return " or ".join(sorted(states))
+
+
+STATES = Check(
+    name=NAME,
+    title="Robots are on the ground, in the air or under way when their moves need it.",
+    run=for_each_robot(NAME, _judge),
+)

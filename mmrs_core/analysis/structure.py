@@ -1,0 +1,100 @@
+"""Whether the moves of each robot form a way from its Start to its Stop."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from mmrs_core.analysis.verdicts import for_each_robot, safe, violated
+from mmrs_core.behaviour.program import BEHAVIOUR, Program, RobotProgram, Transition
+from mmrs_core.behaviour.walk import moves_reaching_stop, reachable_moves
+from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.scene import Name
+
+NAME = "structure"
+START: Name = (BEHAVIOUR, "Start")
+STOP: Name = (BEHAVIOUR, "Stop")
+
+
+def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
+    faults = [*_ends(robot), *_names(robot), *_transitions(robot)]
+    if not any(move is not None for _, move in faults):
+        faults += _dead_ends(robot)
+    faults += _strangers(input.program, robot)
+    for message, move in faults:
+        yield violated(NAME, robot, message, move)
+    if not faults:
+        yield safe(NAME, robot, f"every move is on a way from Start to Stop{_never(robot)}")
+
+
+def _ends(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
+    for metaclass, expected in ((START, robot.start), (STOP, robot.stop)):
+        found = [index for index, move in enumerate(robot.moves) if move.is_a(metaclass)]
+        if found != [expected]:
+            yield f"it has {len(found)} {metaclass[1]} moves instead of exactly one", None
+
+
+def _names(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
+    for id, number in Counter(move.id for move in robot.moves).items():
+        if number > 1:
+            yield f"{number} moves are called '{id}'", None
+    for slot, number in Counter(robot.slots).items():
+        if number > 1:
+            yield f"{number} slots are called '{slot}'", None
+
+
+def _transitions(robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
+    for index, move in enumerate(robot.moves):
+        transition = robot.transitions.get(index)
+        if index == robot.stop:
+            if transition is not None:
+                yield f"a transition leaves Stop '{move.id}'", index
+        elif transition is None:
+            yield f"{move.kind} '{move.id}' has no transition to a next move", index
+        else:
+            yield from ((fault, index) for fault in _faults(robot, index, transition))
+
+
+def _faults(robot: RobotProgram, index: int, transition: Transition) -> Iterator[str]:
+    move = robot.moves[index]
+    if transition.source != index:
+        yield f"the transition after '{move.id}' belongs to another move"
+    for way in transition.ways:
+        if not 0 <= way < len(robot.moves):
+            yield f"the transition after '{move.id}' leaves the robot"
+        elif way == robot.start:
+            yield f"the transition after '{move.id}' leads back to Start"
+    for slot in transition.waits:
+        if slot not in robot.slots:
+            yield f"the transition after '{move.id}' waits for '{slot}', which is no slot of the robot"
+
+
+def _dead_ends(robot: RobotProgram) -> list[tuple[str, int | None]]:
+    ending = moves_reaching_stop(robot)
+    return [
+        (f"no way leads from {move.kind} '{move.id}' to Stop", index)
+        for index, move in enumerate(robot.moves)
+        if index not in ending
+    ]
+
+
+def _strangers(program: Program, robot: RobotProgram) -> Iterator[tuple[str, int | None]]:
+    slots = {(other.id, slot) for other in program.robots for slot in other.slots}
+    for index, move in enumerate(robot.moves):
+        for action in (*move.before, *move.after):
+            for owner, slot in action.sets:
+                if (owner, slot) not in slots:
+                    yield f"'{move.id}' notifies '{owner}.{slot}', which is no slot of any robot", index
+
+
+def _never(robot: RobotProgram) -> str:
+    reachable = reachable_moves(robot)
+    never = [move.id for index, move in enumerate(robot.moves) if index not in reachable]
+    return f"; never reached: {', '.join(never)}" if never else ""
+
+
+STRUCTURE = Check(
+    name=NAME,
+    title="Every robot has one Start and one Stop, and every move is on a way to Stop.",
+    run=for_each_robot(NAME, _judge),
+)

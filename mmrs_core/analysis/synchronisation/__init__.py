@@ -1,0 +1,1 @@
+"""Whether robots that wait for each other can get stuck."""

@@ -1,0 +1,162 @@
+"""The verdict on synchronisation, with who waits for whom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+
+from mmrs_core.analysis.synchronisation.exploration import find_stuck
+from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
+from mmrs_core.analysis.synchronisation.network import Network, network_of
+from mmrs_core.analysis.synchronisation.search import (
+    LimitExceededError,
+    Stuck,
+    Trap,
+    find_trap,
+)
+from mmrs_core.behaviour.program import Program, SlotId
+from mmrs_core.behaviour.walk import moves_reaching_stop, reachable_moves
+from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
+
+NAME = "synchronisation"
+
+
+def _run(input: CheckInput) -> Iterator[Verdict]:
+    program = input.program
+    network = network_of(program)
+    if not network.awaited:
+        yield Verdict(NAME, Status.SAFE, message="no robot waits for another")
+        return
+    orphans = sorted(network.awaited - network.givers.keys())
+    for slot in orphans:
+        yield from _orphaned(program, network, slot)
+    if not orphans:
+        yield from _with_resets(program, network) if network.resets else _monotone(program, network)
+
+
+def _orphaned(program: Program, network: Network, slot: SlotId) -> Iterator[Verdict]:
+    """Yield that nobody ever activates a slot, once for each wait for it."""
+    for net in network.nets:
+        for node in net.nodes:
+            if slot in node.waits:
+                words = f"waits after {_move(program, net.robot, node.move)} for '{slot[1]}'"
+                yield _violated(program, net.robot, node.move, f"{words}, which nobody ever activates")
+
+
+def _monotone(program: Program, network: Network) -> Iterator[Verdict]:
+    fixpoint = must_fixpoint(network)
+    if not fixpoint.blocked:
+        yield _free(program, network, "whatever ways Choices go")
+        return
+    if not any(net.chooses for net in network.nets):
+        yield from _certainly_stuck(program, network, fixpoint.active, fixpoint.blocked)
+        return
+    endless = _endless(program)
+    if endless:
+        yield _undecided(f"no way leads {endless} to Stop")
+        return
+    try:
+        trap = find_trap(network, fixpoint.active)
+    except LimitExceededError:
+        yield _undecided("the Choices that robots make have more outcomes than were looked at")
+        return
+    if trap is None:
+        yield _free(program, network, "whatever ways Choices go")
+    else:
+        yield from _trapped(program, network, trap)
+
+
+def _certainly_stuck(
+    program: Program, network: Network, active: frozenset[SlotId], blocked: dict[int, tuple[int, ...]]
+) -> Iterator[Verdict]:
+    stuck = [
+        Stuck(number, node, network.nets[number].nodes[node].waits - active)
+        for number, nodes in blocked.items()
+        for node in nodes
+    ]
+    yield from _stuck_verdicts(program, network, stuck, "")
+
+
+def _trapped(program: Program, network: Network, trap: Trap) -> Iterator[Verdict]:
+    choices = [
+        f"{net.robot} goes on with {_move(program, net.robot, net.nodes[after].move)}"
+        f" after {_move(program, net.robot, net.nodes[before].move)}"
+        for net, way in zip(network.nets, trap.ways, strict=True)
+        for before, after in pairwise(way)
+        if len(net.nodes[before].ways) > 1
+    ]
+    yield from _stuck_verdicts(program, network, trap.stuck, f" if {', '.join(choices)}" if choices else "")
+
+
+def _with_resets(program: Program, network: Network) -> Iterator[Verdict]:
+    try:
+        stuck = find_stuck(network)
+    except LimitExceededError:
+        yield _undecided("slots become inactive again, in more orders of events than were looked at")
+        return
+    if stuck is None:
+        yield _free(program, network, "in any order of events")
+    else:
+        yield from _stuck_verdicts(program, network, stuck, " in some order of events")
+
+
+def _stuck_verdicts(
+    program: Program, network: Network, stuck: Iterable[Stuck], condition: str
+) -> Iterator[Verdict]:
+    found = tuple(stuck)
+    waiting = {each.net for each in found}
+    for each in found:
+        net = network.nets[each.net]
+        move = net.nodes[each.node].move
+        reasons = "; ".join(_reason(program, network, slot, waiting) for slot in sorted(each.missing))
+        words = f"waits for ever after {_move(program, net.robot, move)}{condition}: {reasons}"
+        yield _violated(program, net.robot, move, words)
+
+
+def _reason(program: Program, network: Network, slot: SlotId, waiting: set[int]) -> str:
+    """Return why a slot is not activated: who would, and whether that robot waits itself."""
+    givers = [
+        f"{network.nets[net].robot} on "
+        f"{_move(program, network.nets[net].robot, network.nets[net].nodes[node].move)}"
+        f"{', which itself waits for ever' if net in waiting else ''}"
+        for net, node in network.givers.get(slot, ())
+    ]
+    return f"'{slot[1]}' would be activated by {' or '.join(givers)}" if givers else f"'{slot[1]}' by nobody"
+
+
+def _move(program: Program, robot: str, index: int) -> str:
+    move = program.robot(robot).moves[index]
+    return f"{move.kind} '{move.id}'"
+
+
+def _violated(program: Program, robot: str, index: int, words: str) -> Verdict:
+    move = program.robot(robot).moves[index]
+    return Verdict(NAME, Status.VIOLATED, robot, move=move.id, message=f"{robot}: {words}", place=move.place)
+
+
+def _endless(program: Program) -> str:
+    """Return the first move that is made and has no way to Stop, with its robot; empty if there is none."""
+    for robot in program.robots:
+        lost = reachable_moves(robot) - moves_reaching_stop(robot)
+        if lost:
+            return f"from {_move(program, robot.id, min(lost))} of {robot.id}"
+    return ""
+
+
+def _free(program: Program, network: Network, scope: str) -> Verdict:
+    endless = _endless(program)
+    if endless:
+        return _undecided(f"no way leads {endless} to Stop")
+    words = f"every robot comes to its Stop {scope}; slots awaited: {len(network.awaited)}"
+    return Verdict(NAME, Status.SAFE, message=words)
+
+
+def _undecided(reason: str) -> Verdict:
+    return Verdict(NAME, Status.UNKNOWN, message=f"whether robots wait for ever is not decided: {reason}")
+
+
+SYNCHRONISATION = Check(
+    name=NAME,
+    title="Every awaited slot is activated by somebody, and no run leaves a robot waiting for ever.",
+    run=_run,
+)

@@ -1,0 +1,97 @@
+"""All orders of events, one by one, for behaviours that make slots inactive again.
+
+A notify to several slots reaches them one after the other, in any order, because that is what happens
+on a network; this contains the case in which it reaches all at once.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from mmrs_core.analysis.synchronisation.network import Net, Network
+from mmrs_core.analysis.synchronisation.search import LimitExceededError, Stuck
+from mmrs_core.behaviour.program import SlotId
+
+LIMIT = 50_000
+"""How many states are looked at before the exploration gives up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a robot is: at a node, in a group of slots that it sets, of which some are left."""
+
+    node: int
+    group: int
+    left: frozenset[SlotId]
+
+
+State: TypeAlias = "tuple[tuple[Spot, ...], frozenset[SlotId]]"
+
+
+def find_stuck(network: Network, *, limit: int = LIMIT) -> tuple[Stuck, ...] | None:
+    """Return who is stuck in the first deadlock met, breadth first, or None if there is none.
+
+    Raises:
+        LimitExceededError: after so many states without an answer.
+    """
+    first: State = (tuple(_enter(net, 0) for net in network.nets), frozenset())
+    seen = {first}
+    pending = deque([first])
+    while pending:
+        state = pending.popleft()
+        following = list(_steps(network, state))
+        if not following:
+            stuck = _stuck(network, state)
+            if stuck:
+                return stuck
+        for each in following:
+            if each not in seen:
+                if len(seen) >= limit:
+                    raise LimitExceededError
+                seen.add(each)
+                pending.append(each)
+    return None
+
+
+def _steps(network: Network, state: State) -> Iterator[State]:
+    spots, active = state
+    for number, spot in enumerate(spots):
+        net = network.nets[number]
+        for after, now in _moves(net, spot, active):
+            yield (*spots[:number], after, *spots[number + 1 :]), now
+
+
+def _moves(net: Net, spot: Spot, active: frozenset[SlotId]) -> Iterator[tuple[Spot, frozenset[SlotId]]]:
+    node = net.nodes[spot.node]
+    if spot.left:
+        value = node.sets[spot.group][1]
+        for slot in sorted(spot.left):
+            yield _without(net, spot, slot), active | {slot} if value else active - {slot}
+    elif node.waits <= active:
+        for way in node.ways:
+            yield _enter(net, way), active
+
+
+def _enter(net: Net, node: int) -> Spot:
+    sets = net.nodes[node].sets
+    return Spot(node, 0, sets[0][0] if sets else frozenset())
+
+
+def _without(net: Net, spot: Spot, slot: SlotId) -> Spot:
+    left = spot.left - {slot}
+    sets = net.nodes[spot.node].sets
+    if left or spot.group + 1 == len(sets):
+        return replace(spot, left=left)
+    return Spot(spot.node, spot.group + 1, sets[spot.group + 1][0])
+
+
+def _stuck(network: Network, state: State) -> tuple[Stuck, ...]:
+    spots, active = state
+    return tuple(
+        Stuck(number, spot.node, network.nets[number].nodes[spot.node].waits - active)
+        for number, spot in enumerate(spots)
+        if not network.nets[number].nodes[spot.node].waits <= active
+    )

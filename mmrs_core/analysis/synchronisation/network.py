@@ -1,0 +1,133 @@
+"""What matters of a behaviour for synchronisation: slots set, slots awaited, ways to go.
+
+Moves that neither set nor await a slot that matters, and lead one way only, are passed over: they
+are always possible and touch nothing. A node stands for a move that remains. The reduction keeps
+deadlocks: a robot is stuck in the reduced network exactly if it is in the behaviour.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
+from mmrs_core.behaviour.walk import reachable_moves
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A move that synchronisation depends on, with the transition that leaves it.
+
+    Attributes:
+        move: index in the robot.
+        sets: groups of slots, in order; each group is set to its value by one notify.
+        waits: what the transition waits for.
+        ways: numbers of the nodes that may follow; empty for Stop and for a move that never ends.
+    """
+
+    move: int
+    sets: tuple[tuple[frozenset[SlotId], bool], ...] = ()
+    waits: frozenset[SlotId] = frozenset()
+    ways: tuple[int, ...] = ()
+
+    @property
+    def gives(self) -> frozenset[SlotId]:
+        """Return the slots that the move activates."""
+        return frozenset(slot for slots, active in self.sets if active for slot in slots)
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """The nodes of one robot that can be reached; the first is where it begins, `stop` where it ends."""
+
+    robot: str
+    nodes: tuple[Node, ...]
+    stop: int | None
+
+    @property
+    def chooses(self) -> bool:
+        """Return whether some node leads several ways."""
+        return any(len(node.ways) > 1 for node in self.nodes)
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """The nets of all robots.
+
+    Attributes:
+        awaited: slots that some transition waits for: no others matter.
+        resets: whether a slot that matters is ever made inactive.
+        givers: where each slot is activated: pairs of a net's number and a node's.
+    """
+
+    nets: tuple[Net, ...]
+    awaited: frozenset[SlotId]
+    resets: bool
+    givers: Mapping[SlotId, tuple[tuple[int, int], ...]]
+
+
+def network_of(program: Program) -> Network:
+    """Return the network of a behaviour; linear in its moves, actions and transitions."""
+    reachable = {robot.id: reachable_moves(robot) for robot in program.robots}
+    awaited = frozenset(
+        (robot.id, slot)
+        for robot in program.robots
+        for move in reachable[robot.id]
+        if move in robot.transitions
+        for slot in robot.transitions[move].waits
+    )
+    nets = tuple(_net(robot, reachable[robot.id], awaited) for robot in program.robots)
+    resets = any(not active for net in nets for node in net.nodes for _, active in node.sets)
+    givers: dict[SlotId, list[tuple[int, int]]] = defaultdict(list)
+    for i, net in enumerate(nets):
+        for j, node in enumerate(net.nodes):
+            for slot in node.gives:
+                givers[slot].append((i, j))
+    return Network(nets, awaited, resets, {slot: tuple(where) for slot, where in givers.items()})
+
+
+def _net(robot: RobotProgram, reachable: frozenset[int], awaited: frozenset[SlotId]) -> Net:
+    full = {move: _node(robot, move, awaited) for move in reachable}
+    kept = [move for move in sorted(reachable) if move == robot.stop or _matters(full[move])]
+    kept_moves = frozenset(kept)
+    first = _next_kept(robot.start, full, kept_moves)
+    order = [first, *(move for move in kept if move != first)]
+    number = {move: index for index, move in enumerate(order)}
+    nodes: list[Node] = []
+    for move in order:
+        node = full[move]
+        nexts = dict.fromkeys(_next_kept(way, full, kept_moves) for way in node.ways)
+        for way in nexts:
+            if way not in number:
+                number[way] = len(order)
+                order.append(way)
+        nodes.append(Node(move, node.sets, node.waits, tuple(number[way] for way in nexts)))
+    return Net(robot.id, tuple(nodes), number.get(robot.stop))
+
+
+def _node(robot: RobotProgram, index: int, awaited: frozenset[SlotId]) -> Node:
+    move = robot.moves[index]
+    groups = ((frozenset(action.sets) & awaited, action.active) for action in (*move.before, *move.after))
+    transition = robot.transitions.get(index)
+    if transition is None:
+        return Node(index, tuple(group for group in groups if group[0]))
+    return Node(
+        move=index,
+        sets=tuple(group for group in groups if group[0]),
+        waits=frozenset((robot.id, slot) for slot in transition.waits),
+        ways=tuple(dict.fromkeys(transition.ways)),
+    )
+
+
+def _matters(node: Node) -> bool:
+    return bool(node.sets or node.waits or len(node.ways) != 1)
+
+
+def _next_kept(move: int, full: Mapping[int, Node], kept: frozenset[int]) -> int:
+    """Return the first move from here on that matters; one of the loop itself where none ever does."""
+    passed: set[int] = set()
+    while move not in kept and move not in passed:
+        passed.add(move)
+        move = full[move].ways[0]
+    return move

@@ -1,0 +1,230 @@
+"""When moves may begin and end: bounds over all runs, in seconds after the mission's start.
+
+The earliest times are those of a run in which every Choice goes every way at once and every move is as
+quick as it can be: Knuth's generalisation of Dijkstra's algorithm to sums and maxima finds them. The
+latest times follow the moves and the slots in the order of their dependencies; what depends on itself
+(a loop) has no latest time. Both hold for runs that end: whether they do is another check's matter.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from heapq import heappop, heappush
+from itertools import count
+from math import inf
+from typing import TypeAlias
+
+from mmrs_core.analysis.certainty import certain_moves
+from mmrs_core.analysis.durations import Durations, durations_of
+from mmrs_core.analysis.motion import motions
+from mmrs_core.analysis.verdicts import once
+from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
+from mmrs_core.contributions.checks import CheckInput
+
+At: TypeAlias = tuple[str, int]
+"""A move: the robot's identifier and the move's index."""
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Bounds on the run of a whole behaviour.
+
+    Attributes:
+        durations: of every robot's moves.
+        earliest, latest: bounds of when a move begins; a move that can never begin is missing from
+            the earliest, one without a bound is inf in the latest.
+        slots: (earliest, latest) activation of each slot that somebody activates.
+    """
+
+    durations: Mapping[str, Durations]
+    earliest: Mapping[At, float]
+    latest: Mapping[At, float]
+    slots: Mapping[SlotId, tuple[float, float]]
+
+    def earliest_end(self, robot: str, move: int) -> float:
+        """Return when a move and its actions have ended at the earliest; inf where it never begins."""
+        return self.earliest.get((robot, move), inf) + self.durations[robot].of[move].whole.low
+
+    def latest_end(self, robot: str, move: int) -> float:
+        """Return when a move and its actions have ended at the latest."""
+        return self.latest.get((robot, move), inf) + self.durations[robot].of[move].whole.high
+
+    def latest_release(self, robot: RobotProgram, waits: tuple[str, ...]) -> float:
+        """Return by when all these slots of a robot have been activated; -inf where there are none."""
+        unset = (inf, inf)
+        return max((self.slots.get((robot.id, slot), unset)[1] for slot in waits), default=-inf)
+
+
+def times_of(input: CheckInput) -> Times:
+    """Return the bounds for all robots; found once for all checks. Time n log n in the moves."""
+    return once(input, _times)
+
+
+def _times(input: CheckInput) -> Times:
+    moving = motions(input)
+    durations = {robot.id: durations_of(input, robot, moving[robot.id]) for robot in input.program.robots}
+    earliest, first = _Earliest(input.program, durations).run()
+    latest, last = _latest(input.program, durations)
+    slots = {slot: (time, last.get(slot, inf)) for slot, time in first.items()}
+    return Times(durations, earliest, latest, slots)
+
+
+@dataclass(slots=True)
+class _Earliest:
+    """A run in which everything that may happen happens, as early as it may."""
+
+    program: Program
+    durations: Mapping[str, Durations]
+    begins: dict[At, float] = field(default_factory=dict)
+    slots: dict[SlotId, float] = field(default_factory=dict)
+    ended: dict[SlotId, list[At]] = field(default_factory=lambda: defaultdict(list))
+    agenda: list[tuple[float, int, str, At | SlotId]] = field(default_factory=list)
+    order: Iterator[int] = field(default_factory=count)
+
+    def run(self) -> tuple[dict[At, float], dict[SlotId, float]]:
+        robots = {robot.id: robot for robot in self.program.robots}
+        for robot in self.program.robots:
+            self._plan(0.0, "begin", (robot.id, robot.start))
+        while self.agenda:
+            now, _, event, subject = heappop(self.agenda)
+            if event == "slot":
+                self._activate(now, (subject[0], str(subject[1])))
+            else:
+                at = (subject[0], int(subject[1]))
+                self._begin(now, at) if event == "begin" else self._end(now, at, robots[at[0]])
+        return self.begins, self.slots
+
+    def _plan(self, time: float, event: str, subject: At | SlotId) -> None:
+        heappush(self.agenda, (time, next(self.order), event, subject))
+
+    def _begin(self, now: float, at: At) -> None:
+        if at in self.begins:
+            return
+        self.begins[at] = now
+        duration = self.durations[at[0]].of[at[1]]
+        for setting in duration.settings:
+            for slot in setting.slots if setting.active else ():
+                self._plan(now + setting.after.low, "slot", slot)
+        self._plan(now + duration.whole.low, "end", at)
+
+    def _end(self, now: float, at: At, robot: RobotProgram) -> None:
+        transition = robot.transitions.get(at[1])
+        if transition is None:
+            return
+        for name in transition.waits:
+            if (robot.id, name) not in self.slots:
+                self.ended[robot.id, name].append(at)
+                return
+        for way in transition.ways:
+            self._plan(now, "begin", (robot.id, way))
+
+    def _activate(self, now: float, slot: SlotId) -> None:
+        if slot in self.slots:
+            return
+        self.slots[slot] = now
+        for at in self.ended.pop(slot, ()):
+            self._plan(now, "end", at)
+
+
+def _latest(
+    program: Program, durations: Mapping[str, Durations]
+) -> tuple[dict[At, float], dict[SlotId, float]]:
+    """Return the latest begins and activations, in topological order; what is in a loop is missing."""
+    graph = _Dependencies(program, durations)
+    begins: dict[At, float] = {}
+    slots: dict[SlotId, float] = {}
+    for node in graph.in_order():
+        if node in graph.activators:
+            slots[node[0], str(node[1])] = _latest_activation(graph, begins, node)
+        else:
+            at = (node[0], int(node[1]))
+            begins[at] = _latest_begin(graph, begins, slots, at)
+    return begins, slots
+
+
+@dataclass(frozen=True, slots=True)
+class _Activation:
+    at: At
+    after: float
+    certain: bool
+
+
+class _Dependencies:
+    """What the latest begin of a move and the latest activation of a slot depend on.
+
+    Slots are told from moves by their second part: a name, not an index.
+    """
+
+    def __init__(self, program: Program, durations: Mapping[str, Durations]) -> None:
+        self.durations = durations
+        self.activators: dict[At | SlotId, list[_Activation]] = defaultdict(list)
+        self.resets: set[SlotId] = set()
+        self.arrivals: dict[At, list[tuple[At, tuple[SlotId, ...]]]] = {}
+        for robot in program.robots:
+            self._add(robot)
+
+    def _add(self, robot: RobotProgram) -> None:
+        certain = certain_moves(robot)
+        for index, duration in self.durations[robot.id].of.items():
+            self.arrivals.setdefault((robot.id, index), [])
+            for setting in duration.settings:
+                for slot in setting.slots:
+                    activation = _Activation((robot.id, index), setting.after.high, index in certain)
+                    if setting.active:
+                        self.activators[slot].append(activation)
+                    else:
+                        self.resets.add(slot)
+            transition = robot.transitions.get(index)
+            if transition is not None:
+                waits = tuple((robot.id, name) for name in transition.waits)
+                for way in transition.ways:
+                    self.arrivals.setdefault((robot.id, way), []).append(((robot.id, index), waits))
+
+    def in_order(self) -> Iterator[At | SlotId]:
+        """Yield every node after all that it depends on; nodes in or behind a loop never come."""
+        needs: dict[At | SlotId, int] = defaultdict(int)
+        feeds: dict[At | SlotId, list[At | SlotId]] = defaultdict(list)
+        for source, target in self._edges():
+            needs[target] += 1
+            feeds[source].append(target)
+        nodes: list[At | SlotId] = [*self.arrivals, *self.activators]
+        ready = [node for node in nodes if not needs[node]]
+        while ready:
+            node = ready.pop()
+            yield node
+            for target in feeds[node]:
+                needs[target] -= 1
+                if not needs[target]:
+                    ready.append(target)
+
+    def _edges(self) -> Iterator[tuple[At | SlotId, At | SlotId]]:
+        for target, arrivals in self.arrivals.items():
+            for source, waits in arrivals:
+                yield source, target
+                yield from ((slot, target) for slot in waits if slot in self.activators)
+        for slot, activations in self.activators.items():
+            yield from ((activation.at, slot) for activation in activations)
+
+
+def _latest_activation(graph: _Dependencies, begins: Mapping[At, float], node: At | SlotId) -> float:
+    """Return when a slot is active at the latest.
+
+    Any activation that is certain bounds it; and some activation comes, or the run does not end.
+    """
+    if (node[0], str(node[1])) in graph.resets:
+        return inf
+    activations = graph.activators[node]
+    certain = [begins[each.at] + each.after for each in activations if each.certain]
+    return min(min(certain, default=inf), max(begins[each.at] + each.after for each in activations))
+
+
+def _latest_begin(
+    graph: _Dependencies, begins: Mapping[At, float], slots: Mapping[SlotId, float], at: At
+) -> float:
+    latest = 0.0
+    for source, waits in graph.arrivals[at]:
+        ended = begins[source] + graph.durations[source[0]].of[source[1]].whole.high
+        latest = max(latest, ended, *(slots.get(slot, inf) for slot in waits))
+    return latest
