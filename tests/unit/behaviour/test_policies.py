@@ -1,0 +1,30 @@
+"""Which response a fault gets."""
+
+from __future__ import annotations
+
+from mmrs_core.behaviour.policies import in_precedence, patience, response_to
+from mmrs_core.scene import Policy
+
+
+def test_the_policy_of_a_wait_goes_before_all_others():
+    found = in_precedence(
+        transition=[Policy("WAIT_TOO_LONG", "LAND")],
+        mission=[Policy("WAIT_TOO_LONG", "RETURN"), Policy("LINK_LOST", "RETURN")],
+        robot_type=[Policy("LINK_LOST", "HOLD"), Policy("PEER_LOST", "LAND")],
+        kind={"PEER_LOST": "HOLD", "BATTERY_LOW": "RETURN"},
+    )
+    events = ("WAIT_TOO_LONG", "LINK_LOST", "PEER_LOST", "BATTERY_LOW")
+    assert [response_to(event, found) for event in events] == ["LAND", "RETURN", "LAND", "RETURN"]
+
+
+def test_a_fault_that_nobody_provided_for_has_the_robot_hold():
+    assert response_to("BATTERY_EMPTY", ()) == "HOLD"
+
+
+def test_a_declared_delay_goes_before_the_platforms():
+    assert patience("WAIT_TOO_LONG", [Policy("WAIT_TOO_LONG", "LAND", 7.0)]) == 7.0
+    assert patience("WAIT_TOO_LONG", [Policy("WAIT_TOO_LONG", "LAND")]) == 600.0
+
+
+def test_a_wait_without_a_policy_is_borne_for_ever():
+    assert patience("WAIT_TOO_LONG", ()) is None
