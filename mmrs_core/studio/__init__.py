@@ -1,1 +1,0 @@
-"""The map studio for operators."""
