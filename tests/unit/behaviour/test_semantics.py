@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from mmrs_core.behaviour.semantics import (
     Phase,
     Point,
@@ -57,8 +58,16 @@ def test_actions_of_stop_come_before_the_end():
     stop = each.moves[each.stop]
     with_action = type(stop)(stop.id, stop.metaclasses, after=(use("horn", "blow"),))
     each = type(each)(
-        each.id, each.type_name, each.travel_mode, 0.0, each.home, (), (each.moves[0], with_action),
-        each.transitions, 0, 1,
+        each.id,
+        each.type_name,
+        each.travel_mode,
+        0.0,
+        each.home,
+        (),
+        (each.moves[0], with_action),
+        each.transitions,
+        0,
+        1,
     )
     assert run_alone(each)[-1] == "act stop post:0"
 

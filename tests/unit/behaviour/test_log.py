@@ -1,0 +1,174 @@
+"""Logs as files."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema
+import pytest
+
+from mmrs_core.behaviour.log import (
+    SCHEMA,
+    LogWriter,
+    clear_logs,
+    faults_of,
+    log_name,
+    merge,
+    read_log,
+    read_logs,
+    to_line,
+)
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.errors import InvalidModelError, UnreadableError
+
+FIRST = StepRecord("run", "r", 0, 1, 0.0, "begin", "start")
+SECOND = StepRecord("run", "r", 1, 2, 0.5, "ntf", "start", "post:0", "+q.s")
+OTHER = StepRecord("run", "q", 0, 3, 0.5, "begin", "start")
+
+
+def good() -> dict[str, object]:
+    return json.loads(to_line(SECOND))
+
+
+def test_what_was_written_is_read_again(tmp_path):
+    with LogWriter(tmp_path) as log:
+        for record in (FIRST, SECOND):
+            log.write(record)
+    assert read_log(tmp_path / log_name("r")) == (FIRST, SECOND)
+
+
+def test_each_robot_has_its_own_log_and_a_folder_is_read_merged(tmp_path):
+    with LogWriter(tmp_path) as log:
+        for record in (OTHER, FIRST, SECOND):
+            log.write(record)
+    assert len(list(tmp_path.iterdir())) == 2
+    assert read_logs([tmp_path]) == (FIRST, SECOND, OTHER)
+
+
+def test_steps_are_merged_by_logical_time_then_robot():
+    same = StepRecord("run", "a", 0, 1, 9.0, "begin", "start")
+    assert merge([SECOND, FIRST, same]) == (same, FIRST, SECOND)
+
+
+def test_a_notify_is_on_the_disk_before_the_log_is_closed(tmp_path, monkeypatch):
+    synced = []
+    monkeypatch.setattr("os.fsync", synced.append)
+    log = LogWriter(tmp_path)
+    log.write(FIRST)
+    assert synced == []
+    log.write(SECOND)
+    assert len(synced) == 1
+    assert read_log(tmp_path / log_name("r")) == (FIRST, SECOND)
+    log.close()
+
+
+def test_a_log_of_an_earlier_run_is_replaced_unless_it_is_to_go_on(tmp_path):
+    for append, expected in ((False, (FIRST,)), (True, (FIRST, SECOND))):
+        with LogWriter(tmp_path, append=append) as log:
+            log.write(SECOND if append else FIRST)
+        assert read_log(tmp_path / log_name("r")) == expected
+
+
+def test_clearing_removes_logs_only(tmp_path):
+    (tmp_path / "r.jsonl").write_text("")
+    (tmp_path / "notes.txt").write_text("")
+    clear_logs(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+@pytest.mark.parametrize(
+    "robot", ["../../etc/passwd", ".", "..", "a/b", "a\\b", "", "x" * 5000, "Röhre 7", "a\nb", "con.jsonl"]
+)
+def test_the_name_of_a_log_stays_in_its_folder_whatever_the_robots_name(robot, tmp_path):
+    name = log_name(robot)
+    path = tmp_path / name
+    path.write_text("")
+    assert path.resolve().parent == tmp_path.resolve()
+    assert name.endswith(".jsonl")
+    assert name.count(".") == 1
+
+
+def test_different_robots_have_different_logs():
+    names = ["a b", "a_b", "a%20b", "a", "A", "x" * 5000, "x" * 5001, "a.b", ""]
+    assert len({log_name(name) for name in names}) == len(names)
+
+
+def test_every_bad_line_is_reported_with_its_number(tmp_path):
+    path = tmp_path / "r.jsonl"
+    path.write_text(f"{to_line(FIRST)}\nnonsense\n{to_line(SECOND)}\n[]\n\n")
+    with pytest.raises(InvalidModelError) as caught:
+        read_log(path)
+    assert [fault.place.line for fault in caught.value.diagnostics] == [2, 4, 5]
+    assert str(caught.value.diagnostics[0]).startswith(f"{path}:2: error: line is not JSON")
+
+
+def test_a_line_that_was_cut_off_is_accepted_only_in_a_partial_log(tmp_path):
+    path = tmp_path / "r.jsonl"
+    path.write_text(to_line(FIRST) + "\n" + to_line(SECOND)[:20])
+    assert read_log(path, partial=True) == (FIRST,)
+    with pytest.raises(InvalidModelError):
+        read_log(path)
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe", None])
+def test_a_file_that_is_no_text_or_not_there_is_unreadable(tmp_path, content):
+    path = tmp_path / "r.jsonl"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(UnreadableError, match="cannot be read as a log"):
+        read_log(path)
+
+
+def test_a_folder_without_logs_is_unreadable(tmp_path):
+    with pytest.raises(UnreadableError, match="no log in this folder"):
+        read_logs([tmp_path])
+
+
+@pytest.mark.parametrize("line", ["[" * 50_000, '{"time": NaN}', '{"x": "' + "y" * 200_000 + '"}'])
+def test_hostile_lines_are_reported_like_any_other(tmp_path, line):
+    path = tmp_path / "r.jsonl"
+    path.write_text(line + "\n")
+    with pytest.raises(InvalidModelError):
+        read_log(path)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("run", ""),
+        ("run", 7),
+        ("robot", None),
+        ("seq", -1),
+        ("seq", 1.5),
+        ("seq", True),
+        ("lamport", "3"),
+        ("time", -0.1),
+        ("time", "0"),
+        ("time", False),
+        ("label", "jump"),
+        ("move", ""),
+        ("detail", 1),
+        ("slot", []),
+        ("extra", 1),
+    ],
+)
+def test_reader_and_schema_refuse_the_same_lines(field, value):
+    schema = json.loads(SCHEMA.read_text())
+    line = {**good(), field: value}
+    assert faults_of(line)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(line, schema)
+
+
+@pytest.mark.parametrize("field", list(good()))
+def test_reader_and_schema_miss_the_same_fields(field):
+    line = good()
+    del line[field]
+    assert faults_of(line) == (f"{field}: missing",)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(line, json.loads(SCHEMA.read_text()))
+
+
+@pytest.mark.parametrize("record", [FIRST, SECOND, OTHER])
+def test_what_is_written_keeps_the_schema(record):
+    jsonschema.validate(json.loads(to_line(record)), json.loads(SCHEMA.read_text()))
