@@ -1,0 +1,110 @@
+from __future__ import annotations
+
+import pytest
+from mmrs_multicopter.constraints import CONSTRAINTS
+from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, MULTICOPTER, TAKE_OFF
+
+from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages import context as ctx
+from mmrs_core.languages import mission as mml
+
+ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
+
+
+def drone(registry, size=None, **features):
+    measures = {"width": 0.5, "length": 0.5, "height": 0.2, "weight": 2.0}
+    propellers = {"propellers": 4, "propellerSize": 254.0, **(size or {})}
+    whole = registry.create(*DRONE_SIZE, **measures, **propellers)
+    return registry.create(*DRONE, **{"name": "Quad", "maxAltitude": 100.0, "size": whole, **features})
+
+
+def plain(registry):
+    return registry.create(ROBOT_LANGUAGE, "Robot", name="Quad")
+
+
+def plainly_sized(registry):
+    return registry.create(*DRONE, name="Quad", size=registry.create(ROBOT_LANGUAGE, "Size", width=0.5))
+
+
+def mission(registry, altitude=0.0, home_up=0.0):
+    point = mml.RelativeCoordinate(x=1.0, y=1.0, z=altitude)
+    visit = registry.create("urn:test:visits:1.0", "Visit", name="peak", point=point)
+    home = mml.RelativeCoordinate(x=0.0, y=0.0, z=home_up)
+    team = mml.Team(robots=[mml.Robot(name="Alba", type="Quad", home=home)])
+    return mml.Mission(name="m", team=team, tasks=[visit], origin=mml.RelativeCoordinate(x=0.0, y=0.0))
+
+
+def weather(wind):
+    return ctx.Context(name="valley", environment=ctx.Environment(windSpeed=wind))
+
+
+def flying(registry, metaclass, **features):
+    move = registry.create(*metaclass, name="m", **features)
+    return bl.Behaviour(robots=[bl.Robot(id="a", typeName="Quad", moves=[move])])
+
+
+CASES = {
+    "MUL001": (lambda r: [drone(r, maxAltitude=0.0)], lambda r: [drone(r, maxAltitude=1.0)]),
+    "MUL002": (lambda r: [drone(r, launchType="HTOL")], lambda r: [drone(r, launchType="VTOL")]),
+    "MUL003": (lambda r: [plainly_sized(r)], lambda r: [drone(r)]),
+    "MUL004": (lambda r: [drone(r, {"propellers": 2})], lambda r: [drone(r, {"propellers": 3})]),
+    "MUL005": (lambda r: [drone(r, {"propellerSize": 0.0})], lambda r: [drone(r, {"propellerSize": 0.1})]),
+    "MUL006": (lambda r: [drone(r, {"propellerSize": 10.0})], lambda r: [drone(r, {"propellerSize": 127.0})]),
+    "MUL007": (lambda r: [drone(r, positionHold=0.0)], lambda r: [drone(r)]),
+    "MUL008": (
+        lambda r: [drone(r, positionHold=8.0), mission(r), weather(8.5)],
+        lambda r: [drone(r, positionHold=8.0), mission(r), weather(8.0)],
+    ),
+    "MUL009": (
+        lambda r: [drone(r), mission(r, altitude=121.0, home_up=20.0)],
+        lambda r: [drone(r), mission(r, altitude=120.0, home_up=20.0)],
+    ),
+    "MUL010": (
+        lambda r: [flying(r, TAKE_OFF, altitude=0.0)],
+        lambda r: [flying(r, TAKE_OFF, altitude=2.0)],
+    ),
+    "MUL011": (
+        lambda r: [drone(r), flying(r, TAKE_OFF, altitude=101.0)],
+        lambda r: [drone(r), flying(r, TAKE_OFF, altitude=100.0)],
+    ),
+    "MUL012": (
+        lambda r: [plain(r), flying(r, TAKE_OFF, altitude=9.0)],
+        lambda r: [drone(r), flying(r, TAKE_OFF, altitude=9.0)],
+    ),
+    "MUL013": (lambda r: [plain(r), flying(r, LAND)], lambda r: [drone(r), flying(r, LAND)]),
+    "MUL014": (lambda r: [plain(r), flying(r, GO_TO)], lambda r: [drone(r), flying(r, GO_TO)]),
+}
+BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
+
+
+def test_every_constraint_has_a_failing_and_a_passing_model():
+    assert set(CASES) == set(BY_CODE)
+
+
+@pytest.mark.parametrize("code", sorted(CASES))
+def test_a_breach_is_found_and_starts_with_its_culprit(code, registry, breaches):
+    found = breaches(BY_CODE[code], CASES[code][0](registry))
+    assert len(found) == 1
+    assert found[0][0].islower()
+    assert not found[0].endswith(".")
+
+
+@pytest.mark.parametrize("code", sorted(CASES))
+def test_a_model_that_keeps_the_constraint_passes(code, registry, breaches):
+    assert breaches(BY_CODE[code], CASES[code][1](registry)) == []
+
+
+@pytest.mark.parametrize("metaclass", [DRONE, DRONE_SIZE, TAKE_OFF, LAND, GO_TO], ids=lambda name: name[1])
+def test_elements_without_any_feature_set_break_no_constraint(metaclass, registry, breaches):
+    empty = registry.create(*metaclass)
+    assert [found for each in CONSTRAINTS for found in breaches(each, [empty])] == []
+
+
+def test_a_team_with_a_robot_of_unknown_ceiling_breaks_no_height(registry, breaches):
+    models = [plain(registry), mission(registry, altitude=500.0)]
+    assert breaches(BY_CODE["MUL009"], models) == []
+
+
+def test_every_code_belongs_to_this_plugin():
+    assert all(code.startswith("MUL") for code in BY_CODE)
+    assert MULTICOPTER == "urn:mmrs:multicopter:1.0"
