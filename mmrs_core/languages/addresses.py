@@ -42,11 +42,11 @@ class Addresses:
         source = element._mmrs_source
         return source.ids.get(element) if source is not None and source.ids else None
 
-    def href(self, element: Element, where: str) -> str:
+    def href(self, element: Element) -> str:
         """Return the reference to an element.
 
         Raises:
-            ValueError: if it stands neither here nor in a file; the message begins with ``where``.
+            ValueError: if it stands neither here nor in a file.
         """
         if self.stands_here(element):
             return f"#{self.fragment(element)}"
@@ -57,9 +57,9 @@ class Addresses:
                 break
         source = top._mmrs_source
         if source is None or source.path is None or top not in source.roots:
-            raise ValueError(f"{where}: refers to {element!r}, which stands in no file")
+            raise ValueError(f"refers to {element!r}, which stands in no file")
         if self._folder is None:
-            raise ValueError(f"{where}: refers to {source.file}; say which file the model is written to")
+            raise ValueError(f"refers to {source.file}; say which file the model is written to")
         return f"{relative_href(source.path, self._folder)}#{self._fragment_in(source, top, element)}"
 
     def _fragment_in(self, source: Source, top: Element, element: Element) -> str:

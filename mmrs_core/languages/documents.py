@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
-from mmrs_core.languages.element import Element, Source, held, path_of
+from mmrs_core.languages.element import Element, Source, path_of
+from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature
 
 _STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>\d{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
@@ -87,14 +89,17 @@ class Draft:
         feature = metaclass.by_name.get(match["name"])
         if feature is None or not feature.is_reference:
             return None
-        values = [value for value in held(parent, feature) if isinstance(value, Element)]
+        value = raw(parent, feature)
+        values: Sequence[object] = value if isinstance(value, list) else (value,)
         if match["keys"]:
-            return _by_keys(values, dict(_KEY.findall(match["keys"])))
-        index = int(match["index"] or 0)
-        return values[index] if index < len(values) else None
+            found = _by_keys(values, dict(_KEY.findall(match["keys"])))
+        else:
+            index = int(match["index"] or 0)
+            found = values[index] if index < len(values) else None
+        return found if isinstance(found, Element) else None
 
 
-def _by_keys(values: list[Element], wanted: dict[str, str]) -> Element | None:
+def _by_keys(values: Sequence[object], wanted: dict[str, str]) -> object:
     for value in values:
         if wanted and all(str(getattr(value, name, None)) == text for name, text in wanted.items()):
             return value

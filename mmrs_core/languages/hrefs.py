@@ -39,4 +39,4 @@ def relative_href(target: Path, base: Path) -> str:
     from os.path import relpath
 
     steps = Path(relpath(target, base)).as_posix()
-    return re.sub(r"[%#?\s]", lambda match: f"%{ord(match.group()):02X}", steps)
+    return re.sub(r"[\x00-\x20%#?]", lambda match: f"%{ord(match.group()):02X}", steps)

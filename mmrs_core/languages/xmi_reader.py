@@ -107,7 +107,7 @@ class XmiReader:
             self._text.clear()
             self._nil = _value(attributes, _NIL) in ("true", "1")
             self._open.append(_Frame(element, metaclass, feature))
-        elif (href := _value(attributes, "href")) is not None and "href" not in feature_names(feature):
+        elif (href := _value(attributes, "href")) and not self._owns_href(feature, attributes):
             self._refer(element, feature, href)
             self._open.append(_Frame(element, metaclass, feature))
         elif _value(attributes, _NIL) in ("true", "1"):
@@ -117,6 +117,17 @@ class XmiReader:
         else:
             self._fault("XMI006", f"{feature.name}: a reference as an element needs an href", element)
             self._ignored = 1
+
+    def _owns_href(self, feature: Feature, attributes: list[str]) -> bool:
+        """Return whether ``href`` is a feature of the element itself; EMF would not ask."""
+        assert isinstance(feature.type, Metaclass)  # it is a reference
+        if not feature.containment:
+            return False
+        prefix, _, name = (_value(attributes, _TYPE) or "").rpartition(":")
+        ns_uri = self._document.namespaces.uri(prefix) or ""
+        known = name and self._registry.has(ns_uri) and self._registry.package(ns_uri).members.get(name)
+        metaclass = getattr(known, "_mmrs_metaclass", None) or feature.type
+        return "href" in metaclass.by_name
 
     def _namespaced(self, element: Element, metaclass: Metaclass, tag: str) -> Feature | None:
         ns_uri, _, name = tag.rpartition(" ")
@@ -300,11 +311,6 @@ class XmiReader:
         end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
         element._mmrs_xml = data[begin:end].decode(self._document.encoding, "replace")
         element._mmrs_scope = self._document.namespaces.in_scope()
-
-
-def feature_names(feature: Feature) -> frozenset[str]:
-    """Return the names of the features that elements in a reference have."""
-    return frozenset(feature.type.by_name) if isinstance(feature.type, Metaclass) else frozenset()
 
 
 def _value(attributes: list[str], name: str) -> str | None:

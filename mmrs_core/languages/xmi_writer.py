@@ -57,9 +57,9 @@ class XmiWriter:
         places = [f"{ns_uri} {schema_location[ns_uri]}" for _, ns_uri in used if ns_uri in schema_location]
         if self._typed or places:
             head.append(("xmlns:xsi", XSI))
-        head += [(f"xmlns:{prefix}", _attribute(ns_uri, "nsURI")) for prefix, ns_uri in used]
+        head += [(f"xmlns:{prefix}", _attribute(ns_uri)) for prefix, ns_uri in used]
         if places:
-            head.append(("xsi:schemaLocation", _attribute(" ".join(places), "schema location")))
+            head.append(("xsi:schemaLocation", _attribute(" ".join(places))))
         return head
 
     def _tree(self, root: Element, depth: int) -> None:
@@ -85,7 +85,7 @@ class XmiWriter:
             tag = f'{tag} xsi:type="{self._kind(metaclass)}"'
         identifier = self._addresses.identifier(element)
         if identifier is not None:
-            tag = f'{tag} xmi:id="{_attribute(identifier, "xmi:id")}"'
+            tag = f'{tag} xmi:id="{_attribute(identifier)}"'
         attributes, children = self._features(element, metaclass, depth + 1)
         text = "".join(f' {name}="{value}"' for name, value in attributes)
         if feature is None:
@@ -114,7 +114,7 @@ class XmiWriter:
         assert end is not None  # it was cut out of a well-formed document
         head, rest = text[: end.end()], text[end.end() :]
         own = "".join(
-            f' xmlns{prefix and ":" + prefix}="{_attribute(uri, "nsURI")}"'
+            f' xmlns{prefix and ":" + prefix}="{_attribute(uri)}"'
             for prefix, uri in element._mmrs_scope.items()
             if uri and f"xmlns{prefix and ':' + prefix}=" not in rest.partition(">")[0]
         )
@@ -151,25 +151,27 @@ class XmiWriter:
             self._typed = True
             children.append(f'{indent}<{feature.name} xsi:nil="true"/>\n')
         elif feature.many:
-            where = f"{path_of(element)}: {feature.name}"
-            children.extend(
-                f"{indent}<{feature.name}>{_text(text, where)}</{feature.name}>\n" for text in texts
-            )
+            children.extend(f"{indent}<{feature.name}>{_text(text)}</{feature.name}>\n" for text in texts)
         else:
-            attributes.append((feature.name, _attribute(texts[0], f"{path_of(element)}: {feature.name}")))
+            attributes.append((feature.name, _attribute(texts[0])))
 
     def _rendered(self, element: Element, feature: Feature, value: object) -> str:
         kind = feature.type
         if isinstance(kind, Metaclass) or not kind.accepts(value):
-            raise ValueError(f"{path_of(element)}: {feature.name}: {value!r} is not of the type {kind.name}")
-        return kind.render(value)
+            raise ValueError(f"{_where(element, feature)}: {value!r} is not of the type {kind.name}")
+        text = kind.render(value)
+        bad = _NO_XML.search(text)
+        if bad is not None:
+            code = ord(bad.group())
+            raise ValueError(f"{_where(element, feature)}: holds U+{code:04X}, which XML cannot hold")
+        return text
 
     def _contained(
         self, element: Element, feature: Feature, values: Iterable[object], depth: int
     ) -> Iterable[_Job]:
         for value in values:
             if not isinstance(value, Element):
-                raise ValueError(f"{path_of(element)}: {feature.name}: {value!r} is no element")
+                raise ValueError(f"{_where(element, feature)}: {value!r} is no element")
             if self._addresses.stands_elsewhere(value):
                 yield self._href(element, feature, value, depth)
             else:
@@ -187,15 +189,18 @@ class XmiWriter:
         targets = [value for value in values if isinstance(value, Element)]
         if all(self._addresses.stands_here(target) for target in targets):
             fragments = " ".join(self._addresses.fragment(target) for target in targets)
-            attributes.append((feature.name, _attribute(fragments, f"{path_of(element)}: {feature.name}")))
+            attributes.append((feature.name, _attribute(fragments)))
         else:
             children.extend(self._href(element, feature, target, depth) for target in targets)
 
     def _href(self, element: Element, feature: Feature, target: Element, depth: int) -> str:
         metaclass = metaclass_of(target)
         kind = "" if metaclass is feature.type else f' xsi:type="{self._kind(metaclass)}"'
-        href = self._addresses.href(target, f"{path_of(element)}: {feature.name}")
-        return f'{"  " * depth}<{feature.name}{kind} href="{_attribute(href, "href")}"/>\n'
+        try:
+            href = self._addresses.href(target)
+        except ValueError as fault:
+            raise ValueError(f"{_where(element, feature)}: {fault}") from None
+        return f'{"  " * depth}<{feature.name}{kind} href="{_attribute(href)}"/>\n'
 
     def _kind(self, metaclass: Metaclass) -> str:
         self._typed = True
@@ -218,17 +223,14 @@ class XmiWriter:
         return prefix
 
 
-def _attribute(value: str, where: str) -> str:
-    _refuse_what_xml_lacks(value, where)
+def _attribute(value: str) -> str:
     return _IN_ATTRIBUTE.sub(lambda match: _ATTRIBUTE_ESCAPES[match.group()], value)
 
 
-def _text(value: str, where: str) -> str:
-    _refuse_what_xml_lacks(value, where)
+def _text(value: str) -> str:
     return _IN_TEXT.sub(lambda match: _TEXT_ESCAPES[match.group()], value)
 
 
-def _refuse_what_xml_lacks(value: str, where: str) -> None:
-    bad = _NO_XML.search(value)
-    if bad is not None:
-        raise ValueError(f"{where}: holds U+{ord(bad.group()):04X}, which XML cannot hold")
+def _where(element: Element, feature: Feature) -> str:
+    """Return what an error calls a value; costly, hence only for errors."""
+    return f"{path_of(element)}: {feature.name}"

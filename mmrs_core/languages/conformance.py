@@ -1,0 +1,170 @@
+"""Whether models obey their metamodels, by the rules of EMF and a few that EMF leaves out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.languages.element import Element, Unknown, held, label_of, place_of, root_of
+from mmrs_core.languages.links import raw
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.registry import Registry
+
+
+def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...]:
+    """Return every breach of the metamodels in a model, in document order.
+
+    What the reader reported already is not reported again. Models made in memory are checked as well.
+    An element whose metamodel is not installed is passed over: reading reported it.
+    """
+    check = _Check(model, registry)
+    return tuple(fault for element in model.elements() for fault in check.element(element))
+
+
+class _Check:
+    def __init__(self, model: Model, registry: Registry) -> None:
+        self._registry = registry
+        self._broken = model.broken
+        self._roots = {id(root) for root in model.roots}
+        self._ids: dict[object, Element] = {}
+
+    def element(self, element: Element) -> Iterator[Diagnostic]:
+        if isinstance(element, Unknown):
+            return
+        metaclass = type(element)._mmrs_metaclass
+        if metaclass is None or not self._installed(metaclass):
+            yield _fault("ECO010", element, f"{type(element).__name__}: its metamodel is not installed")
+            return
+        for feature in metaclass.features:
+            values = held(element, feature)
+            yield from self._count(element, feature, len(values))
+            if values:
+                rule = self._references if feature.is_reference else self._attributes
+                yield from rule(element, feature, values)
+
+    def _installed(self, metaclass: Metaclass) -> bool:
+        try:
+            return self._registry.metaclass(*metaclass.key) is metaclass
+        except ValueError:
+            return False
+
+    def _count(self, element: Element, feature: Feature, count: int) -> Iterator[Diagnostic]:
+        if (element, feature.name) in self._broken or feature.is_container:
+            return
+        if not feature.many:
+            if feature.required and not count and feature.default is None:
+                hint = "" if feature.is_reference else feature.documentation
+                yield _fault("ECO001", element, f"{_owner(element)}: {feature.name} is missing", hint)
+        elif count < feature.lower or count > feature.upper >= 0:
+            few = count < feature.lower
+            wanted = f"at least {feature.lower}" if few else f"at most {feature.upper}"
+            message = f"{_owner(element)}: {feature.name} has {count or 'none'}, needs {wanted}"
+            yield _fault("ECO002" if count or not few else "ECO001", element, message)
+
+    def _attributes(
+        self, element: Element, feature: Feature, values: Sequence[object]
+    ) -> Iterator[Diagnostic]:
+        for value in values:
+            yield from _value(element, feature, value)
+        if feature.many and feature.unique:
+            yield from _repeated(element, feature, values, lambda value: (type(value), value))
+        if feature.is_id and values[0] is not None:
+            other = self._ids.setdefault(values[0], element)
+            if other is not element:
+                message = f"{values[0]}: an identifier used twice; first at {place_of(other)}"
+                yield _fault("ECO012", element, message)
+
+    def _references(
+        self, element: Element, feature: Feature, values: Sequence[object]
+    ) -> Iterator[Diagnostic]:
+        for value in values:
+            if isinstance(value, Unknown):
+                continue
+            if not isinstance(value, Element) or not feature.type.accepts(value):
+                what = type(value).__name__ if isinstance(value, Element) else repr(value)
+                message = f"{_owner(element)}: {feature.name} holds {what}, takes {feature.type.name}"
+                yield _fault("ECO005", element, message)
+            elif feature.containment:
+                yield from _contained(element, feature, value)
+            elif not self._stands(value):
+                message = (
+                    f"{_owner(element)}: {feature.name} refers to {_owner(value)}, which stands in no model"
+                )
+                yield _fault("ECO008", element, message, "put it into a containment feature of the model")
+            else:
+                yield from _answered(element, feature, value)
+        if feature.many and feature.unique:
+            yield from _repeated(element, feature, values, id)
+
+    def _stands(self, element: Element) -> bool:
+        root = root_of(element)
+        source = root._mmrs_source
+        return id(root) in self._roots or (source is not None and root in source.roots)
+
+
+def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagnostic]:
+    kind = feature.type
+    if isinstance(kind, Metaclass) or (value is None and not feature.many):
+        return
+    where = f"{_owner(element)}: {feature.name}"
+    if isinstance(kind, Enumeration):
+        if not kind.accepts(value):
+            hint = nearest(value, kind.names) if isinstance(value, str) else ""
+            message = f"{where} is {value!r}, not one of {', '.join(kind.names)}"
+            yield _fault("ECO004", element, message, hint)
+        return
+    if not kind.accepts(value):
+        yield _fault("ECO003", element, f"{where} is {value!r}, not of the type {kind.name}")
+    elif kind.python is float and not math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
+        yield _fault("ECO009", element, f"{where} is {kind.render(value)}, not a finite number")
+    elif kind.python is int:
+        try:
+            kind.parse(str(value))
+        except ValueError as fault:
+            yield _fault("ECO003", element, f"{where}: {fault}")
+
+
+def _contained(element: Element, feature: Feature, value: Element) -> Iterator[Diagnostic]:
+    if value._mmrs_container is not element or value._mmrs_feature is not feature:
+        message = (
+            f"{_owner(value)}: stands in {feature.name} of {_owner(element)}, but its container is another"
+        )
+        yield _fault("ECO007", value, message)
+
+
+def _answered(element: Element, feature: Feature, value: Element) -> Iterator[Diagnostic]:
+    opposite = feature.opposite
+    if opposite is None or opposite.attribute not in type(value)._mmrs_slots:
+        return
+    back = raw(value, opposite)
+    if not (any(other is element for other in back) if isinstance(back, list) else back is element):
+        message = (
+            f"{_owner(element)}: {feature.name} refers to {_owner(value)}, whose {opposite.name} does not"
+        )
+        yield _fault("ECO011", element, f"{message} refer back")
+
+
+def _repeated(
+    element: Element, feature: Feature, values: Sequence[object], key: Callable[[object], object]
+) -> Iterator[Diagnostic]:
+    seen = set()
+    for value in values:
+        mark = key(value)
+        if mark in seen:
+            what = _owner(value) if isinstance(value, Element) else repr(value)
+            yield _fault("ECO006", element, f"{_owner(element)}: {feature.name} holds {what} twice")
+            return
+        seen.add(mark)
+
+
+def _owner(element: Element) -> str:
+    """Return what messages call an element: its class, and its name if it has one."""
+    label = label_of(element)
+    return f"{type(element).__name__}{label and f' {label!r}'}"
+
+
+def _fault(code: str, element: Element, message: str, hint: str = "") -> Diagnostic:
+    return Diagnostic(code, Severity.ERROR, message, place_of(element), hint)
