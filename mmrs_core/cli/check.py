@@ -18,7 +18,8 @@ def check(
 ) -> int:
     """Say what is known of the safety of a behaviour.
 
-    It may be planned or written by hand."""
+    It may be planned or written by hand.
+    """
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop, verdicts_of
     from mmrs_core.cli.verdict_words import verdict_line, verdict_table

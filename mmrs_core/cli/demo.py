@@ -27,7 +27,8 @@ def demo(
 ) -> int:
     """Take an example all the way, into one folder.
 
-    Plans it, checks the behaviour, generates code, simulates, replays the logs, and draws everything."""
+    Plans it, checks the behaviour, generates code, simulates, replays the logs, and draws everything.
+    """
     if list_examples:
         return _list_examples(json)
     folder = example_folder(example)

@@ -60,7 +60,8 @@ def plan(
 ) -> int:
     """Plan a mission and write the behaviour of every robot.
 
-    The behaviour is checked first; one that is not safe is not written."""
+    The behaviour is checked first; one that is not safe is not written.
+    """
     from mmrs_core.cli.journey import Journey, Workshop, require_safe
     from mmrs_core.cli.plan_words import plan_lines, plan_summary
     from mmrs_core.pipeline import save

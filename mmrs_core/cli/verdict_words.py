@@ -41,7 +41,7 @@ def _summary(found: Sequence[Verdict]) -> str:
         return f"{worst.value}: {next(iter(reasons), 'no reason given')}"
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
     if not margins:
-        return worst.value
+        return str(worst.value)
     margin, least = min(margins, key=lambda pair: pair[0])
     who = f" ({least.robot}{f', near {least.area}' if least.area else ''})" if least.robot else ""
     return f"{worst.value}, least margin {margin:.3g} {least.unit}".rstrip() + who

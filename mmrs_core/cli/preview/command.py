@@ -32,7 +32,8 @@ def preview(
 ) -> int:
     """Draw a mission: map, timeline, heights, on one page.
 
-    The map is written as SVG, too."""
+    The map is written as SVG, too.
+    """
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan import folder_of
     from mmrs_core.cli.preview.from_plan import picture_of_plan

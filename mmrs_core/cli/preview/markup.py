@@ -44,9 +44,9 @@ def number(value: float) -> str:
     return "0" if short == "-0" else short
 
 
-def style_sheet(name: str) -> str:
-    """Return one of the style sheets that lie beside this module; safe inside a ``style`` element."""
-    return (files("mmrs_core.cli.preview") / name).read_text(encoding="utf-8")
+def style_sheet(name: str, package: str = "mmrs_core.cli.preview") -> str:
+    """Return one of the style sheets of a package; they are safe inside a ``style`` element."""
+    return (files(package) / name).read_text(encoding="utf-8")
 
 
 def _attribute(name: str, value: object) -> str:
