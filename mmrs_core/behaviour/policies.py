@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import inf
 
 from mmrs_core.scene import Policy, PolicyEvent, PolicyResponse
 
 AFTER: Mapping[str, float] = {
-    "WAIT_TOO_LONG": 600.0,
     "PEER_LOST": 30.0,
     "LINK_LOST": 10.0,
     "DEVICE_SILENT": 30.0,
+    "WAIT_TOO_LONG": inf,
 }
-"""Seconds that a fault lasts before the robot responds, where its policy does not say."""
+"""Seconds that a fault lasts before the robot responds, where its policy does not say.
+
+A wait is part of the plan, however long: it is too long only where somebody said how long that is.
+"""
 
 LAST_RESORT = "HOLD"
 """What a robot does about a fault that nobody declared a response to."""

@@ -124,8 +124,8 @@ class RunningRobot:
                 self.backend.act(action, now)
             else:
                 self.backend.begin(self.move, now, through=self._may_pass())
-        found = self._backend_fault(now)
-        if found is not None and found.which == "DEVICE_SILENT" and self._bears(found):
+        found = self.backend.fault(now)
+        if action is not None and found is not None and found.which == "DEVICE_SILENT" and self._bears(found):
             return self._next()
         if found is not None and not self._bears(found):
             return found
@@ -148,7 +148,7 @@ class RunningRobot:
         if self._waits_since is None:
             self._waits_since = now
             self.backend.wait(now)
-        found = self._backend_fault(now)
+        found = self.backend.fault(now)
         if found is not None and not self._bears(found):
             return found
         ends = (self._too_long(), self._peer_lost(now, peers))
@@ -191,9 +191,6 @@ class RunningRobot:
         blocking = (action for action in (*self.move.after, *following.before) if not action.is_a(NOTIFY))
         slots = ((self.id, name) for name in transition.waits)
         return next(blocking, None) is None and all(self._bus.state(slot).active for slot in slots)
-
-    def _backend_fault(self, now: float) -> Fault | None:
-        return self.backend.fault(now)
 
     def _effective_policies(self) -> tuple[Policy, ...]:
         if self.point.phase is not Phase.OUT:

@@ -148,7 +148,7 @@ class SimulatedRobot:
         if self._halted:
             return
         self._catch_up(now)
-        self._halted, self._move, self._fault = True, None, None
+        self._halted, self._move = True, None
         path = escape_path(response, self._legs[-1].finish, self._robot.home, self._given)
         if self._legs[-1].charge_at(now) <= SLACK or len(path) < 2:
             return
@@ -234,7 +234,8 @@ class SimulatedRobot:
             )
 
     def _catch_up(self, now: float) -> None:
-        """End what is going on at this time, or fill the time since it ended."""
+        """End what is going on at this time, or fill the time since it ended; what was wrong is over."""
+        self._fault = None
         while len(self._legs) > 1 and self._legs[-1].begin > now:
             self._legs.pop()
         last = self._legs[-1]

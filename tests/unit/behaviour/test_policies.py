@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from mmrs_core.behaviour.policies import in_precedence, patience, response_to
 from mmrs_core.scene import Policy
 
@@ -23,7 +25,11 @@ def test_a_fault_that_nobody_provided_for_has_the_robot_hold():
 
 def test_a_declared_delay_goes_before_the_platforms():
     assert patience("WAIT_TOO_LONG", [Policy("WAIT_TOO_LONG", "LAND", 7.0)]) == 7.0
-    assert patience("WAIT_TOO_LONG", [Policy("WAIT_TOO_LONG", "LAND")]) == 600.0
+    assert patience("PEER_LOST", [Policy("PEER_LOST", "LAND")]) == 30.0
+
+
+def test_a_wait_is_too_long_only_where_somebody_said_how_long_that_is():
+    assert patience("WAIT_TOO_LONG", [Policy("WAIT_TOO_LONG", "LAND")]) == inf
 
 
 def test_a_wait_without_a_policy_is_borne_for_ever():

@@ -1,0 +1,77 @@
+"""Robots and moves for runs in tests."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
+from mmrs_core.runtime.run import simulate
+from mmrs_core.testing.programs import ROBOT_TYPE, robot_type
+from mmrs_core.transformation.kinds import (
+    MOVE_KINDS,
+    PLAIN_ROBOT,
+    kinematics_for,
+    leg_seconds,
+    straight_travel,
+)
+
+FLYER = ("urn:test", "Flyer")
+RISE = ("urn:test", "Rise")
+SINK = ("urn:test", "Sink")
+
+
+def _nothing(*_: object) -> tuple[MoveSpec, ...]:
+    return ()
+
+
+def _seconds(move, path, kinematics, mode):
+    whole = leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
+    return whole, whole
+
+
+FLYER_KIND = RobotKind(
+    "flyer",
+    FLYER,
+    lambda robot, scene: kinematics_for(robot, scene, launches=True),
+    _nothing,
+    _nothing,
+    straight_travel,
+)
+FLYER_MOVES = (
+    MoveKind(
+        RISE,
+        lambda move, here, home: (here, (*here[:2], here[2] + move.attributes["altitude"])),
+        _seconds,
+        frozenset({"grounded"}),
+        "airborne",
+    ),
+    MoveKind(
+        SINK, lambda move, here, home: (here, (*here[:2], 0.0)), _seconds, frozenset({"airborne"}), "grounded"
+    ),
+)
+
+
+@pytest.fixture(scope="session")
+def kinds():
+    """Return robot kinds and move kinds by metaclass."""
+    return {
+        "robot_kinds": {kind.metaclass: kind for kind in (PLAIN_ROBOT, FLYER_KIND)},
+        "move_kinds": {kind.metaclass: kind for kind in (*MOVE_KINDS, *FLYER_MOVES)},
+    }
+
+
+@pytest.fixture
+def fly(kinds):
+    """Return a function that simulates a behaviour whose log must replay without complaint."""
+
+    def run(program, type=None, **options):
+        types = {ROBOT_TYPE: type or robot_type()}
+        found = simulate(program, types=types, **kinds, **options)
+        result = replay(program, found.records, partial=True)
+        assert result.accepted, result.complaints
+        if found.ending.outcome.value != "incomplete":
+            assert result.outcome is found.ending.outcome
+        return found
+
+    return run
