@@ -1,0 +1,99 @@
+"""How far robots get in what time, and at what cost."""
+
+from __future__ import annotations
+
+from math import inf
+
+import pytest
+
+from mmrs_core.runtime.legs import CLIMBING, Leg, bearing, cost, current, stretches, turn, wind
+from mmrs_core.scene import Kinematics
+
+FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)
+ANY = (0.0, inf)
+HERE, EAST, UP = (0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 0.0, 10.0)
+
+
+def seconds(*path, bounds=ANY, kinematics=FLYER, **more):
+    return sum(each.seconds for each in stretches(path, 5.0, kinematics, bounds, **more))
+
+
+def test_level_ways_take_their_length_over_the_speed():
+    assert seconds(HERE, EAST) == pytest.approx(20.0)
+
+
+def test_the_slower_of_level_and_vertical_counts():
+    assert seconds(HERE, UP) == pytest.approx(5.0)
+    assert seconds(UP, HERE) == pytest.approx(10.0)
+    assert seconds(HERE, (100.0, 0.0, 10.0)) == pytest.approx(20.0)
+    assert seconds(HERE, (10.0, 0.0, 10.0)) == pytest.approx(5.0)
+
+
+def test_the_declared_duration_bounds_the_time_and_each_leg_gets_its_share():
+    legs = stretches((HERE, EAST, (100.0, 50.0, 0.0)), 5.0, FLYER, (60.0, inf))
+    assert [leg.seconds for leg in legs] == pytest.approx([40.0, 20.0])
+    assert seconds(HERE, EAST, bounds=(0.0, 18.0)) == pytest.approx(18.0)
+
+
+def test_standing_still_at_both_ends_costs_the_time_to_get_going_and_to_brake():
+    slow = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0, acceleration=1.0)
+    assert seconds(HERE, EAST, kinematics=slow, stops=2) == pytest.approx(25.0)
+    assert seconds(HERE, EAST, kinematics=slow, stops=1) == pytest.approx(22.5)
+    assert seconds(HERE, EAST, kinematics=slow, stops=0) == pytest.approx(20.0)
+
+
+def test_a_way_too_short_to_reach_the_speed_takes_a_triangle_of_it():
+    slow = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0, acceleration=1.0)
+    assert seconds(HERE, (4.0, 0.0, 0.0), kinematics=slow, stops=2) == pytest.approx(4.0)
+
+
+def test_wind_slows_down_only_where_the_robot_would_have_to_be_too_fast():
+    assert seconds(HERE, EAST, flow=(-4.0, 0.0)) == pytest.approx(20.0)
+    assert seconds(HERE, EAST, flow=(-8.0, 0.0)) == pytest.approx(50.0)
+    assert seconds(HERE, EAST, flow=(8.0, 0.0)) == pytest.approx(20.0)
+
+
+def test_wind_from_the_side_takes_part_of_the_speed():
+    assert seconds(HERE, EAST, flow=(0.0, 9.6)) == pytest.approx(100.0 / 2.8)
+
+
+def test_there_is_no_headway_against_more_wind_than_the_largest_speed():
+    assert stretches((HERE, EAST), 5.0, FLYER, ANY, flow=(-10.0, 0.0)) == ()
+    assert stretches((HERE, EAST), 5.0, FLYER, ANY, flow=(0.0, 11.0)) == ()
+
+
+def test_power_grows_with_the_climb_and_with_the_square_of_the_headwind():
+    assert cost(HERE, EAST, 20.0, FLYER, (0.0, 0.0)) == 1.0
+    assert cost(HERE, UP, 5.0, FLYER, (0.0, 0.0)) == pytest.approx(1.0 + CLIMBING)
+    assert cost(HERE, EAST, 20.0, FLYER, (-5.0, 0.0)) == pytest.approx(1.25)
+    assert cost(HERE, EAST, 20.0, FLYER, (5.0, 0.0)) == 1.0
+    assert cost(HERE, HERE, 20.0, FLYER, (3.0, 4.0)) == pytest.approx(1.25)
+
+
+def test_wind_comes_from_its_direction_and_current_goes_to_it():
+    assert wind({"windSpeed": 3.0, "windDirection": 90.0}) == pytest.approx((-3.0, 0.0))
+    assert current({"currentSpeed": 3.0, "currentDirection": 90.0}) == pytest.approx((3.0, 0.0))
+    assert wind({}) == (0.0, 0.0)
+
+
+def test_bearings_count_clockwise_from_north():
+    assert bearing(HERE, (0.0, 1.0, 0.0)) == 0.0
+    assert bearing(HERE, (1.0, 0.0, 5.0)) == 90.0
+    assert bearing(HERE, UP) is None
+
+
+@pytest.mark.parametrize(("first", "last", "by"), [(350, 10, 20), (10, 350, -20), (0, 90, 90)])
+def test_turns_go_the_shorter_way_round(first, last, by):
+    assert turn(first, last) == by
+
+
+def test_a_leg_knows_where_the_robot_is_and_what_is_left_at_any_time():
+    leg = Leg(10.0, 30.0, HERE, EAST, (350.0, 10.0), charge=15.0, rate=0.5)
+    assert leg.position(20.0) == (50.0, 0.0, 0.0)
+    assert leg.heading(20.0) == pytest.approx(0.0)
+    assert leg.charge_at(20.0) == 10.0
+    assert leg.speed == 5.0
+    assert leg.empty_at == 40.0
+    half = leg.until(20.0)
+    assert (half.end, half.finish) == (20.0, (50.0, 0.0, 0.0))
+    assert half.heading(20.0) == pytest.approx(0.0)
