@@ -1,0 +1,177 @@
+from __future__ import annotations
+
+import pytest
+from mmrs_survey.constraints import CONSTRAINTS
+from mmrs_survey.names import SURVEY
+
+from mmrs_core.languages import mission as mml
+
+ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
+OPTICS = {"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}
+PIXELS = {"image.width": "4000", "image.height": "3000"}
+
+
+def grid(registry, **features):
+    return registry.create(SURVEY, "PhotoGridTask", **{"name": "field", "altitude": 20.0, **features})
+
+
+def sized(registry, **features):
+    return grid(registry, **{"footprintWidth": 9.0, "footprintLength": 6.0, **features})
+
+
+def measure(registry, *keys, **features):
+    pairs = [registry.create("urn:mmrs:behaviour:1.0", "Pair", key=key, value="1") for key in keys]
+    given = {"name": "probe", "actionName": "Sample", "points": corners(1), "parameters": pairs}
+    return registry.create(SURVEY, "MeasureTask", **{**given, **features})
+
+
+def task(registry, metaclass, **features):
+    return registry.create(SURVEY, metaclass, name="it", **features)
+
+
+def corners(count):
+    return [mml.RelativeCoordinate(x=float(index), y=0.0) for index in range(count)]
+
+
+def device(registry, name, properties=(), action="TakePicture"):
+    parameters = [registry.create(ROBOT_LANGUAGE, "Parameter", key="seconds")]
+    return registry.create(
+        ROBOT_LANGUAGE,
+        "Device",
+        id=name,
+        name="what people call it",
+        properties=[
+            registry.create(ROBOT_LANGUAGE, "Property", name=key, value=value)
+            for key, value in dict(properties).items()
+        ],
+        supportedActions=[
+            registry.create(ROBOT_LANGUAGE, "SupportedAction", name=action, parameters=parameters)
+        ],
+    )
+
+
+def robot(registry, *devices):
+    return registry.create(ROBOT_LANGUAGE, "Robot", name="Any", devices=list(devices))
+
+
+def camera(registry, **properties):
+    return robot(registry, device(registry, "camera", properties or PIXELS))
+
+
+def two_cameras(registry):
+    return robot(registry, device(registry, "left"), device(registry, "right"))
+
+
+def probe(registry):
+    return robot(registry, device(registry, "probe", action="Sample"))
+
+
+def accepting(registry, *unknowns):
+    made = task(registry, "ApproachTask", object="buoy")
+    return mml.Mission(name="m", tasks=[made], acceptedUnknowns=list(unknowns))
+
+
+CASES = {
+    "SUR001": (
+        lambda r: [sized(r, gridResolution=12.0)],
+        lambda r: [grid(r, gridResolution=12.0)],
+    ),
+    "SUR002": (lambda r: [grid(r), camera(r)], lambda r: [grid(r), camera(r, **OPTICS)]),
+    "SUR003": (lambda r: [sized(r, sideOverlap=1.0)], lambda r: [sized(r, sideOverlap=0.99)]),
+    "SUR004": (
+        lambda r: [grid(r, gridResolution=0.0)],
+        lambda r: [grid(r, gridResolution=0.1)],
+    ),
+    "SUR005": (lambda r: [grid(r, footprintWidth=9.0)], lambda r: [sized(r)]),
+    "SUR006": (lambda r: [sized(r, groundResolution=0.01)], lambda r: [grid(r, groundResolution=0.01)]),
+    "SUR007": (
+        lambda r: [grid(r, gridResolution=12.0, sideOverlap=0.5)],
+        lambda r: [grid(r, gridResolution=12.0)],
+    ),
+    "SUR008": (
+        lambda r: [grid(r, groundResolution=0.01), camera(r, **OPTICS)],
+        lambda r: [grid(r, groundResolution=0.01), camera(r, **PIXELS)],
+    ),
+    "SUR009": (
+        lambda r: [sized(r), two_cameras(r)],
+        lambda r: [sized(r, deviceId="left"), two_cameras(r)],
+    ),
+    "SUR010": (
+        lambda r: [sized(r, deviceId="what people call it"), camera(r)],
+        lambda r: [sized(r, deviceId="camera"), camera(r)],
+    ),
+    "SUR011": (lambda r: [measure(r, altitude=1.0, depth=1.0)], lambda r: [measure(r, depth=1.0)]),
+    "SUR012": (lambda r: [measure(r, points=[])], lambda r: [measure(r)]),
+    "SUR013": (
+        lambda r: [measure(r, shell=corners(3), spacing=1.0)],
+        lambda r: [measure(r, points=[], shell=corners(3), spacing=1.0)],
+    ),
+    "SUR014": (lambda r: [measure(r, "minutes"), probe(r)], lambda r: [measure(r, "seconds"), probe(r)]),
+    "SUR015": (
+        lambda r: [camera(r, **{"focal.length": "24 mm"})],
+        lambda r: [camera(r, **{"focal.length": "24", "mount": "gimbal"})],
+    ),
+    "SUR016": (lambda r: [accepting(r)], lambda r: [accepting(r, "clearance")]),
+    "SUR017": (
+        lambda r: [task(r, "ObserveTask", duration=1.0)],
+        lambda r: [task(r, "ObserveTask", duration=1.0, distance=5.0)],
+    ),
+}
+BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
+
+
+def test_every_constraint_has_a_failing_and_a_passing_model():
+    assert set(CASES) == set(BY_CODE)
+
+
+@pytest.mark.parametrize("code", sorted(CASES))
+def test_a_breach_is_found_and_starts_with_its_culprit(code, registry, breaches):
+    found = breaches(BY_CODE[code], CASES[code][0](registry))
+    assert len(found) == 1
+    assert found[0][0].islower()
+    assert not found[0].endswith(".")
+
+
+@pytest.mark.parametrize("code", sorted(CASES))
+def test_a_model_that_keeps_the_constraint_passes(code, registry, breaches):
+    assert breaches(BY_CODE[code], CASES[code][1](registry)) == []
+
+
+TASKS = ["PhotoGridTask", "GoToTask", "RoadTask", "ObserveTask", "ApproachTask"]
+
+
+@pytest.mark.parametrize("metaclass", TASKS)
+def test_half_a_task_crashes_no_constraint(metaclass, registry, breaches):
+    codes = {code for code in BY_CODE if breaches(BY_CODE[code], [registry.create(SURVEY, metaclass)])}
+    assert codes <= {"SUR002", "SUR012", "SUR016", "SUR017"}
+
+
+@pytest.mark.parametrize(
+    ("metaclass", "feature"),
+    [
+        ("PhotoGridTask", "speed"),
+        ("RoadTask", "photoDistance"),
+        ("RoadTask", "width"),
+        ("ObserveTask", "duration"),
+        ("MeasureTask", "spacing"),
+        ("ApproachTask", "tolerance"),
+    ],
+)
+def test_negative_figures_are_found_in_every_task(metaclass, feature, registry, breaches):
+    (message,) = breaches(BY_CODE["SUR004"], [task(registry, metaclass, **{feature: -1.0})])
+    assert message.startswith(f"{feature} of task 'it' is -1")
+
+
+@pytest.mark.parametrize("shell", [corners(2), corners(3)])
+def test_a_shell_needs_three_points_and_a_spacing(shell, registry, breaches):
+    models = [measure(registry, points=[], shell=shell)]
+    assert len(breaches(BY_CODE["SUR012"], models)) == 1
+
+
+def test_a_road_without_photos_needs_no_camera(registry, breaches):
+    assert breaches(BY_CODE["SUR010"], [task(registry, "RoadTask"), probe(registry)]) == []
+
+
+def test_a_device_that_only_looks_must_be_carried_too(registry, breaches):
+    models = [task(registry, "ObserveTask", deviceId="telescope"), probe(registry)]
+    assert "no robot type has it" in breaches(BY_CODE["SUR010"], models)[0]

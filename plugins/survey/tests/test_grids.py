@@ -1,0 +1,119 @@
+from __future__ import annotations
+
+import pytest
+import shapely
+from mmrs_survey.grids import photo_grid_work, spacing_of
+
+from mmrs_core.errors import InfeasibleError
+
+SHELL = ((0.0, 0.0, 0.0), (90.0, 0.0, 0.0), (90.0, 60.0, 0.0), (45.0, 30.0, 0.0), (0.0, 60.0, 0.0))
+PIXELS = {"image.width": "1200", "image.height": "800"}
+
+
+def grid(task, **more):
+    given = {
+        "altitude": 20.0,
+        "initialPosition": (-5.0, -5.0, 0.0),
+        "shell": SHELL,
+        "actionName": "TakePicture",
+    }
+    return task("PhotoGridTask", **{**given, **more})
+
+
+def squares(work):
+    """Return what the photos of a work cover, each a rectangle along its leg."""
+    width, length = work.coverage.width, work.coverage.length
+    for stroke in work.strokes:
+        line = shapely.LineString([point[:2] for point in stroke.points])
+        for action in stroke.actions:
+            a = line.interpolate(action.at - 1e-3)
+            b = line.interpolate(action.at + 1e-3)
+            angle = shapely.LineString([a, b])
+            (ax, ay), (bx, by) = angle.coords
+            east, north = (bx - ax) / angle.length, (by - ay) / angle.length
+            x, y = (ax + bx) / 2, (ay + by) / 2
+            yield shapely.Polygon(
+                [
+                    (
+                        x + i * length / 2 * east - j * width / 2 * north,
+                        y + i * length / 2 * north + j * width / 2 * east,
+                    )
+                    for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+                ]
+            )
+
+
+@pytest.mark.parametrize("obstacles", [(), ((45.0, 15.0, 6.0, 90.0),)])
+def test_photos_cover_all_of_the_area_that_can_be_covered(robot, scene, task, obstacles):
+    work = photo_grid_work(grid(task, gridResolution=12.0), robot(), scene(*obstacles))
+    target = shapely.union_all([shapely.Polygon(shell, holes) for shell, holes in work.coverage.target])
+    seen = shapely.union_all(list(squares(work)), grid_size=1e-6)
+    assert shapely.intersection(seen, target).area >= 0.999 * target.area
+
+
+def test_swaths_are_flown_at_the_altitude_of_the_task(robot, scene, task):
+    work = photo_grid_work(grid(task, gridResolution=12.0), robot(), scene())
+    assert {point[2] for stroke in work.strokes for point in stroke.points} == {20.0}
+
+
+def test_the_task_begins_at_its_initial_position_at_its_altitude(robot, scene, task):
+    assert photo_grid_work(grid(task, gridResolution=12.0), robot(), scene()).entry == (-5.0, -5.0, 20.0)
+
+
+def test_the_speed_of_the_task_limits_its_swaths(robot, scene, task):
+    work = photo_grid_work(grid(task, gridResolution=12.0, speed=2.5), robot(), scene())
+    assert {stroke.speed for stroke in work.strokes} == {2.5}
+
+
+def spacing(robot, task, properties, **more):
+    device = robot(properties=properties).type.devices["camera"]
+    found = spacing_of(grid(task, **more).part, device, 20.0)
+    return round(found.width, 9), round(found.length, 9)
+
+
+def test_a_grid_resolution_is_the_distance_along_and_across(robot, task):
+    assert spacing(robot, task, {}, gridResolution=12.0) == (12.0, 12.0)
+
+
+def test_overlaps_are_taken_off_the_footprint(robot, task):
+    more = {"footprintWidth": 30.0, "footprintLength": 20.0, "sideOverlap": 0.6, "frontOverlap": 0.75}
+    assert spacing(robot, task, {}, **more) == (12.0, 5.0)
+
+
+def test_a_ground_resolution_uses_the_image_size(robot, task):
+    assert spacing(robot, task, PIXELS, groundResolution=0.02) == (24.0, 16.0)
+
+
+def test_the_optics_tell_the_footprint_where_the_task_does_not(robot, task):
+    optics = {"sensor.width": "12", "sensor.height": "8", "focal.length": "8"}
+    assert spacing(robot, task, optics, sideOverlap=0.5) == (15.0, 20.0)
+
+
+def test_a_grid_of_which_nobody_knows_the_footprint_is_refused(robot, task):
+    with pytest.raises(InfeasibleError, match="'camera' does not state what one photo covers"):
+        spacing(robot, task, {})
+
+
+def test_an_overlap_that_leaves_no_distance_is_refused(robot, task):
+    with pytest.raises(InfeasibleError, match="leave no distance between photos"):
+        spacing(robot, task, {}, footprintWidth=30.0, footprintLength=20.0, sideOverlap=1.0)
+
+
+def test_an_area_within_the_clearance_of_obstacles_is_refused(robot, scene, task):
+    asked = grid(task, gridResolution=5.0, initialPosition=(-200.0, 0.0, 0.0))
+    with pytest.raises(InfeasibleError, match="lies within the clearance of areas as a whole"):
+        photo_grid_work(asked, robot(), scene((45.0, 30.0, 60.0, 90.0)))
+
+
+def test_an_initial_position_inside_an_obstacle_is_refused(robot, scene, task):
+    with pytest.raises(InfeasibleError, match="the initial position comes"):
+        photo_grid_work(grid(task, gridResolution=12.0), robot(), scene((-5.0, -5.0, 2.0, 90.0)))
+
+
+def test_a_hole_is_left_out_of_the_target(robot, scene, task):
+    from mmrs_core.scene import Part
+
+    hole = Part((), {"points": ((10.0, 5.0, 0.0), (20.0, 5.0, 0.0), (20.0, 15.0, 0.0), (10.0, 15.0, 0.0))})
+    work = photo_grid_work(grid(task, gridResolution=5.0, holes=(hole,)), robot(), scene())
+    area = sum(shapely.Polygon(shell, holes).area for shell, holes in work.coverage.target)
+    assert area == pytest.approx(shapely.Polygon([p[:2] for p in SHELL]).area - 100.0)
