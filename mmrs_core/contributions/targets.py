@@ -13,10 +13,17 @@ from mmrs_core.scene import Area, Name, Policy, RobotType
 
 @dataclass(frozen=True, slots=True)
 class GeneratedFile:
-    """A file to be written: a relative path with forward slashes, and its bytes."""
+    """A file to be written.
+
+    Attributes:
+        path: relative, with forward slashes.
+        content: its bytes.
+        once: whether the file is the user's after it was first written: it is never overwritten.
+    """
 
     path: str
     content: bytes
+    once: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +33,7 @@ class TargetInput:
     Attributes:
         types: robot types by name.
         areas: of the context as drawn, empty where no context was given.
-        policies: of the mission.
+        policies: of the mission, for robots whose own say nothing about an event.
     """
 
     program: Program
@@ -35,16 +42,43 @@ class TargetInput:
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] = ()
     policies: tuple[Policy, ...] = ()
-    position_error: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TracedStep:
+    """Which move and task a place in a generated file serves.
+
+    Attributes:
+        step: the place, such as ``item 4``, in the words of that kind of file.
+        robot, move: identifiers.
+        task, rule: as in the behaviour; may be empty.
+    """
+
+    step: str
+    robot: str
+    move: str
+    task: str = ""
+    rule: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class FileSpec:
-    """A file of a target: its path, the template in the target's folder, and what the template sees."""
+    """A file of a target.
+
+    Attributes:
+        path: relative to the folder of the output, with forward slashes, nothing but ASCII.
+        template: name in the target's folder of templates. One that ends in ``.jinja`` is rendered,
+            any other is copied as it is.
+        view: what the template sees.
+        trace: which step serves which move and task, for the manifest.
+        once: as in `GeneratedFile`.
+    """
 
     path: str
     template: str
-    view: Mapping[str, object]
+    view: Mapping[str, object] = field(default_factory=dict)
+    trace: tuple[TracedStep, ...] = ()
+    once: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +88,14 @@ class Target:
     Attributes:
         name: kebab-case, as in ``--target``.
         description: one line for people.
-        templates: folder of Jinja2 templates.
-        files: what to render; paths must not collide.
+        templates: folder of Jinja2 templates. Whatever a template writes must have passed a filter;
+            a bare value is an error.
+        files: what to render; paths must not collide. Raises UnsupportedError where nothing sensible
+            can be written even with losses.
         refusals: each thing of the input that the target cannot express, with robot and move; when
             there is any, nothing is rendered unless lossy output is allowed.
-        filters: Jinja2 filters beside the engine's own, by name.
+        filters: Jinja2 filters beside the engine's own (``py``, ``json``, ``comment``, ``cell``,
+            ``identifier``, ``name``), by name: each encodes a value in the language that is written.
     """
 
     name: str

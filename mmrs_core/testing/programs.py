@@ -1,12 +1,14 @@
-"""Small behaviours made by hand: for tests of what reads, runs or checks behaviours."""
+"""Behaviours made by hand, as targets and backends get them: small, but with everything in them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from mmrs_core.behaviour.program import (
     BEHAVIOUR,
     Action,
+    Heading,
     Move,
     Program,
     RobotProgram,
@@ -14,124 +16,184 @@ from mmrs_core.behaviour.program import (
     Target,
     Transition,
 )
+from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.scene import (
+    Area,
+    AreaUse,
     Battery,
     Capability,
     Device,
     DeviceAction,
     Frame,
+    Metaclasses,
     Part,
-    Policy,
     Position,
     RobotType,
+    Value,
 )
 
-ROBOT_TYPE = "rover"
-MOVE = (BEHAVIOUR, "Move")
+MULTICOPTER = "urn:mmrs:multicopter:1.0"
+ROBOT = "urn:mmrs:robot:1.0"
+L_AQUILA = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
+SUPERTYPES: Mapping[tuple[str, str], Metaclasses] = {
+    (MULTICOPTER, "GoTo"): ((BEHAVIOUR, "GoTo"),),
+    (BEHAVIOUR, "Recharge"): ((BEHAVIOUR, "HoldPosition"),),
+    (BEHAVIOUR, "DeviceAction"): ((BEHAVIOUR, "Action"),),
+    (BEHAVIOUR, "Feedback"): ((BEHAVIOUR, "CommunicationAction"), (BEHAVIOUR, "Action")),
+    (BEHAVIOUR, "UnicastNotify"): ((BEHAVIOUR, "Notify"), (BEHAVIOUR, "CommunicationAction")),
+}
 
 
-def go(id: str, to: Position, **more: object) -> Move:
-    """Return a GoTo; keywords are those of `Move`."""
-    return Move(id, ((BEHAVIOUR, "GoTo"), MOVE), target=Target(to), **more)  # type: ignore[arg-type]
+def move(id: str, kind: str, *, uri: str = BEHAVIOUR, task: str = "", **attributes: Value) -> Move:
+    """Return a move of a metaclass, with plain attributes."""
+    rule = "by_hand" if task else ""
+    return Move(id, _metaclasses(uri, kind), attributes, task=task, rule=rule)
 
 
-def hold(id: str, seconds: float = 1.0, **more: object) -> Move:
-    """Return a HoldPosition; keywords are those of `Move`."""
-    kind = ((BEHAVIOUR, "HoldPosition"), MOVE)
-    return Move(id, kind, {"duration": seconds}, **more)  # type: ignore[arg-type]
+def take_off(id: str, altitude: float) -> Move:
+    """Return a take-off to a height above the ground."""
+    return move(id, "TakeOff", uri=MULTICOPTER, altitude=altitude)
 
 
-def notify(*slots: str, active: bool = True) -> Action:
-    """Return a notify of slots given as ``robot.slot``."""
-    kind = "UnicastNotify" if len(slots) == 1 else "MulticastNotify"
-    sets = tuple(slot_id(slot) for slot in slots)
-    return Action(((BEHAVIOUR, kind), (BEHAVIOUR, "Notify")), sets=sets, active=active)
+def go_to(
+    id: str,
+    position: Position,
+    *,
+    speed: float | None = 5.0,
+    task: str = "",
+    trajectory: str = "DIRECT",
+    heading: Heading | None = None,
+) -> Move:
+    """Return a multicopter's GoTo a coordinate."""
+    made = move(id, "GoTo", uri=MULTICOPTER, task=task, trajectory=trajectory)
+    return replace(made, target=Target(position), speed=speed, heading=heading)
 
 
-def use(device: str, action: str) -> Action:
-    """Return a device action."""
-    return Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), action, device)
+def photo(device: str = "camera", action: str = "takePhoto") -> Action:
+    """Return an action of a device."""
+    return Action(_metaclasses(BEHAVIOUR, "DeviceAction"), action, device)
 
 
-def slot_id(text: str) -> SlotId:
-    """Return the slot that is written as ``robot.slot``."""
-    robot, _, slot = text.partition(".")
-    return robot, slot
+def feedback(name: str, *pairs: tuple[str, str]) -> Action:
+    """Return a message to the control station."""
+    return Action(_metaclasses(BEHAVIOUR, "Feedback"), name, parameters=pairs)
 
 
-def robot(
+def notify(*slots: SlotId, active: bool = True) -> Action:
+    """Return an action that sets slots."""
+    return Action(_metaclasses(BEHAVIOUR, "UnicastNotify"), "notify", sets=slots, active=active)
+
+
+def robot_program(
     id: str,
     moves: Sequence[Move],
     *,
-    waits: Mapping[str, Sequence[str]] | None = None,
-    choices: Mapping[str, tuple[str, str, str]] | None = None,
-    jumps: Mapping[str, str] | None = None,
-    fluid: Sequence[str] = (),
-    slots: Sequence[str] = (),
     home: Position | None = (0.0, 0.0, 0.0),
-    policies: tuple[Policy, ...] = (),
-    wait_policies: Mapping[str, tuple[Policy, ...]] | None = None,
+    slots: tuple[str, ...] = (),
+    transitions: Mapping[int, Transition] | None = None,
+    type_name: str = "Quad",
 ) -> RobotProgram:
-    """Return a robot that makes these moves one after another, between Start and Stop.
+    """Return a robot whose moves follow each other, between a Start and a Stop that are added.
 
     Args:
         id: of the robot.
-        moves: between ``start`` and ``stop``.
-        waits: by move: names of the slots that it waits for after it.
-        choices: by move: (condition, next move, next move otherwise).
-        jumps: by move: the next move, where that is not the one after it.
-        fluid: moves whose transition is fluid.
-        slots: beside those that are waited for.
+        moves: without Start and Stop.
         home: of the robot.
-        policies: of the robot. wait_policies: by move: of the transition after it.
+        slots: of the robot.
+        transitions: those that differ from going on plainly, by index of the move, Start being 0.
+        type_name: of the robot's type.
     """
-    start = Move("start", ((BEHAVIOUR, "Start"), MOVE))
-    stop = Move("stop", ((BEHAVIOUR, "Stop"), MOVE))
-    every = (start, *moves, stop)
-    index = {move.id: number for number, move in enumerate(every)}
-    transitions = {}
-    for number, move in enumerate(every[:-1]):
-        condition, to, otherwise = (choices or {}).get(move.id, (None, None, None))
-        target = to or (jumps or {}).get(move.id)
-        transitions[number] = Transition(
-            number,
-            index[target] if target else number + 1,
-            tuple((waits or {}).get(move.id, ())),
-            move.id in fluid,
-            condition,
-            index[otherwise] if otherwise else None,
-            (wait_policies or {}).get(move.id, ()),
-        )
-    awaited = [slot for names in (waits or {}).values() for slot in names]
-    names = tuple(dict.fromkeys((*awaited, *slots)))
+    every = (move("start", "Start"), *moves, move("stop", "Stop"))
+    plain = {index: Transition(index, index + 1) for index in range(len(every) - 1)}
     return RobotProgram(
-        id, ROBOT_TYPE, "NORMAL", 0.0, home, names, every, transitions, 0, len(every) - 1, policies
+        id,
+        type_name,
+        "NORMAL",
+        0.0,
+        home,
+        slots,
+        every,
+        plain | dict(transitions or {}),
+        0,
+        len(every) - 1,
     )
 
 
-def program(*robots: RobotProgram, surface: float = 0.0) -> Program:
-    """Return a local behaviour of these robots."""
-    return Program("test", Frame("EPSG:4326", None, None, surface=surface), robots)
+def program(
+    *robots: RobotProgram, name: str = "survey", frame: Frame = L_AQUILA, reserve: float = 0.2
+) -> Program:
+    """Return the behaviour of these robots."""
+    return Program(name, frame, robots, reserve=reserve)
 
 
-def robot_type(
-    *,
-    speed: tuple[float, float] = (0.0, 4.0),
-    lifetime: float | None = 1000.0,
-    energy: float = 100_000.0,
-    acceleration: float | None = None,
-    climb_rate: float | None = 2.0,
-    recharge_time: float | None = 60.0,
-    devices: Mapping[str, Mapping[str, float]] | None = None,
-    attributes: Mapping[str, float] | None = None,
-    metaclass: tuple[str, str] = ("urn:mmrs:robot:1.0", "Robot"),
-) -> RobotType:
-    """Return a robot type; `devices` are seconds by action by device."""
-    capability = Capability(0.0, lifetime, speed, acceleration, climb_rate, climb_rate, 90.0)
-    made = {
-        name: Device(name, {action: DeviceAction(action, seconds) for action, seconds in actions.items()}, {})
-        for name, actions in (devices or {}).items()
-    }
-    batteries = (Battery(energy, recharge_time),) if energy else ()
-    part = Part((metaclass,), dict(attributes or {}))
-    return RobotType(ROBOT_TYPE, (metaclass,), (), 0.5, None, (capability,), batteries, made, part)
+def two_drones() -> Program:
+    """Return two drones: the second waits in the air until the first has taken its photos."""
+    first = robot_program(
+        "alpha",
+        [
+            take_off("up", 20.0),
+            go_to("a1", (0.0, 30.0, 20.0), task="photos"),
+            go_to("a2", (15.0, 30.0, 20.0), task="photos"),
+            go_to("a3", (30.0, 30.0, 20.0), task="photos"),
+            replace(go_to("a4", (30.0, 0.0, 20.0), task="photos"), after=(photo(), notify(("beta", "go")))),
+            go_to("back", (0.0, 0.0, 20.0)),
+            move("down", "Land", uri=MULTICOPTER),
+        ],
+        transitions={index: Transition(index, index + 1, fluid=True) for index in (2, 3, 4)},
+    )
+    second = robot_program(
+        "beta",
+        [
+            take_off("up", 15.0),
+            go_to("b1", (60.0, 20.0, 15.0), trajectory="HORIZONTAL_FIRST"),
+            replace(
+                go_to("b2", (60.0, 40.0, 25.0), task="look", trajectory="VERTICAL_FIRST"),
+                before=(feedback("arrived", ("at", "b1")),),
+            ),
+            move("wait", "HoldPosition", task="look", duration=5.0),
+            replace(move("turn", "HeadTo"), heading=Heading(Target((0.0, 0.0, 0.0)))),
+            go_to("back", (60.0, 0.0, 15.0)),
+            move("down", "Land", uri=MULTICOPTER),
+        ],
+        home=(60.0, 0.0, 0.0),
+        slots=("go",),
+        transitions={2: Transition(2, 3, waits=("go",))},
+    )
+    return program(first, second)
+
+
+def quad(**properties: str) -> RobotType:
+    """Return a type of drone with a camera; `properties` of the camera beside its wiring."""
+    camera = Device(
+        "camera", {"takePhoto": DeviceAction("takePhoto", 1.0)}, {"mavlink.camera": "0", **properties}
+    )
+    return RobotType(
+        name="Quad",
+        metaclasses=((MULTICOPTER, "Drone"), (ROBOT, "Robot")),
+        capability_metaclasses=((ROBOT, "MovementCapability"),),
+        half_diagonal=0.5,
+        max_payload=1.0,
+        capabilities=(Capability(0.0, 1200.0, (1.0, 8.0), 2.5, 2.5, 2.0, 90.0),),
+        batteries=(Battery(200_000.0, 3600.0),),
+        devices={"camera": camera},
+        part=Part(((MULTICOPTER, "Drone"),), {}),
+    )
+
+
+def areas() -> tuple[Area, ...]:
+    """Return a forbidden area, an obstacle that can be flown over, and an emergency area."""
+    return (
+        Area("school", AreaUse.FORBIDDEN, ((100.0, 0.0), (140.0, 0.0), (140.0, 40.0), (100.0, 40.0))),
+        Area("mast", AreaUse.OBSTACLE, ((80.0, 80.0), (82.0, 80.0), (82.0, 82.0)), 0.0, 30.0, 2.0),
+        Area("meadow", AreaUse.EMERGENCY, ((-40.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (-40.0, 20.0))),
+    )
+
+
+def target_input(program: Program, types: Iterable[RobotType] | None = None) -> TargetInput:
+    """Return what a target gets for a behaviour among `areas`; its type is `quad` unless others are given."""
+    given = (quad(),) if types is None else types
+    return TargetInput(program, {each.name: each for each in given}, {}, {}, areas())
+
+
+def _metaclasses(uri: str, kind: str) -> Metaclasses:
+    return ((uri, kind), *SUPERTYPES.get((uri, kind), ()), *(((BEHAVIOUR, "Move"),) if uri else ()))

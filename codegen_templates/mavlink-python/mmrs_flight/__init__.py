@@ -1,0 +1,63 @@
+"""The runtime of generated controllers: readable, standalone, on top of pymavlink.
+
+Read ``program.py`` first: the words that programs are written in. ``pilot.py`` carries a program
+out, ``vehicle.py`` says it in MAVLink, ``main.py`` is the command line.
+"""
+
+from .main import main
+from .pilot import Condition
+from .program import (
+    Choose,
+    Geographic,
+    GoTo,
+    Hold,
+    Land,
+    Local,
+    Look,
+    Measure,
+    NoEffect,
+    Notify,
+    Operate,
+    Policy,
+    Recharge,
+    Report,
+    Robot,
+    Run,
+    Skip,
+    Start,
+    Step,
+    Stop,
+    TakeOff,
+    Then,
+    Turn,
+)
+from .vehicle import State
+
+__all__ = [
+    "Choose",
+    "Condition",
+    "Geographic",
+    "GoTo",
+    "Hold",
+    "Land",
+    "Local",
+    "Look",
+    "Measure",
+    "NoEffect",
+    "Notify",
+    "Operate",
+    "Policy",
+    "Recharge",
+    "Report",
+    "Robot",
+    "Run",
+    "Skip",
+    "Start",
+    "State",
+    "Step",
+    "Stop",
+    "TakeOff",
+    "Then",
+    "Turn",
+    "main",
+]

@@ -1,0 +1,89 @@
+"""A vehicle that is not there: it goes where it is told at a steady speed, for trials without a link."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from .clock import Clock
+from .missions import Item
+from .places import at_height, bearing, distance
+from .program import Geographic, Look, Place
+from .vehicle import State
+
+CRUISE = 5.0
+CLIMB = 2.0
+
+
+class DryVehicle:
+    """Does everything at once that a real vehicle takes its time for, but takes the time, too."""
+
+    def __init__(self, clock: Clock, home: Place, guard: Callable[[], None]) -> None:
+        """Stand at home."""
+        self._clock = clock
+        self._here = home
+        self._home = home
+        self._guard = guard
+        self._items: Sequence[Item] = ()
+
+    def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
+        """Keep the mission."""
+        self._items = mission
+
+    def take_off(self, height: float) -> None:
+        """Climb to a height above home."""
+        self.rest(abs(height - self._here.height) / CLIMB)
+        self._here = at_height(self._here, height)
+
+    def land(self) -> None:
+        """Descend to the height of home."""
+        self.take_off(self._home.height)
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Be at a place after the time that the way takes."""
+        self.rest(distance(self._here, place) / (speed or CRUISE))
+        self._here = place
+
+    def turn(self, look: Look) -> None:
+        """Turn at once."""
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+        """Pass the mission's items one after the other."""
+        for seq in range(first, last + 1):
+            item = self._items[seq]
+            if item.x or item.y:
+                self.go_to(Geographic(item.x * 1e-7, item.y * 1e-7, item.z), None, None, True)
+            reached(seq)
+
+    def rest(self, seconds: float) -> None:
+        """Stay for so many seconds."""
+        until = self._clock.now() + seconds
+        while (left := until - self._clock.now()) > 0:
+            self._guard()
+            time.sleep(min(self._clock.real(left), 0.1))
+        self._guard()
+
+    def operate(self, number: int, params: tuple[float, ...]) -> None:
+        """Do nothing."""
+
+    def measure(self, value: str) -> float:
+        """Return zero."""
+        return 0.0
+
+    def hold(self) -> bool:
+        """Stay."""
+        return False
+
+    def surface(self) -> None:
+        """Be at the surface."""
+        self._here = at_height(self._here, 0.0)
+
+    def disarm(self) -> None:
+        """Do nothing."""
+
+    def finish(self) -> None:
+        """Do nothing."""
+
+    def state(self) -> State:
+        """Return where the vehicle would be, with a full battery."""
+        return State(self._clock.now(), self._here, 0.0, bearing(self._home, self._here), 1.0)

@@ -1,0 +1,36 @@
+"""What can end a robot's program before its end."""
+
+from __future__ import annotations
+
+LINK_LOST = "LINK_LOST"
+PEER_LOST = "PEER_LOST"
+BATTERY_LOW = "BATTERY_LOW"
+WAIT_TOO_LONG = "WAIT_TOO_LONG"
+DEVICE_SILENT = "DEVICE_SILENT"
+NO_PROGRESS = "NO_PROGRESS"
+TAKEN_OVER = "TAKEN_OVER"
+REFUSED = "REFUSED"
+CONDITION_FAILED = "CONDITION_FAILED"
+STOPPED = "STOPPED"
+
+
+class Fault(Exception):
+    """Something went wrong; `event` says what, and the robot's policies say what it does about it."""
+
+    def __init__(self, event: str, message: str) -> None:
+        super().__init__(message)
+        self.event = event
+
+
+class Refused(Fault):
+    """The vehicle does not accept something that it was told."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(REFUSED, message)
+
+
+class Stopped(Fault):
+    """Somebody asked the robot to stop."""
+
+    def __init__(self) -> None:
+        super().__init__(STOPPED, "stop was asked for")

@@ -1,0 +1,68 @@
+"""Distances and directions between places, flat-Earth: exact to a thousandth over a few kilometres."""
+
+from __future__ import annotations
+
+from math import atan2, cos, degrees, hypot, radians
+
+from .program import Geographic, Local, Place
+
+METRES_PER_DEGREE = 111_319.49
+
+
+def offset(a: Place, b: Place) -> tuple[float, float, float]:
+    """Return how far `b` is north, east and up of `a`, metres.
+
+    Raises:
+        ValueError: one is geographic and the other is not.
+    """
+    if isinstance(a, Geographic) and isinstance(b, Geographic):
+        north = (b.latitude - a.latitude) * METRES_PER_DEGREE
+        east = (b.longitude - a.longitude) * METRES_PER_DEGREE * cos(radians(a.latitude))
+        return north, east, b.height - a.height
+    if isinstance(a, Local) and isinstance(b, Local):
+        return b.north - a.north, b.east - a.east, b.height - a.height
+    raise ValueError(f"{a} and {b} have no common frame")
+
+
+def distance(a: Place, b: Place) -> float:
+    """Return the metres between two places."""
+    return hypot(*offset(a, b))
+
+
+def bearing(a: Place, b: Place) -> float:
+    """Return the direction from one place to another, degrees clockwise from north."""
+    north, east, _ = offset(a, b)
+    return degrees(atan2(east, north)) % 360.0
+
+
+def between(a: Place, b: Place, part: float) -> Place:
+    """Return the place at a part of the straight way, 0 at `a` and 1 at `b`."""
+    if isinstance(a, Geographic) and isinstance(b, Geographic):
+        return Geographic(
+            a.latitude + (b.latitude - a.latitude) * part,
+            a.longitude + (b.longitude - a.longitude) * part,
+            a.height + (b.height - a.height) * part,
+        )
+    north, east, up = offset(a, b)
+    assert isinstance(a, Local)
+    return Local(a.north + north * part, a.east + east * part, a.height + up * part)
+
+
+def at_height(place: Place, height: float) -> Place:
+    """Return the place above or below another at that height."""
+    if isinstance(place, Geographic):
+        return Geographic(place.latitude, place.longitude, height)
+    return Local(place.north, place.east, height)
+
+
+def ends_of(here: Place, target: Place, legs: str, short: float) -> tuple[Place, ...]:
+    """Return the ends of the straight legs to a target, the last one `short` metres before it."""
+    corners = {
+        "level first": (at_height(target, here.height),),
+        "climb first": (at_height(here, target.height),),
+    }.get(legs, ())
+    last = corners[-1] if corners else here
+    left = distance(last, target)
+    if short <= 0.0 or left == 0.0:
+        return (*corners, target)
+    return (*corners, between(last, target, max(0.0, 1.0 - short / left)))

@@ -1,0 +1,258 @@
+"""The words that a robot's program is written in.
+
+A program is a table of steps. Each step is one move of the behaviour: actions before it, the
+movement, actions after it, and what comes then. Places are metres or degrees with seven decimals;
+heights are metres above the robot's home (under water: above the surface, so negative).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+
+@dataclass(frozen=True, slots=True)
+class Geographic:
+    """A place on the Earth: degrees, and metres above home."""
+
+    latitude: float
+    longitude: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A place near home: metres north and east of it, and above it."""
+
+    north: float
+    east: float
+    height: float
+
+
+Place: TypeAlias = Geographic | Local
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a device points at.
+
+    Attributes:
+        angle: at 90 the target is on the device's right side, degrees.
+        mount: where the device points when the robot looks north, degrees clockwise.
+        gimbal: whether the device turns by itself, so that the robot need not.
+    """
+
+    at: Place
+    angle: float = 0.0
+    mount: float = 0.0
+    gimbal: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """The beginning: nothing moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """The end."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeOff:
+    """Climb straight up to a height above home."""
+
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Land:
+    """Descend straight down and stop the motors."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoTo:
+    """Go to a place.
+
+    Attributes:
+        speed: metres per second; None: the vehicle's own.
+        legs: ``direct``, ``level first`` or ``climb first``.
+        distance: stop so many metres before the place.
+        look: None: the front points the way the robot goes.
+    """
+
+    at: Place
+    speed: float | None = None
+    legs: str = "direct"
+    distance: float = 0.0
+    look: Look | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Stay for so many seconds."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recharge:
+    """Stay at home until the batteries are full, and for so many seconds at least."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """Turn on the spot until a device points at something."""
+
+    look: Look
+
+
+@dataclass(frozen=True, slots=True)
+class Skip:
+    """A movement that could not be expressed: the robot does nothing; `why` says what is missing."""
+
+    why: str
+
+
+Movement: TypeAlias = Start | Stop | TakeOff | Land | GoTo | Hold | Recharge | Turn | Skip
+
+
+@dataclass(frozen=True, slots=True)
+class Notify:
+    """Set slots of robots: (robot, slot) pairs."""
+
+    slots: tuple[tuple[str, str], ...]
+    active: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Tell the control station something: (key, value) pairs."""
+
+    name: str
+    pairs: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Operate:
+    """Have a device do something: a MAVLink command with its seven parameters, and how long it takes."""
+
+    device: str
+    action: str
+    command: int
+    params: tuple[float, ...]
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Record the next value that the vehicle publishes under a name (NAMED_VALUE_FLOAT)."""
+
+    device: str
+    action: str
+    value: str
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class NoEffect:
+    """An action that could not be expressed: it is logged as done; `why` says what is missing."""
+
+    name: str
+    why: str
+
+
+Action: TypeAlias = Notify | Report | Operate | Measure | NoEffect
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What the robot does when something goes wrong; None for `after`: the platform's default."""
+
+    event: str
+    response: str
+    after: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Then:
+    """What comes next, once all of these own slots are active."""
+
+    move: str
+    waits: tuple[str, ...] = ()
+    fluid: bool = False
+    policies: tuple[Policy, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Choose:
+    """What comes next depends on a condition, which is asked for once, after the wait."""
+
+    condition: str
+    move: str
+    otherwise: str
+    waits: tuple[str, ...] = ()
+    policies: tuple[Policy, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One move of the behaviour; `task` and `rule` say what it serves."""
+
+    move: str
+    movement: Movement
+    before: tuple[Action, ...] = ()
+    after: tuple[Action, ...] = ()
+    then: Then | Choose | None = None
+    task: str = ""
+    rule: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Moves without a stop between them, uploaded as a mission and flown in one go.
+
+    Attributes:
+        moves: GoTo moves in order.
+        holds: seconds to hold at the end of each, so that corners are not cut.
+    """
+
+    moves: tuple[str, ...]
+    holds: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """One robot and all that it does.
+
+    Attributes:
+        id: as in the behaviour; log: name of its log file.
+        vehicle: ``copter``, ``sub`` or ``rover``.
+        start: the first move.
+        slots: its own; senders: robots that notify each of them.
+        reserve: part of the energy that must be left.
+        fence: polygons to stay out of; rally: places to go to in an emergency.
+        escapes: by move, where to go in an emergency from where that move ends.
+    """
+
+    id: str
+    log: str
+    vehicle: str
+    home: Place
+    start: str
+    steps: tuple[Step, ...]
+    slots: tuple[str, ...] = ()
+    senders: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    policies: tuple[Policy, ...] = ()
+    reserve: float = 0.2
+    runs: tuple[Run, ...] = ()
+    fence: tuple[tuple[Place, ...], ...] = ()
+    rally: tuple[Place, ...] = ()
+    escapes: tuple[tuple[str, Place], ...] = ()
+    mission: str = field(default="", kw_only=True)
+
+    def step(self, move: str) -> Step:
+        """Return the step of that move."""
+        return next(step for step in self.steps if step.move == move)

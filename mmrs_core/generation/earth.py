@@ -1,0 +1,61 @@
+"""Places as vehicles take them: degrees of WGS 84, and heights above each robot's own zero."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.scene import Frame, Point, Position
+
+if TYPE_CHECKING:
+    from pyproj import Transformer
+
+WGS84 = "EPSG:4326"
+DECIMALS = 7
+
+
+def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, float], ...]:
+    """Return (latitude, longitude) in degrees of WGS 84, with the seven decimals that MAVLink keeps.
+
+    Args:
+        points: (east, north) in metres.
+        frame: of the behaviour.
+
+    Raises:
+        UnsupportedError: the frame has no place on the Earth.
+    """
+    if frame.latitude is None or frame.longitude is None:
+        raise UnsupportedError("behaviour: is local, its origin has no latitude and longitude")
+    if not points:
+        return ()
+    own = LocalFrame(frame.crs, frame.latitude, frame.longitude).to_geographic(points)
+    longitudes, latitudes = _to_wgs84(frame.crs).transform(own[:, 1], own[:, 0])
+    pairs = zip(latitudes.tolist(), longitudes.tolist(), strict=True)
+    return tuple((round(latitude, DECIMALS), round(longitude, DECIMALS)) for latitude, longitude in pairs)
+
+
+def metres(value: float) -> float:
+    """Return a length rounded to millimetres, never minus zero."""
+    return round(value, 3) + 0.0
+
+
+def sea_level_of(position: Position, frame: Frame) -> float | None:
+    """Return the height of a position above mean sea level in metres; None where it is not known."""
+    if frame.altitude is None:
+        return None
+    if frame.altitude_reference == "MSL":
+        return metres(frame.altitude + position[2])
+    if frame.altitude_reference == "ELLIPSOID" and frame.geoid_separation is not None:
+        return metres(frame.altitude + position[2] - frame.geoid_separation)
+    return None
+
+
+@lru_cache(maxsize=16)
+def _to_wgs84(crs: str) -> Transformer:
+    from pyproj import Transformer
+
+    known = WGS84 if crs.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else crs
+    return Transformer.from_crs(known, WGS84, always_xy=True)

@@ -1,0 +1,1 @@
+"""The target mavlink-python: standalone controllers on top of pymavlink."""

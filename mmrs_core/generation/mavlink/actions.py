@@ -1,0 +1,43 @@
+"""Actions of the Behaviour Language as actions of the runtime's programs."""
+
+from __future__ import annotations
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.generation.context import RobotContext
+from mmrs_core.generation.escaping import Call
+from mmrs_core.generation.wiring import Sampled, Unwired, Wired, wiring_of
+
+DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
+FEEDBACK = (BEHAVIOUR, "Feedback")
+NOTIFY = (BEHAVIOUR, "Notify")
+
+
+def action_of(action: Action, context: RobotContext) -> Call:
+    """Return the action; ``NoEffect`` where there is no way to do it."""
+    if action.is_a(NOTIFY):
+        return Call("Notify", (action.sets,), () if action.active else (("active", False),))
+    if action.is_a(FEEDBACK):
+        return Call("Report", (action.name, action.parameters))
+    if not action.is_a(DEVICE_ACTION):
+        return Call("NoEffect", (action.name, f"{action.metaclasses[0][1]} is not known to this target"))
+    wiring = wiring_of(action, context.type)
+    if isinstance(wiring, Wired):
+        params = tuple(map(float, wiring.params))
+        return Call("Operate", (action.device, action.name, wiring.command, params, wiring.seconds))
+    if isinstance(wiring, Sampled):
+        return Call("Measure", (action.device, action.name, wiring.value, wiring.seconds))
+    return Call("NoEffect", (action.name, wiring.reason))
+
+
+def action_losses(move: Move, context: RobotContext) -> tuple[str, ...]:
+    """Return what of a move's actions cannot be expressed."""
+    losses = []
+    for action in (*move.before, *move.after):
+        if action.is_a(DEVICE_ACTION):
+            wiring = wiring_of(action, context.type)
+            if isinstance(wiring, Unwired):
+                losses.append(f"{context.label(move)}: action '{action.name}': {wiring.reason}")
+        elif not (action.is_a(NOTIFY) or action.is_a(FEEDBACK)):
+            kind = action.metaclasses[0][1]
+            losses.append(f"{context.label(move)}: action {kind} is not known to this target")
+    return tuple(losses)

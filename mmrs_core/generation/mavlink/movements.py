@@ -1,0 +1,139 @@
+"""Moves of the Behaviour Language as movements of the runtime's programs.
+
+Which metaclasses the target knows is the table at the end: a move whose own metaclass is not in it
+is refused, even where it extends one that is, because its movement may differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move
+from mmrs_core.contributions.rules import most_specific
+from mmrs_core.generation.context import RobotContext
+from mmrs_core.generation.earth import metres
+from mmrs_core.generation.escaping import Call
+from mmrs_core.scene import Name, Position
+
+MULTICOPTER = "urn:mmrs:multicopter:1.0"
+
+LEGS = {"DIRECT": "direct", "HORIZONTAL_FIRST": "level first", "VERTICAL_FIRST": "climb first"}
+
+
+def movement_of(move: Move, context: RobotContext) -> Call:
+    """Return the movement of a move; ``Skip`` where the target has none."""
+    known = most_specific(move.metaclasses, MOVEMENTS)
+    if known is None:
+        return Call("Skip", (f"{move.kind} is not known to this target",))
+    return MOVEMENTS[known](move, context)
+
+
+def losses_of(move: Move, context: RobotContext) -> tuple[str, ...]:
+    """Return what of the movement cannot be expressed."""
+    if most_specific(move.metaclasses, MOVEMENTS) != move.metaclasses[0]:
+        return (f"{context.label(move)}: {move.kind} is not known to this target",)
+    losses = []
+    if move.metaclasses[0][1] == "GoTo":
+        losses += _target_losses(move, context)
+        if context.speed(move) is None:
+            losses.append(
+                f"{context.label(move)}: its speed is not known, because its robot type is not given"
+            )
+    if move.heading is not None and move.heading.target.position is None:
+        losses.append(f"{context.label(move)}: points at an object whose place is not known")
+    if move.metaclasses[0] == (MULTICOPTER, "TakeOff") and _number(move, "altitude") <= 0:
+        losses.append(f"{context.label(move)}: takes off to {_number(move, 'altitude'):g} m above the ground")
+    return tuple(losses)
+
+
+def place_of(position: Position, context: RobotContext) -> Call:
+    """Return a position as a place of the runtime's programs."""
+    if context.frame.is_local:
+        home = context.robot.home or (0.0, 0.0, 0.0)
+        north, east = metres(position[1] - home[1]), metres(position[0] - home[0])
+        return Call("Local", (north, east, context.height(position)))
+    latitude, longitude = context.degrees[position[0], position[1]]
+    return Call("Geographic", (latitude, longitude, context.height(position)))
+
+
+def _target_losses(move: Move, context: RobotContext) -> list[str]:
+    if move.target is None or move.target.description is None:
+        return []
+    return [f"{context.label(move)}: goes to an object, which a MAVLink vehicle cannot find by itself"]
+
+
+def _start(move: Move, context: RobotContext) -> Call:
+    return Call("Start")
+
+
+def _stop(move: Move, context: RobotContext) -> Call:
+    return Call("Stop")
+
+
+def _take_off(move: Move, context: RobotContext) -> Call:
+    return Call("TakeOff", (metres(_number(move, "altitude")),))
+
+
+def _land(move: Move, context: RobotContext) -> Call:
+    return Call("Land")
+
+
+def _go_to(move: Move, context: RobotContext) -> Call:
+    if move.target is None or move.target.position is None:
+        return Call("Skip", ("it goes to an object whose place is not known",))
+    named: list[tuple[str, object]] = [("speed", context.speed(move))]
+    legs = LEGS[str(move.attributes.get("trajectory", "DIRECT"))]
+    if legs != "direct":
+        named.append(("legs", legs))
+    if move.distance:
+        named.append(("distance", metres(move.distance)))
+    look = _look(move.heading, context)
+    if look is not None:
+        named.append(("look", look))
+    return Call("GoTo", (place_of(move.target.position, context),), tuple(named))
+
+
+def _hold(move: Move, context: RobotContext) -> Call:
+    return Call("Hold", (_number(move, "duration"),))
+
+
+def _recharge(move: Move, context: RobotContext) -> Call:
+    return Call("Recharge", (_number(move, "duration"),))
+
+
+def _turn(move: Move, context: RobotContext) -> Call:
+    look = _look(move.heading, context)
+    return Call("Turn", (look,)) if look else Call("Skip", ("what it turns to has no known place",))
+
+
+def _look(heading: Heading | None, context: RobotContext) -> Call | None:
+    if heading is None or heading.target.position is None:
+        return None
+    device = context.type.devices.get(heading.device) if context.type else None
+    properties = device.properties if device else {}
+    named: list[tuple[str, object]] = []
+    if heading.angle_degrees:
+        named.append(("angle", metres(heading.angle_degrees)))
+    if "mount.yaw" in properties:
+        named.append(("mount", float(properties["mount.yaw"])))
+    if "mavlink.gimbal" in properties:
+        named.append(("gimbal", True))
+    return Call("Look", (place_of(heading.target.position, context),), tuple(named))
+
+
+def _number(move: Move, feature: str) -> float:
+    value = move.attributes.get(feature)
+    return float(value) if isinstance(value, int | float) else 0.0
+
+
+MOVEMENTS: Mapping[Name, Callable[[Move, RobotContext], Call]] = {
+    (BEHAVIOUR, "Start"): _start,
+    (BEHAVIOUR, "Stop"): _stop,
+    (BEHAVIOUR, "GoTo"): _go_to,
+    (BEHAVIOUR, "HoldPosition"): _hold,
+    (BEHAVIOUR, "Recharge"): _recharge,
+    (BEHAVIOUR, "HeadTo"): _turn,
+    (MULTICOPTER, "TakeOff"): _take_off,
+    (MULTICOPTER, "Land"): _land,
+    (MULTICOPTER, "GoTo"): _go_to,
+}

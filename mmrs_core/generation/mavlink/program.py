@@ -1,0 +1,184 @@
+"""A robot of a behaviour as a program of the runtime."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from mmrs_core.behaviour.log import log_name
+from mmrs_core.behaviour.program import Program, RobotProgram, Transition
+from mmrs_core.behaviour.walk import in_order
+from mmrs_core.contributions.targets import TargetInput, TracedStep
+from mmrs_core.generation.context import RobotContext, context_of
+from mmrs_core.generation.escaping import Call
+from mmrs_core.generation.mavlink.actions import action_of
+from mmrs_core.generation.mavlink.movements import movement_of, place_of
+from mmrs_core.generation.mavlink.runs import Run, runs_of
+from mmrs_core.generation.safety import (
+    clearance_of,
+    escape_from,
+    explicit,
+    fence_of,
+    policies_of,
+    refuges,
+)
+from mmrs_core.scene import Point, Policy
+
+
+@dataclass(frozen=True, slots=True)
+class StepView:
+    """One step as the template sees it."""
+
+    call: Call
+    task: str
+    rule: str
+
+
+@dataclass(frozen=True, slots=True)
+class RobotView:
+    """One robot as the template sees it."""
+
+    id: str
+    mission: str
+    words: tuple[str, ...]
+    head: tuple[tuple[str, object], ...]
+    steps: tuple[StepView, ...]
+    conditions: tuple[str, ...]
+
+
+def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
+    """Return a robot as the template sees it."""
+    areas, program = input.areas, input.program
+    clearance = clearance_of(input.types.get(robot.type_name), program.position_error)
+    geographic = not program.frame.is_local
+    fence, points = (fence_of(areas), refuges(areas, clearance)) if geographic else ((), ())
+    vertices: list[Point] = [vertex for ring in fence for vertex in ring]
+    context = context_of(robot, input, [*vertices, *points], geographic=geographic)
+    steps = tuple(_step(index, context) for index in _ordered(robot))
+    head = tuple(_head(context, input, fence, points, clearance))
+    words = _words((head, [step.call for step in steps]))
+    return RobotView(robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot))
+
+
+def conditions_of(robot: RobotProgram) -> tuple[str, ...]:
+    """Return the identifiers of the conditions that a robot's Choices ask for, sorted."""
+    return tuple(sorted({t.condition for t in robot.transitions.values() if t.condition is not None}))
+
+
+def trace_of(robot: RobotProgram) -> tuple[TracedStep, ...]:
+    """Return which step serves which move and task."""
+    moves = [robot.moves[index] for index in _ordered(robot)]
+    return tuple(
+        TracedStep(f"step {number}", robot.id, move.id, move.task, move.rule)
+        for number, move in enumerate(moves)
+    )
+
+
+def senders_of(robot: RobotProgram, program: Program) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return, for each slot that somebody sets, the robots that do."""
+    found: dict[str, dict[str, None]] = {}
+    for sender in program.robots:
+        for move in sender.moves:
+            for action in (*move.before, *move.after):
+                for owner, slot in action.sets:
+                    if owner == robot.id and action.active:
+                        found.setdefault(slot, {})[sender.id] = None
+    return tuple((slot, tuple(senders)) for slot, senders in sorted(found.items()))
+
+
+def _ordered(robot: RobotProgram) -> tuple[int, ...]:
+    reached = in_order(robot)
+    return (*reached, *(index for index in range(len(robot.moves)) if index not in set(reached)))
+
+
+def _step(index: int, context: RobotContext) -> StepView:
+    robot = context.robot
+    move, transition = robot.moves[index], robot.transitions.get(index)
+    named: list[tuple[str, object]] = []
+    for name, actions in (("before", move.before), ("after", move.after)):
+        if actions:
+            named.append((name, tuple(action_of(action, context) for action in actions)))
+    if transition is not None:
+        named.append(("then", _then(transition, robot)))
+    named += [(name, value) for name, value in (("task", move.task), ("rule", move.rule)) if value]
+    return StepView(Call("Step", (move.id, movement_of(move, context)), tuple(named)), move.task, move.rule)
+
+
+def _then(transition: Transition, robot: RobotProgram) -> Call:
+    named: list[tuple[str, object]] = []
+    if transition.waits:
+        named.append(("waits", transition.waits))
+    if transition.policies:
+        named.append(("policies", tuple(_policy(explicit(policy)) for policy in transition.policies)))
+    to = robot.moves[transition.to].id
+    if transition.condition is not None and transition.otherwise is not None:
+        otherwise = robot.moves[transition.otherwise].id
+        return Call("Choose", (transition.condition, to, otherwise), tuple(named))
+    if transition.fluid:
+        named.append(("fluid", True))
+    return Call("Then", (to,), tuple(named))
+
+
+def _head(
+    context: RobotContext,
+    input: TargetInput,
+    fence: tuple[tuple[Point, ...], ...],
+    points: tuple[Point, ...],
+    clearance: float,
+) -> Iterator[tuple[str, object]]:
+    robot, program = context.robot, input.program
+    home = robot.home or (0.0, 0.0, 0.0)
+    yield "id", robot.id
+    yield "mission", program.name
+    yield "log", log_name(robot.id)
+    yield "vehicle", context.vehicle.name
+    yield "home", place_of(home, context)
+    yield "start", robot.moves[robot.start].id
+    yield "slots", robot.slots
+    yield "senders", senders_of(robot, program)
+    yield "policies", tuple(_policy(policy) for policy in policies_of(robot, input))
+    yield "reserve", program.reserve
+    yield "runs", tuple(_run(run, robot) for run in runs_of(context))
+    yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
+    yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
+    yield "escapes", tuple(_escapes(context, input, points, clearance))
+
+
+def _run(run: Run, robot: RobotProgram) -> Call:
+    return Call("Run", (tuple(robot.moves[move].id for move in run.moves), run.holds))
+
+
+def _policy(policy: Policy) -> Call:
+    after = () if policy.after is None else (policy.after,)
+    return Call("Policy", (policy.event, policy.response, *after))
+
+
+def _ground(vertex: Point, context: RobotContext) -> Call:
+    return place_of((*vertex, context.zero), context)
+
+
+def _highest(context: RobotContext) -> float:
+    ups = [move.target.position[2] for move in context.robot.moves if move.target and move.target.position]
+    return max(ups, default=context.zero)
+
+
+def _escapes(
+    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
+) -> Iterator[tuple[str, Call]]:
+    if not points:
+        return
+    for move in context.robot.moves:
+        if move.target is None or move.target.position is None:
+            continue
+        place = escape_from(move.target.position, points, input.areas, clearance)
+        if place is not None:
+            yield move.id, place_of(place, context)
+
+
+def _words(value: object) -> set[str]:
+    if isinstance(value, Call):
+        inner = _words((value.positional, [each for _, each in value.named]))
+        return {value.function} | inner
+    if isinstance(value, tuple | list):
+        return set().union(*(_words(each) for each in value))
+    return set()

@@ -1,0 +1,64 @@
+"""The target itself: its files, and what it refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
+from mmrs_core.generation.context import context_of
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.generation.mavlink.actions import action_losses
+from mmrs_core.generation.mavlink.movements import losses_of
+from mmrs_core.generation.mavlink.program import conditions_of, robot_view, trace_of
+from mmrs_core.resources import shipped
+
+RUNTIME = "mmrs_flight"
+TEMPLATES = shipped("codegen_templates") / "mavlink-python"
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield one controller a robot, the fleet, the conditions where there are any, and the runtime."""
+    robots = input.program.robots
+    stems = file_stems([robot.id for robot in robots], hyphens=False)
+    modules = [f"robot_{stems[robot.id]}" for robot in robots]
+    for robot, module in zip(robots, modules, strict=True):
+        yield FileSpec(
+            f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
+        )
+    conditions = sorted({condition for robot in robots for condition in conditions_of(robot)})
+    common = {
+        "mission": input.program.name,
+        "modules": list(zip(modules, [robot.id for robot in robots], strict=True)),
+        "conditions": conditions,
+    }
+    yield FileSpec("fleet.py", "fleet.py.jinja", common)
+    yield FileSpec("README.md", "README.md.jinja", common)
+    if conditions:
+        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True)
+    for path in sorted((TEMPLATES / RUNTIME).glob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.name}", f"{RUNTIME}/{path.name}")
+
+
+def refusals(input: TargetInput) -> Iterator[str]:
+    """Yield what no controller can do."""
+    for robot in input.program.robots:
+        yield from _refused(robot, input)
+
+
+def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
+    if robot.home is None:
+        yield f"robot '{robot.id}': its home is not known, and heights count from there"
+    context = context_of(robot, input, geographic=False)
+    for move in robot.moves:
+        yield from losses_of(move, context)
+        yield from action_losses(move, context)
+
+
+MAVLINK_PYTHON = Target(
+    name="mavlink-python",
+    description="standalone pymavlink controllers, one for each robot and one for the whole fleet",
+    templates=TEMPLATES,
+    files=files,
+    refusals=refusals,
+)

@@ -1,0 +1,1 @@
+"""The target qgc-plan: plans for QGroundControl."""

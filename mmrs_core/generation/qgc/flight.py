@@ -1,0 +1,172 @@
+"""A robot's way through its moves, as missions for QGroundControl: one a sortie."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import atan2, degrees, dist
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.generation.context import RobotContext
+from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
+from mmrs_core.generation.qgc import items as qgc
+from mmrs_core.generation.qgc.items import Item
+from mmrs_core.generation.wiring import Wired, wiring_of
+from mmrs_core.scene import Name, Position
+
+MULTICOPTER = "urn:mmrs:multicopter:1.0"
+CORNER_SECONDS = 1.0
+"""Hold at the end of moves, without which vehicles cut corners; fluid transitions do without."""
+
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
+    """Return the items of each sortie: what a vehicle does between two stays on the ground.
+
+    What missions cannot express is left out, but never so that a vehicle goes on where it should
+    wait: a wait becomes an unlimited loiter that the operator ends, and the mission ends at a choice
+    and at a move that comes round again.
+    """
+    flight = Flight(context)
+    robot, index, seen = context.robot, context.robot.start, set[int]()
+    while index not in seen:
+        seen.add(index)
+        move, transition = robot.moves[index], robot.transitions.get(index)
+        flight.perform(move, fluid=transition is not None and transition.fluid)
+        if transition is None or transition.condition is not None:
+            break
+        if transition.waits:
+            flight.wait(move)
+        index = transition.to
+    flight.end_sortie()
+    return tuple(flight.sorties)
+
+
+class Flight:
+    """Writes moves down as items, one after the other, and keeps where the robot is.
+
+    Attributes:
+        sorties: the finished ones.
+    """
+
+    def __init__(self, context: RobotContext) -> None:
+        """Stand at home."""
+        self.sorties: list[tuple[Item, ...]] = []
+        self._context = context
+        self._position: Position = context.robot.home or ORIGIN
+        self._speed: float | None = None
+        self._looking = False
+        self._items: list[Item] = []
+
+    def perform(self, move: Move, *, fluid: bool) -> None:
+        """Add a move with its actions; `fluid`: the robot does not stop at its end."""
+        for action in move.before:
+            self._act(action, move)
+        handler = _MOVES.get(move.metaclasses[0])
+        if handler is not None:
+            handler(self, move, fluid)
+        for action in move.after:
+            self._act(action, move)
+
+    def wait(self, move: Move) -> None:
+        """Add a wait that only the operator ends, if the robot is on its way."""
+        if self._items:
+            self._add(qgc.LOITER_UNLIMITED, move, here=True)
+
+    def end_sortie(self) -> None:
+        """Finish the sortie, if it leads anywhere."""
+        if any(item.position is not None for item in self._items):
+            self.sorties.append(tuple(self._items))
+        self._items, self._speed, self._looking = [], None, False
+
+    def _act(self, action: Action, move: Move) -> None:
+        wiring = wiring_of(action, self._context.type) if action.is_a(DEVICE_ACTION) else None
+        if isinstance(wiring, Wired):
+            self._add(wiring.command, move, *wiring.params)
+            if wiring.seconds and self._items:
+                self._add(qgc.LOITER_TIME, move, wiring.seconds, here=True)
+
+    def take_off(self, move: Move, fluid: bool) -> None:
+        """Climb straight up."""
+        east, north, _ = self._position
+        self._position = (east, north, self._context.zero + _number(move, "altitude"))
+        self._add(qgc.TAKE_OFF, move, here=True)
+
+    def land(self, move: Move, fluid: bool) -> None:
+        """Descend straight down, which ends the sortie."""
+        east, north, _ = self._position
+        self._position = (east, north, self._context.zero)
+        self._add(qgc.LAND, move, here=True)
+        self.end_sortie()
+
+    def go_to(self, move: Move, fluid: bool) -> None:
+        """Go to the target, if its place is known."""
+        if move.target is None or move.target.position is None:
+            return
+        self._pace(move)
+        self._look(move)
+        for position in _ends(self._position, move.target.position, move):
+            self._position = position
+            last = position == move.target.position
+            self._add(qgc.WAYPOINT, move, 0.0 if fluid and last else CORNER_SECONDS, here=True)
+
+    def hold(self, move: Move, fluid: bool) -> None:
+        """Stay, if the robot is on its way."""
+        if self._items:
+            self._add(qgc.LOITER_TIME, move, _number(move, "duration"), here=True)
+
+    def head_to(self, move: Move, fluid: bool) -> None:
+        """Turn to something, if its place is known."""
+        if move.heading is not None and move.heading.target.position is not None:
+            angle = _bearing(self._position, move.heading.target.position) - move.heading.angle_degrees
+            self._add(qgc.CONDITION_YAW, move, round(angle % 360.0, 1))
+
+    def _pace(self, move: Move) -> None:
+        speed = self._context.speed(move)
+        if speed is not None and speed != self._speed:
+            self._speed = speed
+            self._add(qgc.CHANGE_SPEED, move, 1.0, speed, -1.0)
+
+    def _look(self, move: Move) -> None:
+        position = move.heading.target.position if move.heading else None
+        if position is not None:
+            self._items.append(Item(qgc.ROI_LOCATION, move, (), position))
+        elif self._looking:
+            self._add(qgc.ROI_NONE, move)
+        self._looking = position is not None
+
+    def _add(self, command: int, move: Move, *params: float, here: bool = False) -> None:
+        self._items.append(Item(command, move, params, self._position if here else None))
+
+
+def _ends(start: Position, target: Position, move: Move) -> tuple[Position, ...]:
+    corner = {
+        "HORIZONTAL_FIRST": ((target[0], target[1], start[2]),),
+        "VERTICAL_FIRST": ((start[0], start[1], target[2]),),
+    }.get(str(move.attributes.get("trajectory", "DIRECT")), ())
+    last = corner[-1] if corner else start
+    way = dist(last, target)
+    if move.distance <= 0.0 or way == 0.0:
+        return (*corner, target)
+    part = max(0.0, 1.0 - move.distance / way)
+    east, north, up = (p + part * (q - p) for p, q in zip(last, target, strict=True))
+    return (*corner, (east, north, up))
+
+
+def _bearing(a: Position, b: Position) -> float:
+    return degrees(atan2(b[0] - a[0], b[1] - a[1]))
+
+
+def _number(move: Move, feature: str) -> float:
+    value = move.attributes.get(feature)
+    return float(value) if isinstance(value, int | float) else 0.0
+
+
+_MOVES: Mapping[Name, Callable[[Flight, Move, bool], None]] = {
+    (BEHAVIOUR, "GoTo"): Flight.go_to,
+    (MULTICOPTER, "GoTo"): Flight.go_to,
+    (BEHAVIOUR, "HoldPosition"): Flight.hold,
+    (BEHAVIOUR, "HeadTo"): Flight.head_to,
+    (MULTICOPTER, "TakeOff"): Flight.take_off,
+    (MULTICOPTER, "Land"): Flight.land,
+}

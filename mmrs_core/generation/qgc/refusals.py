@@ -1,0 +1,60 @@
+"""What a plan for QGroundControl cannot express."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.behaviour.program import Action, Move, RobotProgram
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.context import RobotContext, context_of
+from mmrs_core.generation.earth import sea_level_of
+from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
+from mmrs_core.generation.mavlink.movements import losses_of
+from mmrs_core.generation.wiring import Sampled, Unwired, wiring_of
+
+
+def refusals(input: TargetInput) -> Iterator[str]:
+    """Yield each thing that plans cannot express, with robot and move."""
+    if input.program.frame.is_local:
+        yield "behaviour: is local, its origin has no latitude and longitude"
+    for robot in input.program.robots:
+        yield from _of_robot(robot, input)
+
+
+def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
+    if robot.home is None:
+        yield f"robot '{robot.id}': its home is not known, and heights count from there"
+    elif sea_level_of(robot.home, input.program.frame) is None:
+        yield (
+            f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
+            " above mean sea level, or the geoid separation"
+        )
+    context = context_of(robot, input, geographic=False)
+    for index, move in enumerate(robot.moves):
+        yield from losses_of(move, context)
+        for action in (*move.before, *move.after):
+            yield from _of_action(action, move, context)
+        yield from _of_heading(move, context)
+        transition = robot.transitions.get(index)
+        if transition is not None and transition.waits:
+            slots = ", ".join(transition.waits)
+            yield f"{context.label(move)}: waits for {slots}, which only an operator can do in a plan"
+        if transition is not None and transition.condition is not None:
+            yield f"{context.label(move)}: chooses by '{transition.condition}'"
+
+
+def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[str]:
+    if not action.is_a(DEVICE_ACTION):
+        yield f"{context.label(move)}: action {action.metaclasses[0][1]} has no form in a plan"
+        return
+    wiring = wiring_of(action, context.type)
+    if isinstance(wiring, Unwired):
+        yield f"{context.label(move)}: action '{action.name}': {wiring.reason}"
+    elif isinstance(wiring, Sampled):
+        yield f"{context.label(move)}: action '{action.name}': a plan cannot record '{wiring.value}'"
+
+
+def _of_heading(move: Move, context: RobotContext) -> Iterator[str]:
+    turns_on_the_way = move.heading is not None and move.target is not None
+    if turns_on_the_way and move.heading is not None and move.heading.angle_degrees:
+        yield f"{context.label(move)}: heading with an angle on the way"

@@ -1,0 +1,68 @@
+"""Which MAVLink vehicle a robot is, and how fast it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.contributions.rules import most_specific
+from mmrs_core.scene import Capability, Name, RobotType
+
+TAKE_OFF = ("urn:mmrs:multicopter:1.0", "TakeOff")
+
+TRAVEL_FACTORS: Mapping[str, float] = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleClass:
+    """A sort of vehicle.
+
+    Attributes:
+        name: ``copter``, ``sub`` or ``rover``.
+        mav_type: number of MAV_TYPE.
+        flies: whether it takes off and lands.
+        dives: whether its heights count from the water surface.
+    """
+
+    name: str
+    mav_type: int
+    flies: bool = False
+    dives: bool = False
+
+
+COPTER = VehicleClass("copter", 2, flies=True)
+SUB = VehicleClass("sub", 12, dives=True)
+ROVER = VehicleClass("rover", 10)
+
+CLASSES: Mapping[Name, VehicleClass] = {
+    ("urn:mmrs:multicopter:1.0", "Drone"): COPTER,
+    ("urn:mmrs:auv:1.0", "AUVMovement"): SUB,
+    ("urn:mmrs:robot:1.0", "Robot"): ROVER,
+}
+
+
+def vehicle_class(robot: RobotProgram, type: RobotType | None) -> VehicleClass:
+    """Return what a robot is by its type, or, where that is missing, by what it does."""
+    if type is not None:
+        metaclasses = (*type.metaclasses[:1], *type.capability_metaclasses, *type.metaclasses)
+        found = most_specific(metaclasses, CLASSES)
+        if found is not None and CLASSES[found] is not ROVER:
+            return CLASSES[found]
+    return COPTER if any(move.is_a(TAKE_OFF) for move in robot.moves) else ROVER
+
+
+def capability_of(robot: RobotProgram, type: RobotType) -> Capability | None:
+    """Return how the robot moves with its payload: by the lightest listed one that is not lighter."""
+    return next((each for each in type.capabilities if each.payload >= robot.payload), None)
+
+
+def speed_of(move: Move, robot: RobotProgram, type: RobotType | None) -> float | None:
+    """Return the commanded speed of a move in metres per second; None where it is not known."""
+    if move.speed is not None:
+        return move.speed
+    capability = capability_of(robot, type) if type is not None else None
+    if capability is None:
+        return None
+    slowest, fastest = capability.speed
+    return max(slowest, TRAVEL_FACTORS.get(robot.travel_mode, 0.75) * fastest)
