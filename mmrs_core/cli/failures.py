@@ -20,6 +20,9 @@ USAGE = 2
 UNREADABLE = 3
 INTERRUPTED = 130
 
+_HELP = "Usage: "
+"""How the message begins when a command is called without arguments: with its help."""
+
 
 @dataclass(frozen=True, slots=True)
 class Failure:
@@ -43,7 +46,7 @@ def ended_by(error: Exception, settings: Settings) -> int:
         tell("".join(traceback.format_exception(error)).rstrip())
     failure = failure_of(error)
     report(failure.diagnostics)
-    tell(f"mmrs: {failure.message}")
+    tell(failure.message if failure.message.startswith(_HELP) else f"mmrs: {failure.message}")
     for detail in failure.details:
         tell(f"  - {detail}")
     if settings.json:
@@ -74,6 +77,8 @@ def failure_of(error: Exception) -> Failure:
 
 
 def _usage(error: typer.TyperException) -> str:
+    if error.format_message().startswith(_HELP):
+        return error.format_message()
     message = error.format_message().rstrip(".")
     command = getattr(getattr(error, "ctx", None), "command_path", "")
     where = f"; try '{command} --help'" if command else ""

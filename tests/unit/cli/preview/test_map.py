@@ -1,0 +1,113 @@
+"""The map is well-formed, complete, and safe whatever the names are."""
+
+from lxml import etree
+
+from mmrs_core.cli.preview.map_drawing import map_markup
+from mmrs_core.cli.preview.picture import Picture
+
+SVG = "{http://www.w3.org/2000/svg}"
+HOSTILE = "</title><script>alert('x')</script>]]>&\"\x07\u202e"
+
+
+def parsed(picture, **options):
+    return etree.fromstring(map_markup(picture, **options).encode())
+
+
+def with_class(root, kind):
+    return [e for e in root.iter() if isinstance(e.tag, str) and kind in e.get("class", "").split()]
+
+
+def test_every_leg_of_every_robot_is_drawn(picture):
+    drawn = with_class(parsed(picture), "leg")
+    seen_from_above = [
+        leg for robot in picture.robots for leg in robot.legs if leg.kind in ("transit", "work")
+    ]
+    assert len(drawn) == len(seen_from_above) == 6
+
+
+def test_robots_differ_in_colour_and_in_dashes(picture):
+    robots = with_class(parsed(picture), "robot")
+    assert len({robot.get("stroke") for robot in robots}) == len(robots) == 2
+    dashes = {tuple(leg.get("stroke-dasharray") for leg in with_class(robot, "leg")) for robot in robots}
+    assert len(dashes) == 2
+
+
+def test_areas_are_drawn_as_drawn_and_with_their_clearance(picture):
+    root = parsed(picture)
+    assert len(with_class(root, "zone")) == 3
+    assert len(with_class(root, "kept")) == 3
+
+
+def test_obstacles_tell_their_heights(picture):
+    words = " ".join(parsed(picture).itertext())
+    assert "tower (0.0 m to 35.0 m)" in words
+
+
+def test_covered_ground_is_as_wide_as_its_footprint(picture):
+    root = parsed(picture)
+    strip = with_class(root, "covered")[0][0]
+    pixels_a_metre = 1000 / (_extent(picture)[0])
+    assert abs(float(strip.get("stroke-width")) - 20 * pixels_a_metre) < 0.5
+
+
+def _extent(picture):
+    from mmrs_core.cli.preview.projection import projection_of
+
+    shown = projection_of(picture)
+    return shown.east - shown.west, shown.north - shown.south
+
+
+def test_a_leg_says_who_what_and_when(picture):
+    tips = [title.text for title in parsed(picture).iter(f"{SVG}title")]
+    assert "Alba: work for field, 0:11 to 0:31, up 20.0 m, 2 actions" in tips
+
+
+def test_hostile_names_stay_words(picture_named):
+    picture = picture_named(Alba=HOSTILE, field=HOSTILE, tower=HOSTILE, mission=HOSTILE)
+    root = parsed(picture, legend=True)
+    assert not list(root.iter(f"{SVG}script"))
+    words = "".join(root.itertext())
+    assert "<script>alert('x')</script>" in words
+    assert "\x07" not in words
+
+
+def test_the_legend_names_every_robot(picture):
+    root = parsed(picture, legend=True)
+    words = "".join(with_class(root, "legend")[0].itertext())
+    assert "Alba" in words
+    assert "Brezza" in words
+    assert "forbidden area" in words
+
+
+def test_a_map_without_anything_is_still_a_map():
+    root = parsed(Picture("", "local coordinates", ()))
+    assert float(root.get("width")) > 0
+
+
+def test_far_away_areas_do_not_shrink_the_map(picture):
+    from dataclasses import replace
+
+    from mmrs_core.cli.preview.picture import Zone
+    from mmrs_core.scene import AreaUse
+
+    far = Zone("country", AreaUse.FORBIDDEN, ((-9e5, -9e5), (9e5, -9e5), (9e5, 9e5), (-9e5, 9e5)))
+    before, after = _extent(picture), _extent(replace(picture, zones=(*picture.zones, far)))
+    assert max(after) < 3 * max(before)
+
+
+def test_words_do_not_cover_each_other():
+    from mmrs_core.cli.preview.labels import Labels
+
+    labels = Labels(400.0)
+    for _ in range(4):
+        labels.put("a name", (200.0, 200.0), "name")
+    ys = [float(e.get("y")) for e in etree.fromstring(f"<g>{labels.markup()}</g>")]
+    assert len(set(ys)) == 4
+    assert min(abs(a - b) for a in ys for b in ys if a != b) >= 12
+
+
+def test_nothing_in_the_map_comes_from_elsewhere(picture):
+    markup = map_markup(picture)
+    without_namespace = markup.replace('xmlns="http://www.w3.org/2000/svg"', "")
+    assert "http" not in without_namespace
+    assert "@import" not in without_namespace
