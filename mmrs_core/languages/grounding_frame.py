@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from mmrs_core.diagnostics import Diagnostic, Severity
@@ -101,19 +101,19 @@ def reference_in(context: Element | None) -> Reference:
     return reference
 
 
-def circle_through(coordinate: Element, reference: Reference) -> tuple[Element, ...]:
-    """Return the coordinates that count from each other in a circle with this one; empty if none do."""
-    circle = {coordinate: None}
-    current = coordinate
-    while is_relative(current):
-        following = reference(current)
-        if following is coordinate:
-            return tuple(circle)
-        if following is None or following in circle:
-            return ()
-        circle[following] = None
-        current = following
-    return ()
+def circles_among(coordinates: Iterable[Element], reference: Reference) -> Iterator[tuple[Element, ...]]:
+    """Yield every circle of relative coordinates that count from each other, once; linear in their number."""
+    done: set[Element] = set()
+    for coordinate in coordinates:
+        way: dict[Element, None] = {}
+        current: Element | None = coordinate
+        while current is not None and current not in done and current not in way:
+            way[current] = None
+            current = reference(current) if is_relative(current) else None
+        if current is not None and current in way:
+            ahead = tuple(way)
+            yield ahead[ahead.index(current) :]
+        done.update(way)
 
 
 def origin_faults(mission: Element, origin: Element, frame: Frame) -> Iterator[str]:

@@ -1,0 +1,46 @@
+"""Constraints on models beyond their metamodels, and what runs them."""
+
+from __future__ import annotations
+
+from mmrs_core.analysis.constraints import (
+    areas,
+    branches,
+    capabilities,
+    coordinates,
+    dependencies,
+    distances,
+    equipment,
+    moves,
+    names,
+    places,
+    ranges,
+    robot_types,
+    shapes,
+    slots,
+)
+from mmrs_core.analysis.constraints.checking import check_behaviour, check_constraints
+from mmrs_core.contributions.constraints import Constraint
+
+__all__ = ["CONSTRAINTS", "check_behaviour", "check_constraints"]
+
+_THEMES = (
+    names,
+    ranges,
+    coordinates,
+    distances,
+    dependencies,
+    branches,
+    capabilities,
+    shapes,
+    places,
+    areas,
+    robot_types,
+    moves,
+    slots,
+    equipment,
+)
+
+CONSTRAINTS: tuple[Constraint, ...] = tuple(
+    sorted((each for theme in _THEMES for each in theme.CONSTRAINTS), key=lambda each: each.code)
+)
+"""The constraints of the core, by code."""

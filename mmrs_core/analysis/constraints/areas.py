@@ -1,0 +1,99 @@
+"""Areas, obstacles and the environment of a context."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import shapely
+
+from mmrs_core.analysis.constraints.findings import CONTEXT, called, finding
+from mmrs_core.analysis.constraints.sketch import DrawnArea, sketch_of
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding_values import child, number
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import AreaUse
+
+
+def _upside_down(obstacle: Element, models: ModelSet) -> Iterator[Finding]:
+    low, high = number(obstacle, "minHeight"), number(obstacle, "maxHeight")
+    if low is not None and high is not None and low >= high:
+        yield finding(obstacle, f"its minHeight of {low:g} m is not below its maxHeight of {high:g} m")
+
+
+def _emergencies(models: ModelSet) -> Iterator[DrawnArea]:
+    return (area for area in sketch_of(models).areas if area.use is AreaUse.EMERGENCY)
+
+
+def _forbidden_emergency(context: Element, models: ModelSet) -> Iterator[Finding]:
+    for area in _emergencies(models):
+        for other in sketch_of(models).kept_from:
+            if _stands(other) and area.shape.within(other.shape.buffer(other.safety_distance)):
+                yield finding(area.element, f"lies inside {called(other.element)}")
+
+
+def _stands(area: DrawnArea) -> bool:
+    """Return whether an area keeps robots from the ground."""
+    return area.low <= 0.0 < area.high
+
+
+def _narrow_emergency(context: Element, models: ModelSet) -> Iterator[Finding]:
+    clearances = [robot.clearance for robot in sketch_of(models).robots]
+    known = [each for each in clearances if each is not None]
+    if not known or len(known) < len(clearances):
+        return
+    for area in _emergencies(models):
+        room = shapely.maximum_inscribed_circle(area.shape, tolerance=0.01).length
+        needed = area.safety_distance + min(known)
+        if room + 0.01 < needed:
+            yield finding(
+                area.element,
+                f"has room for a robot within {room:.2f} m of its sides, but {needed:.2f} m are needed",
+            )
+
+
+def _too_cold_or_hot(environment: Element, models: ModelSet) -> Iterator[Finding]:
+    temperature = number(environment, "temperature")
+    for name, robot_type in sorted(models.robots.items()):
+        limits = child(robot_type, "operatingTemperature")
+        low, high = (number(limits, "min"), number(limits, "max")) if limits is not None else (None, None)
+        if temperature is None or low is None or high is None or low <= temperature <= high:
+            continue
+        yield finding(
+            environment, f"{temperature:g} °C are outside of what {name!r} works in: {low:g} to {high:g} °C"
+        )
+
+
+CONSTRAINTS = (
+    Constraint(
+        "CTX007",
+        "The lower side of an obstacle is below its upper side.",
+        (CONTEXT, "Obstacle"),
+        _upside_down,
+        "swap them, or leave out the one that is not known",
+    ),
+    Constraint(
+        "CTX010",
+        "No emergency area lies inside a forbidden area or obstacle.",
+        (CONTEXT, "Context"),
+        _forbidden_emergency,
+        "move the emergency area to where robots may go",
+    ),
+    Constraint(
+        "CTX015",
+        "An emergency area has room for a robot.",
+        (CONTEXT, "Context"),
+        _narrow_emergency,
+        "draw it larger, or make its safetyDistance smaller",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "CTX016",
+        "The temperature suits every robot type.",
+        (CONTEXT, "Environment"),
+        _too_cold_or_hot,
+        "fly on another day, or with another robot",
+        Severity.WARNING,
+    ),
+)

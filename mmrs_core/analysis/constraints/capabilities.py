@@ -1,0 +1,213 @@
+"""Robots that can do what a mission asks of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+
+from mmrs_core.analysis.constraints.findings import MISSION, called, finding, listed
+from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element, is_set, metaclass_of
+from mmrs_core.languages.grounding_frame import coordinates_of
+from mmrs_core.languages.grounding_values import child, children, number, text, texts
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.naming import nearest
+
+AIR_PRESSURE = 101_325.0
+"""Pascals at the surface, standard atmosphere."""
+GRAVITY = 9.80665
+"""Metres per second squared, standard."""
+LIGHTEST_WATER = 950.0
+"""Kilograms per cubic metre, below any that robots meet: where the density is not known, nothing that
+some water would allow is called impossible."""
+
+
+def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    name = text(robot, "type")
+    if name and name not in models.robots:
+        known = f"known are {listed(sorted(models.robots))}"
+        guess = nearest(name, models.robots)
+        yield finding(robot, f"its type {name!r} is not known", f"{known}; {guess}" if guess else known)
+
+
+def devices_of(robot_type: Element | None) -> Mapping[str, frozenset[str]]:
+    """Return the names of supported actions by identifier of device of a robot type."""
+    devices: dict[str, frozenset[str]] = {}
+    for device in children(robot_type, "devices"):
+        name, actions = text(device, "id"), children(device, "supportedActions")
+        devices[name] = devices.get(name, frozenset()) | {text(action, "name") for action in actions}
+    return devices
+
+
+def lacks(task: Element, robot_type: Element) -> tuple[str, ...]:
+    """Return what a task asks for and a robot type does not have, in words."""
+    devices = devices_of(robot_type)
+    actions = frozenset(action for supported in devices.values() for action in supported)
+    missing = [f"device '{each}'" for each in _devices_asked(task) if each not in devices]
+    missing += [f"action '{each}'" for each in texts(task, "requiredActions") if each not in actions]
+    device, action = text(task, "deviceId"), _action_asked(task)
+    if action and action not in devices.get(device, actions):
+        missing.append(f"action '{action}'" + (f" of device '{device}'" if device else ""))
+    return tuple(dict.fromkeys(missing))
+
+
+def _devices_asked(task: Element) -> tuple[str, ...]:
+    named = text(task, "deviceId")
+    return (*texts(task, "requiredDevices"), *([named] if named else []))
+
+
+def _action_asked(task: Element) -> str:
+    """Return the action that a task names; a default may belong to something that the task does not use."""
+    named = "actionName" in metaclass_of(task).by_name and is_set(task, "actionName")
+    return text(task, "actionName") if named else ""
+
+
+def able(task: Element, models: ModelSet) -> tuple[DrawnRobot, ...]:
+    """Return the robots of the team whose type is known and has the devices and actions that a task names."""
+    return tuple(
+        robot for robot in sketch_of(models).robots if robot.type is not None and not lacks(task, robot.type)
+    )
+
+
+def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:
+    known = [robot for robot in sketch_of(models).robots if robot.type is not None]
+    if known and not able(task, models):
+        types = {text(robot.type, "name"): robot.type for robot in known if robot.type is not None}
+        reasons = "; ".join(f"{name} lacks {' and '.join(lacks(task, each))}" for name, each in types.items())
+        yield finding(task, f"no robot of the team can do it: {reasons}")
+
+
+def _too_many(task: Element, models: ModelSet) -> Iterator[Finding]:
+    wanted, count = number(task, "robotsWanted"), len(able(task, models))
+    everybody = all(robot.type is not None for robot in sketch_of(models).robots)
+    if wanted is not None and everybody and 0 < count < wanted:
+        yield finding(task, f"wants {wanted:g} robots, but only {count} of the team can do it")
+
+
+def _too_deep(task: Element, models: ModelSet) -> Iterator[Finding]:
+    depth, team = _depth(task, models), able(task, models)
+    limits = [_deepest(robot.type, models) for robot in team if robot.type is not None]
+    known = [limit for limit in limits if limit is not None]
+    if depth is not None and known and len(known) == len(limits) and depth > max(known):
+        yield finding(
+            task, f"is {depth:g} m below the surface, but no robot of the team works below {max(known):.4g} m"
+        )
+
+
+def _depth(task: Element, models: ModelSet) -> float | None:
+    """Return how far below the surface the deepest point of a task lies, metres; None where none is given."""
+    ground = sketch_of(models).ground
+    altitude, depth = number(task, "altitude"), number(task, "depth")
+    if depth is not None:
+        return depth
+    ups = [ground.positions[each][2] for each in coordinates_of(task) if each in ground.positions]
+    lowest = altitude if altitude is not None else min(ups, default=None)
+    return None if lowest is None or lowest >= ground.frame.surface else ground.frame.surface - lowest
+
+
+def _deepest(robot_type: Element, models: ModelSet) -> float | None:
+    pressure = number(robot_type, "maxOperatingPressure")
+    environment = child(models.context, "environment") if models.context is not None else None
+    density = number(environment, "waterDensity") if environment is not None else None
+    if pressure is None or not isfinite(pressure):
+        return None
+    return max(pressure - AIR_PRESSURE, 0.0) / ((density or LIGHTEST_WATER) * GRAVITY)
+
+
+def _overloaded(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    robot_type, payload = models.robots.get(text(robot, "type")), number(robot, "payload")
+    if robot_type is None or payload is None or payload <= 0:
+        return
+    largest = number(robot_type, "maxPayload")
+    if largest is None:
+        yield finding(
+            robot, f"carries {payload:g} kg, but its type {text(robot, 'type')!r} states no maxPayload"
+        )
+    elif payload > largest:
+        yield finding(robot, f"carries {payload:g} kg, but its type carries at most {largest:g} kg")
+
+
+def _unmeasured(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    robot_type, payload = models.robots.get(text(robot, "type")), number(robot, "payload")
+    weights = [number(each, "payloadWeight") for each in children(robot_type, "movementCapabilities")]
+    heaviest = max((each for each in weights if each is not None), default=None)
+    if payload is not None and heaviest is not None and payload > heaviest:
+        yield finding(
+            robot,
+            f"carries {payload:g} kg, but {called_type(robot_type)} gives figures up to {heaviest:g} kg only",
+        )
+
+
+def called_type(robot_type: Element | None) -> str:
+    """Return what messages call a robot type."""
+    return called(robot_type) if robot_type is not None else "its type"
+
+
+def _accepted(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    from mmrs_core.analysis.checks import CHECKS
+
+    known = sorted(check.name for check in CHECKS)
+    for name in texts(mission, "acceptedUnknowns"):
+        if name not in known:
+            guess = nearest(name, known)
+            yield finding(
+                mission,
+                f"accepts that {name!r} stays unknown, which is no check of the core",
+                f"checks are {', '.join(known)}{'; ' + guess if guess else ''}; a plug-in may have others",
+            )
+
+
+CONSTRAINTS = (
+    Constraint(
+        "MML004",
+        "The type of every robot is known.",
+        (MISSION, "Robot"),
+        _type,
+        "add the robot type to the project's robots folder",
+    ),
+    Constraint(
+        "MML012",
+        "Unknowns are accepted by the names of checks.",
+        (MISSION, "Mission"),
+        _accepted,
+        "name a check, such as clearance",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML064",
+        "Every task has a robot with the devices and actions that it asks for.",
+        (MISSION, "Task"),
+        _nobody,
+        "add a robot that has them to the team, or the device to a robot type",
+    ),
+    Constraint(
+        "MML065",
+        "No task wants more robots than can do it.",
+        (MISSION, "Task"),
+        _too_many,
+        "lower robotsWanted, or add robots to the team",
+    ),
+    Constraint(
+        "MML066",
+        "No task is deeper than the pressure that robots stand.",
+        (MISSION, "Task"),
+        _too_deep,
+        "lift the task, or add a robot with a larger maxOperatingPressure to the team",
+    ),
+    Constraint(
+        "MML067",
+        "No robot carries more than its type can.",
+        (MISSION, "Robot"),
+        _overloaded,
+        "take weight off, or state maxPayload in the robot type",
+    ),
+    Constraint(
+        "MML068",
+        "The figures of a robot's type reach as far as the payload it carries.",
+        (MISSION, "Robot"),
+        _unmeasured,
+        "add a movement capability for that payload to the robot type",
+    ),
+)

@@ -1,0 +1,165 @@
+"""The order of tasks."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+
+from mmrs_core.analysis.constraints.findings import MISSION, called, finding
+from mmrs_core.analysis.constraints.order import Order
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element, label_of, path_of
+from mmrs_core.languages.grounding_values import child, children, number
+from mmrs_core.languages.modelset import ModelSet
+
+
+def _circles(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    following = {task: set(after) - {task} for task, after in Order(mission).after.items()}
+    while circle := _circle(following):
+        way = " → ".join(label_of(task) or path_of(task) for task in (*circle, circle[0]))
+        yield finding(circle[0], f"waits for itself: {way}")
+        for task in circle:
+            following.pop(task)
+        following = {task: after & following.keys() for task, after in following.items()}
+
+
+def _circle(following: Mapping[Element, set[Element]]) -> tuple[Element, ...]:
+    """Return a shortest circle through the first task that is on one; empty if there is none."""
+    for start in following:
+        came_from: dict[Element, Element] = {}
+        pending = deque([start])
+        while pending and start not in came_from:
+            task = pending.popleft()
+            for each in following[task]:
+                if each not in came_from:
+                    came_from[each] = task
+                    pending.append(each)
+        if start in came_from:
+            return _back(start, came_from)
+    return ()
+
+
+def _back(start: Element, came_from: Mapping[Element, Element]) -> tuple[Element, ...]:
+    way = [start]
+    while (task := came_from[way[-1]]) is not start:
+        way.append(task)
+    return (start, *reversed(way[1:]))
+
+
+def _itself(dependency: Element, models: ModelSet) -> Iterator[Finding]:
+    before, after = child(dependency, "from"), child(dependency, "to")
+    if before is not None and before is after:
+        yield finding(dependency, f"{called(before)} waits for itself")
+
+
+def _twice(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    seen: dict[tuple[Element | None, Element | None], Element] = {}
+    for dependency in children(mission, "taskDependencies"):
+        ends = (child(dependency, "from"), child(dependency, "to"))
+        if None not in ends and ends in seen:
+            yield finding(dependency, f"leads between the same tasks as {path_of(seen[ends])}")
+        seen.setdefault(ends, dependency)
+
+
+def _elsewhere(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    tasks = set(children(mission, "tasks"))
+    for dependency in children(mission, "taskDependencies"):
+        for end in ("from", "to"):
+            task = child(dependency, end)
+            if task is not None and task not in tasks:
+                yield finding(dependency, f"{end} leads to {called(task)}, which is no task of this mission")
+
+
+def _one_way_out(fork: Element, models: ModelSet) -> Iterator[Finding]:
+    ways = len(Order(models.mission).after.get(fork, ()))
+    if ways < 2:
+        yield finding(fork, f"has {ways or 'no'} way out, at least 2 are needed")
+
+
+def _one_way_in(join: Element, models: ModelSet) -> Iterator[Finding]:
+    ways = len(Order(models.mission).before.get(join, ()))
+    if ways < 2:
+        yield finding(join, f"has {ways or 'no'} way in, at least 2 are needed")
+
+
+def _window(task: Element, models: ModelSet) -> Iterator[Finding]:
+    earliest, deadline = number(task, "earliestStart"), number(task, "deadline")
+    if earliest is not None and deadline is not None and deadline <= earliest:
+        yield finding(task, f"ends by {deadline:g} s, but begins no sooner than at {earliest:g} s")
+
+
+def _late(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield tasks whose deadline passes before what they wait for may even begin."""
+    order = Order(mission)
+    earliest: dict[Element, tuple[float, Element]] = {}
+    for task in order.sorted():
+        behind = [earliest[each] for each in order.before[task] if each in earliest]
+        start, cause = max(behind, key=lambda each: each[0], default=(0.0, task))
+        deadline, own = number(task, "deadline"), number(task, "earliestStart") or 0.0
+        if deadline is not None and own < deadline <= start:
+            yield finding(
+                task, f"ends by {deadline:g} s, but waits for {called(cause)}, which begins at {start:g} s"
+            )
+        earliest[task] = (own, task) if own >= start else (start, cause)
+
+
+CONSTRAINTS = (
+    Constraint(
+        "MML040",
+        "No task waits for itself by way of others.",
+        (MISSION, "Mission"),
+        _circles,
+        "take away one of the dependencies of the circle",
+    ),
+    Constraint(
+        "MML041",
+        "A dependency leads from one task to another.",
+        (MISSION, "TaskDependency"),
+        _itself,
+        "take the dependency away",
+    ),
+    Constraint(
+        "MML042",
+        "There is one dependency between two tasks.",
+        (MISSION, "Mission"),
+        _twice,
+        "keep one of them",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML043",
+        "A Fork has at least two ways out.",
+        (MISSION, "Fork"),
+        _one_way_out,
+        "let at least two tasks depend on the fork, or take the fork away",
+    ),
+    Constraint(
+        "MML044",
+        "A Join has at least two ways in.",
+        (MISSION, "Join"),
+        _one_way_in,
+        "let the join depend on at least two tasks, or take the join away",
+    ),
+    Constraint(
+        "MML053",
+        "A dependency leads between tasks of the mission.",
+        (MISSION, "Mission"),
+        _elsewhere,
+        "refer to tasks that stand in this mission",
+    ),
+    Constraint(
+        "MML055",
+        "A task's deadline lies after the earliest start of what it waits for.",
+        (MISSION, "Mission"),
+        _late,
+        "move the deadline, or let what it waits for begin sooner",
+    ),
+    Constraint(
+        "MML063",
+        "A task's deadline lies after its earliest start.",
+        (MISSION, "Task"),
+        _window,
+        "both count seconds from the mission's start",
+    ),
+)

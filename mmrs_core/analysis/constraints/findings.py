@@ -1,0 +1,47 @@
+"""How breaches are put into words, and the names of the metaclasses that constraints are about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mmrs_core.contributions.constraints import Finding
+from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
+from mmrs_core.languages.grounding_values import text
+
+MISSION = "urn:mmrs:mission:1.0"
+CONTEXT = "urn:mmrs:context:1.0"
+ROBOT = "urn:mmrs:robot:1.0"
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+
+
+def called(element: Element) -> str:
+    """Return what messages call an element: its class, and its name or where it stands in its model."""
+    kind = "element" if isinstance(element, Unknown) else metaclass_of(element).name
+    name = label_of(element)
+    return f"{kind} {name!r}" if name else f"{kind} {path_of(element).lstrip('/')}".rstrip()
+
+
+def finding(element: Element, message: str, hint: str = "") -> Finding:
+    """Return a breach by an element; the message goes on from what the element is called."""
+    return Finding(element, f"{called(element)}: {message}", hint)
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names for people: quoted, and ``none`` where there are none."""
+    return ", ".join(f"'{name}'" for name in names) or "none"
+
+
+def repeats(elements: Iterable[Element], key: str, what: str) -> Iterable[Finding]:
+    """Yield a breach for each element whose text of that feature another one before it has.
+
+    Elements without such a text are passed over.
+    """
+    seen: dict[str, Element] = {}
+    for element in elements:
+        name = text(element, key)
+        if not name:
+            continue
+        if name in seen:
+            yield finding(element, f"{what} {name!r} is already used by {path_of(seen[name])}")
+        else:
+            seen[name] = element

@@ -1,0 +1,161 @@
+"""Names that other elements refer to, or that messages must tell apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.analysis.constraints.findings import (
+    BEHAVIOUR,
+    CONTEXT,
+    MISSION,
+    ROBOT,
+    finding,
+    repeats,
+)
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding_values import children, text
+from mmrs_core.languages.modelset import ModelSet
+
+
+def _tasks(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(mission, "tasks"), "name", "the name")
+
+
+def _team(team: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(team, "robots"), "name", "the name")
+
+
+def _areas(context: Element, models: ModelSet) -> Iterator[Finding]:
+    features = ("forbiddenAreas", "obstacles", "emergencyAreas", "elements")
+    areas = [area for feature in features for area in children(context, feature)]
+    yield from repeats(areas, "name", "the name")
+
+
+def _devices(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(robot, "devices"), "id", "the identifier")
+
+
+def _actions(device: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(device, "supportedActions"), "name", "the name")
+
+
+def _properties(device: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(device, "properties"), "name", "the key")
+
+
+def _parameters(action: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(action, "parameters"), "key", "the key")
+
+
+def _robots(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(behaviour, "robots"), "id", "the identifier")
+
+
+def _slots(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(robot, "slots"), "name", "the name")
+
+
+def _moves(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(robot, "moves"), "name", "the name")
+
+
+def _values(action: Element, models: ModelSet) -> Iterator[Finding]:
+    yield from repeats(children(action, "parameters"), "key", "the key")
+    yield from repeats(children(action, "payload"), "key", "the key")
+
+
+def _policies(owner: Element, models: ModelSet) -> Iterator[Finding]:
+    seen: set[str] = set()
+    for policy in children(owner, "policies"):
+        event = text(policy, "event")
+        if event in seen:
+            yield finding(policy, f"there is already a policy for {event}")
+        seen.add(event)
+
+
+def _printable(element: Element, models: ModelSet) -> Iterator[Finding]:
+    name = text(element, "name")
+    if name and (not name.strip() or not name.isprintable()):
+        yield finding(element, "the name is blank or holds characters that cannot be seen")
+
+
+_RENAME = "give each its own name"
+_ONE_POLICY = "keep one policy for each event"
+
+CONSTRAINTS = (
+    Constraint("MML002", "Tasks have different names.", (MISSION, "Mission"), _tasks, _RENAME),
+    Constraint("MML003", "Robots of a team have different names.", (MISSION, "Team"), _team, _RENAME),
+    Constraint(
+        "MML008",
+        "A mission has one policy for an event.",
+        (MISSION, "Mission"),
+        _policies,
+        _ONE_POLICY,
+    ),
+    Constraint(
+        "MML011",
+        "Names can be read by people.",
+        (MISSION, "NamedElement"),
+        _printable,
+        "name it with letters, digits and blanks",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "CTX002",
+        "Areas and elements of a context have different names.",
+        (CONTEXT, "Context"),
+        _areas,
+        _RENAME,
+        Severity.WARNING,
+    ),
+    Constraint(
+        "RL002", "Devices of a robot have different identifiers.", (ROBOT, "Robot"), _devices, _RENAME
+    ),
+    Constraint("RL003", "Actions of a device have different names.", (ROBOT, "Device"), _actions, _RENAME),
+    Constraint(
+        "RL004",
+        "Parameters of an action have different keys.",
+        (ROBOT, "SupportedAction"),
+        _parameters,
+        _RENAME,
+    ),
+    Constraint(
+        "RL005",
+        "Properties of a device have different keys.",
+        (ROBOT, "Device"),
+        _properties,
+        "keep one value for each key",
+    ),
+    Constraint(
+        "RL016",
+        "A robot type has one policy for an event.",
+        (ROBOT, "Robot"),
+        _policies,
+        _ONE_POLICY,
+    ),
+    Constraint("BL010", "Slots of a robot have different names.", (BEHAVIOUR, "Robot"), _slots, _RENAME),
+    Constraint(
+        "BL014",
+        "Robots of a behaviour have different identifiers.",
+        (BEHAVIOUR, "Behaviour"),
+        _robots,
+        "give each its own identifier",
+    ),
+    Constraint("BL015", "Moves of a robot have different names.", (BEHAVIOUR, "Robot"), _moves, _RENAME),
+    Constraint(
+        "BL032",
+        "An action gives each parameter one value.",
+        (BEHAVIOUR, "Action"),
+        _values,
+        "keep one value for each key",
+    ),
+    Constraint(
+        "BL041",
+        "A wait has one policy for an event.",
+        (BEHAVIOUR, "MoveTransition"),
+        _policies,
+        _ONE_POLICY,
+    ),
+)

@@ -1,0 +1,269 @@
+"""Homes and tasks, and the areas that robots keep away from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+from math import dist, inf
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from mmrs_core.analysis.constraints.capabilities import able
+from mmrs_core.analysis.constraints.findings import MISSION, called, finding
+from mmrs_core.analysis.constraints.sketch import DrawnArea, Sketch, polygon_of, sketch_of
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.geometry.segments import legs_of, prism_distance
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding_values import child, children, number
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import Position
+
+EXACT = 1e-6
+"""Metres by which a distance may fall short because numbers are rounded."""
+
+
+def _home(robot: Element, models: ModelSet) -> Iterator[Finding]:
+    sketch = sketch_of(models)
+    drawn = next((each for each in sketch.robots if each.element is robot), None)
+    if drawn is None or drawn.home is None or drawn.clearance is None:
+        return
+    for area in sketch.kept_from:
+        distance, needed = area.distance(drawn.home), area.safety_distance + drawn.clearance
+        if distance < needed - EXACT:
+            yield finding(robot, f"its home is {_from(distance, area)}; it must keep {needed:.2f} m")
+
+
+def _from(distance: float, area: DrawnArea) -> str:
+    return (
+        f"inside {called(area.element)}"
+        if distance == 0.0
+        else f"{distance:.2f} m from {called(area.element)}"
+    )
+
+
+def _point(task: Element, models: ModelSet) -> Iterator[Finding]:
+    point = child(task, "point")
+    if point is not None and not number(task, "distance"):  # else the robot stays away from the point
+        yield from _unreachable(task, point, "its point", models)
+
+
+def _beginning(task: Element, models: ModelSet) -> Iterator[Finding]:
+    point = child(task, "initialPosition")
+    if point is not None:
+        yield from _unreachable(task, point, "its initialPosition", models)
+
+
+def _unreachable(task: Element, point: Element, what: str, models: ModelSet) -> Iterator[Finding]:
+    """Yield a breach if an area keeps every robot that could do the task from a point."""
+    sketch = sketch_of(models)
+    position = _at_work(task, sketch.ground.positions.get(point))
+    smallest = _smallest_clearance(task, models)
+    if position is None or smallest is None:
+        return
+    for area in sketch.kept_from:
+        distance, needed = area.distance(position), area.safety_distance + smallest
+        if distance < needed - EXACT:
+            yield finding(
+                task,
+                f"{what} is {_from(distance, area)}; every robot that can do it must keep {needed:.2f} m",
+            )
+
+
+def _at_work(task: Element, position: Position | None) -> Position | None:
+    """Return a position at the height that the task is done at, if the task has one of its own."""
+    altitude = number(task, "altitude")
+    return position if position is None or altitude is None else (position[0], position[1], altitude)
+
+
+def _smallest_clearance(task: Element, models: ModelSet) -> float | None:
+    """Return the clearance of the smallest robot that can do a task, metres; None if one is not known."""
+    clearances = [robot.clearance for robot in able(task, models)]
+    known = [each for each in clearances if each is not None]
+    return min(known) if known and len(known) == len(clearances) else None
+
+
+def _positions(task: Element, feature: str, sketch: Sketch) -> list[Position]:
+    found = (sketch.ground.positions.get(each) for each in children(task, feature))
+    return [placed for each in found if (placed := _at_work(task, each)) is not None]
+
+
+def _line_inside(task: Element, models: ModelSet) -> Iterator[Finding]:
+    blocked = _blocked_legs(task, models)
+    for area, legs in blocked:
+        if legs.all():
+            yield finding(
+                task, f"every part of its line is too near to {called(area.element)} for every robot"
+            )
+
+
+def _line_through(task: Element, models: ModelSet) -> Iterator[Finding]:
+    for area, legs in _blocked_legs(task, models):
+        if legs.any() and not legs.all():
+            first = int(np.flatnonzero(legs)[0])
+            yield finding(
+                task,
+                f"its line is too near to {called(area.element)} for every robot, from point {first} on",
+            )
+
+
+def _blocked_legs(task: Element, models: ModelSet) -> Iterator[tuple[DrawnArea, np.ndarray]]:
+    """Yield, by area, which legs of a line no robot that can do the task may follow."""
+    sketch = sketch_of(models)
+    points, smallest = _positions(task, "points", sketch), _smallest_clearance(task, models)
+    if not points or smallest is None:
+        return
+    legs = legs_of(points if len(points) > 1 else points * 2)
+    for area in sketch.kept_from:
+        ring = shapely.get_coordinates(area.shape.exterior)[:-1]
+        needed = area.safety_distance + smallest - EXACT
+        yield area, prism_distance(legs, ring, area.low, area.high) < needed
+
+
+def _covered(task: Element, models: ModelSet) -> Iterator[Finding]:
+    sketch = sketch_of(models)
+    ring, smallest = sketch.ring(task, "shell"), _smallest_clearance(task, models)
+    shape = polygon_of(ring) if ring is not None else None
+    if shape is None or smallest is None:
+        return
+    grown = list(_grown(sketch.kept_from, smallest, _height(task, sketch)))
+    if grown and shape.within(shapely.union_all(grown)):
+        yield finding(task, "all of its area is too near to what every robot must keep away from")
+
+
+def _height(task: Element, sketch: Sketch) -> float | None:
+    """Return the one height that an area task is done at; None where it has none or several."""
+    ups = {position[2] for position in _positions(task, "shell", sketch)}
+    return ups.pop() if len(ups) == 1 else None
+
+
+def _grown(areas: Iterable[DrawnArea], clearance: float, up: float | None) -> Iterator[BaseGeometry]:
+    """Yield areas grown by no more than is kept from them, so that what they cover cannot be reached."""
+    for area in areas:
+        endless = area.low == -inf and area.high == inf
+        reach = area.reach(clearance, 0.0 if up is None else up) if endless or up is not None else -1.0
+        if reach >= 0.0:
+            yield area.shape.buffer(reach, quad_segs=16)
+
+
+def _astray(task: Element, models: ModelSet) -> Iterator[Finding]:
+    sketch = sketch_of(models)
+    begin = child(task, "initialPosition")
+    start = sketch.ground.positions.get(begin) if begin is not None else None
+    points = [*_positions(task, "shell", sketch), *_positions(task, "points", sketch)]
+    if start is None or not points:
+        return
+    nearest = min(dist(start[:2], point[:2]) for point in points)
+    extent = max(dist(points[0][:2], point[:2]) for point in points)
+    if nearest > max(1000.0, 2.0 * extent):
+        yield finding(task, f"its initialPosition is {nearest / 1000:.1f} km from the rest of the task")
+
+
+def _crowded(team: Element, models: ModelSet) -> Iterator[Finding]:
+    sketch = sketch_of(models)
+    for one, other in combinations(sketch.robots, 2):
+        if one.home is None or other.home is None or one.clearance is None or other.clearance is None:
+            continue
+        apart, needed = dist(one.home, other.home), one.clearance + other.clearance
+        if apart < needed - EXACT:
+            yield finding(
+                other.element,
+                f"its home is {apart:.2f} m from that of {called(one.element)}, "
+                f"but the two need {needed:.2f} m for their sizes",
+            )
+
+
+def _separated(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    separation = number(mission, "minimumSeparation")
+    if separation is None:
+        return
+    for one, other in combinations(sketch_of(models).robots, 2):
+        apart = dist(one.home, other.home) if one.home is not None and other.home is not None else inf
+        if apart < separation - EXACT:
+            yield finding(
+                other.element,
+                f"its home is {apart:.2f} m from that of {called(one.element)}, "
+                f"less than the minimumSeparation of {separation:g} m",
+            )
+
+
+_MOVE_HOME = "move the home away, or make the area smaller"
+_MOVE_TASK = "move the task away, or make the area or its safetyDistance smaller"
+
+CONSTRAINTS = (
+    Constraint(
+        "MML080",
+        "Every robot keeps its clearance at home.",
+        (MISSION, "Robot"),
+        _home,
+        _MOVE_HOME,
+    ),
+    Constraint(
+        "MML081",
+        "The point of a task is one that some robot can be at.",
+        (MISSION, "PointTask"),
+        _point,
+        _MOVE_TASK,
+    ),
+    Constraint(
+        "MML082", "Some part of a line can be followed.", (MISSION, "LineTask"), _line_inside, _MOVE_TASK
+    ),
+    Constraint(
+        "MML083",
+        "All of a line can be followed.",
+        (MISSION, "LineTask"),
+        _line_through,
+        "lead the line around the area, or above it",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML084", "Some part of an area task can be reached.", (MISSION, "PolygonTask"), _covered, _MOVE_TASK
+    ),
+    Constraint(
+        "MML085",
+        "The initial position of a line task is one that some robot can be at.",
+        (MISSION, "LineTask"),
+        _beginning,
+        "move the initialPosition out of the area",
+    ),
+    Constraint(
+        "MML086",
+        "The initial position of an area task is one that some robot can be at.",
+        (MISSION, "PolygonTask"),
+        _beginning,
+        "move the initialPosition out of the area",
+    ),
+    Constraint(
+        "MML087",
+        "The initial position of a line task is near the line.",
+        (MISSION, "LineTask"),
+        _astray,
+        "check latitude and longitude of the initialPosition",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML088",
+        "The initial position of an area task is near the area.",
+        (MISSION, "PolygonTask"),
+        _astray,
+        "check latitude and longitude of the initialPosition",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML089",
+        "Robots have room beside each other at home.",
+        (MISSION, "Team"),
+        _crowded,
+        "move the homes apart; if they start one after the other, this may be as it should",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "MML090",
+        "Homes keep the mission's minimum separation.",
+        (MISSION, "Mission"),
+        _separated,
+        "move the homes apart, or lower minimumSeparation",
+    ),
+)

@@ -1,0 +1,272 @@
+"""Numbers that only make sense within a range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from mmrs_core.analysis.constraints.findings import (
+    BEHAVIOUR,
+    CONTEXT,
+    MISSION,
+    ROBOT,
+    finding,
+)
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of
+from mmrs_core.languages.grounding_values import number, value
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import Name
+
+
+@dataclass(frozen=True, slots=True)
+class _Range:
+    """A range of features; the bounds belong to it unless they are said to be excluded."""
+
+    features: tuple[str, ...]
+    low: float = -inf
+    high: float = inf
+    without_low: bool = False
+    without_high: bool = False
+
+    def __call__(self, element: Element, models: ModelSet) -> Iterator[Finding]:
+        for feature in self.features:
+            found = number(element, feature)
+            if found is not None and isfinite(found) and not self._holds(found):
+                yield finding(element, f"{feature} is {found:g}, but must be {self._words()}")
+
+    def _holds(self, found: float) -> bool:
+        above = found > self.low if self.without_low else found >= self.low
+        below = found < self.high if self.without_high else found <= self.high
+        return above and below
+
+    def _words(self) -> str:
+        low = f"{'more than' if self.without_low else 'at least'} {self.low:g}"
+        high = f"{'less than' if self.without_high else 'at most'} {self.high:g}"
+        return " and ".join(
+            words for words, bound in ((low, self.low), (high, self.high)) if abs(bound) < inf
+        )
+
+
+def _at_least_zero(*features: str) -> _Range:
+    return _Range(features, low=0.0)
+
+
+def _positive(*features: str) -> _Range:
+    return _Range(features, low=0.0, without_low=True)
+
+
+def _finite(root: Element, models: ModelSet) -> Iterator[Finding]:
+    for element in (root, *descendants(root)):
+        if isinstance(element, Unknown):
+            continue
+        for feature in metaclass_of(element).features:
+            found = value(element, feature.name)
+            for each in found if isinstance(found, list) else [found]:
+                if isinstance(each, float) and not isfinite(each):
+                    yield finding(element, f"{feature.name} is {each}, but must be a finite number")
+
+
+_FINITE = "give a number; leave the attribute out where the value is not known"
+
+
+def _constraint(code: str, title: str, metaclass: Name, check: _Range, hint: str) -> Constraint:
+    return Constraint(code, title, metaclass, check, hint)
+
+
+CONSTRAINTS = (
+    Constraint("MML009", "Every number of a mission is finite.", (MISSION, "Mission"), _finite, _FINITE),
+    Constraint("CTX009", "Every number of a context is finite.", (CONTEXT, "Context"), _finite, _FINITE),
+    Constraint("RL009", "Every number of a robot type is finite.", (ROBOT, "Robot"), _finite, _FINITE),
+    Constraint("BL009", "Every number of a behaviour is finite.", (BEHAVIOUR, "Behaviour"), _finite, _FINITE),
+    _constraint(
+        "MML005",
+        "The reserve is a part of the whole: at least 0 and less than 1.",
+        (MISSION, "Mission"),
+        _Range(("reserve",), low=0.0, high=1.0, without_high=True),
+        "write 0.2 for a reserve of twenty per cent",
+    ),
+    _constraint(
+        "MML006",
+        "Position error and separation of a mission are not negative.",
+        (MISSION, "Mission"),
+        _at_least_zero("positionError", "minimumSeparation"),
+        "give the distance in metres, or leave it out",
+    ),
+    _constraint(
+        "MML007",
+        "The payload of a robot is not negative.",
+        (MISSION, "Robot"),
+        _at_least_zero("payload"),
+        "give the weight in kilograms, 0 for none",
+    ),
+    _constraint(
+        "MML010",
+        "The depth of a coordinate is not negative.",
+        (MISSION, "GeoCoordinate"),
+        _at_least_zero("depth"),
+        "depth counts down from the surface; use altitude for what is above it",
+    ),
+    _constraint(
+        "MML060",
+        "A task does not begin before the mission.",
+        (MISSION, "Task"),
+        _at_least_zero("earliestStart"),
+        "earliestStart counts seconds from the mission's start",
+    ),
+    _constraint(
+        "MML061",
+        "A task has some time: its deadline and its longest duration are more than 0.",
+        (MISSION, "Task"),
+        _positive("deadline", "maxDuration"),
+        "give the time in seconds, or leave it out where there is no limit",
+    ),
+    _constraint(
+        "MML062",
+        "A task wants at least one robot.",
+        (MISSION, "Task"),
+        _Range(("robotsWanted",), low=1.0),
+        "leave robotsWanted out to let as many robots share the task as help",
+    ),
+    _constraint(
+        "CTX005",
+        "The safety distance of an area is not negative.",
+        (CONTEXT, "Area"),
+        _at_least_zero("safetyDistance"),
+        "draw the area smaller if robots may come into it",
+    ),
+    _constraint(
+        "CTX011",
+        "Wind, current and sunshine are not negative.",
+        (CONTEXT, "Environment"),
+        _at_least_zero("windSpeed", "currentSpeed", "irradiance"),
+        "turn the direction by 180 degrees instead",
+    ),
+    _constraint(
+        "CTX012",
+        "Directions of wind and current lie between 0 and 360 degrees.",
+        (CONTEXT, "Environment"),
+        _Range(("windDirection", "currentDirection"), low=0.0, high=360.0),
+        "count degrees clockwise from north: 90 is east",
+    ),
+    _constraint(
+        "CTX013",
+        "The temperature is above absolute zero.",
+        (CONTEXT, "Environment"),
+        _Range(("temperature",), low=-273.15),
+        "give the temperature in degrees Celsius",
+    ),
+    _constraint(
+        "CTX014",
+        "The density of the water is that of some water.",
+        (CONTEXT, "Environment"),
+        _Range(("waterDensity",), low=900.0, high=1300.0),
+        "give it in kilograms per cubic metre: 1000 for fresh water, about 1025 for sea water",
+    ),
+    _constraint(
+        "RL006",
+        "The dimensions and the weight of a robot are more than 0.",
+        (ROBOT, "Size"),
+        _positive("width", "length", "height", "weight"),
+        "clearances follow from the dimensions; give them in metres, and the weight in kilograms",
+    ),
+    _constraint(
+        "RL007",
+        "A battery holds something.",
+        (ROBOT, "Battery"),
+        _positive("capacity", "voltage"),
+        "capacity is in milliampere-hours, voltage in volts; a wired robot has no batteries",
+    ),
+    _constraint(
+        "RL008",
+        "Recharging a battery takes no negative time.",
+        (ROBOT, "Battery"),
+        _at_least_zero("rechargeTime"),
+        "leave rechargeTime out where the battery cannot be recharged during a mission",
+    ),
+    _constraint(
+        "RL010",
+        "The payload that figures hold for is not negative.",
+        (ROBOT, "MovementCapability"),
+        _at_least_zero("payloadWeight"),
+        "give the weight in kilograms, 0 for none",
+    ),
+    _constraint(
+        "RL011",
+        "Lifetime, acceleration and rates of a movement are more than 0.",
+        (ROBOT, "MovementCapability"),
+        _positive("lifetime", "maxAcceleration", "maxClimbRate", "maxDescentRate", "maxTurnRate"),
+        "leave out what is not known",
+    ),
+    _constraint(
+        "RL012",
+        "The largest payload is not negative.",
+        (ROBOT, "Robot"),
+        _at_least_zero("maxPayload"),
+        "give the weight in kilograms; leave it out where the robot carries nothing",
+    ),
+    _constraint(
+        "RL013",
+        "Range, data rate, frequency and pressure of a robot are more than 0.",
+        (ROBOT, "Robot"),
+        _positive("communicationRange", "dataRate", "radioFrequency", "maxOperatingPressure"),
+        "leave out what is not known",
+    ),
+    _constraint(
+        "RL014",
+        "An action takes no negative time.",
+        (ROBOT, "SupportedAction"),
+        _at_least_zero("duration"),
+        "give the duration in seconds, 0 for an instant",
+    ),
+    _constraint(
+        "RL015",
+        "A policy answers after the fault, not before.",
+        (ROBOT, "Policy"),
+        _at_least_zero("after"),
+        "give the delay in seconds, 0 for at once",
+    ),
+    _constraint(
+        "BL023",
+        "Holding a position takes no negative time.",
+        (BEHAVIOUR, "HoldPosition"),
+        _at_least_zero("duration"),
+        "give the duration in seconds",
+    ),
+    _constraint(
+        "BL024",
+        "The distance from a target is not negative.",
+        (BEHAVIOUR, "GoTo"),
+        _at_least_zero("distance"),
+        "give the distance in metres, 0 for the target itself",
+    ),
+    _constraint(
+        "BL025",
+        "A commanded speed is more than 0.",
+        (BEHAVIOUR, "GoTo"),
+        _positive("speed"),
+        "leave the speed out to go by the travel mode",
+    ),
+    _constraint(
+        "BL026",
+        "The payload of a robot is not negative.",
+        (BEHAVIOUR, "Robot"),
+        _at_least_zero("payload"),
+        "give the weight in kilograms, 0 for none",
+    ),
+    _constraint(
+        "BL027",
+        "The tolerance of an object's place is not negative.",
+        (BEHAVIOUR, "ObjectTarget"),
+        _at_least_zero("tolerance"),
+        "leave it out where it is not known",
+    ),
+    _constraint(
+        "BL028",
+        "The depth of a coordinate is not negative.",
+        (BEHAVIOUR, "GeoCoordinate"),
+        _at_least_zero("depth"),
+        "depth counts down from the surface; use altitude for what is above it",
+    ),
+)

@@ -1,0 +1,155 @@
+"""What of a mission can be drawn: the places of its coordinates, areas and robots, as far as they are known.
+
+Models are checked before they are whole, so that everything here may be missing, and what is missing is
+left out: some other constraint or the metamodel says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, sqrt
+
+import shapely
+from shapely.geometry import Point, Polygon
+
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding_coordinates import Ground, ground_of
+from mmrs_core.languages.grounding_parts import heights_of, ring_of, use_of
+from mmrs_core.languages.grounding_robot import half_diagonal
+from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.scene import AreaUse, Position, Ring
+
+AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnArea:
+    """An area whose every vertex has a place and whose shell is sound; heights and distances in metres."""
+
+    element: Element
+    use: AreaUse
+    shape: Polygon
+    low: float
+    high: float
+    safety_distance: float
+
+    def distance(self, position: Position) -> float:
+        """Return the exact distance of a position from the area as drawn, in metres."""
+        aside = float(shapely.distance(self.shape, Point(position[0], position[1])))
+        return hypot(aside, self._off(position[2]))
+
+    def reach(self, clearance: float, up: float) -> float:
+        """Return how far to its side it keeps out a robot at a height, metres; negative: not at all."""
+        keep, off = self.safety_distance + clearance, self._off(up)
+        return sqrt(keep * keep - off * off) if off <= keep else -1.0
+
+    def _off(self, up: float) -> float:
+        return max(self.low - up, up - self.high, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnRobot:
+    """A robot of the team.
+
+    Attributes:
+        type: None where there is no type of that name.
+        home: None where it has no place.
+        clearance: half its diagonal plus the position error, metres; None where its size is not known.
+    """
+
+    element: Element
+    type: Element | None
+    home: Position | None
+    clearance: float | None
+
+
+class Sketch:
+    """What can be drawn of a mission, its context and its team."""
+
+    def __init__(self, models: ModelSet) -> None:
+        self._models = models
+
+    @cached_property
+    def ground(self) -> Ground:
+        """Where the coordinates lie."""
+        return ground_of(self._models.mission, self._models.context)
+
+    @cached_property
+    def areas(self) -> tuple[DrawnArea, ...]:
+        """The areas that can be drawn."""
+        context = self._models.context
+        found = (each for feature in AREAS for each in children(context, feature))
+        return tuple(area for each in found if (area := self._area(each)) is not None)
+
+    @cached_property
+    def kept_from(self) -> tuple[DrawnArea, ...]:
+        """The areas that robots keep away from."""
+        return tuple(area for area in self.areas if area.use is not AreaUse.EMERGENCY)
+
+    @cached_property
+    def robots(self) -> tuple[DrawnRobot, ...]:
+        """The team."""
+        return tuple(self._robot(each) for each in children(child(self._models.mission, "team"), "robots"))
+
+    def ring(self, owner: Element, feature: str) -> Ring | None:
+        """Return the vertices of a ring, each once; None where one of them has no place."""
+        corners = children(owner, feature)
+        placed = all(corner in self.ground.positions for corner in corners)
+        return ring_of(corners, self.ground.positions) if corners and placed else None
+
+    def _area(self, element: Element) -> DrawnArea | None:
+        ring = self.ring(element, "shell")
+        shape = polygon_of(ring) if ring is not None else None
+        if shape is None:
+            return None
+        low, high = heights_of(element)
+        return DrawnArea(
+            element, use_of(element), shape, low, high, max(number(element, "safetyDistance") or 0.0, 0.0)
+        )
+
+    def _robot(self, element: Element) -> DrawnRobot:
+        robot_type = self._models.robots.get(text(element, "type"))
+        size = child(robot_type, "size") if robot_type is not None else None
+        half = half_diagonal(size) if size is not None else None
+        error = max(number(self._models.mission, "positionError") or 0.0, 0.0)
+        home = child(element, "home")
+        return DrawnRobot(
+            element=element,
+            type=robot_type,
+            home=self.ground.positions.get(home) if home is not None else None,
+            clearance=None if half is None else half + error,
+        )
+
+
+def polygon_of(ring: Ring) -> Polygon | None:
+    """Return the polygon of a ring; None for one that crosses itself or bounds no area."""
+    if len(ring) < 3:
+        return None
+    shape = Polygon(ring)
+    return shape if shape.is_valid and shape.area > 0.0 else None
+
+
+_remembered: ContextVar[dict[int, Sketch] | None] = ContextVar("sketches", default=None)
+
+
+@contextmanager
+def remembering() -> Iterator[None]:
+    """Let `sketch_of` draw each set of models once while they are checked, and forget them afterwards."""
+    token = _remembered.set({})
+    try:
+        yield
+    finally:
+        _remembered.reset(token)
+
+
+def sketch_of(models: ModelSet) -> Sketch:
+    """Return what can be drawn of these models; drawn once within `remembering`."""
+    sketches = _remembered.get()
+    if sketches is None:
+        return Sketch(models)
+    return sketches.setdefault(id(models), Sketch(models))
