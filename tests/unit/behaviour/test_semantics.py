@@ -19,7 +19,7 @@ from mmrs_core.behaviour.semantics import (
     steps,
     waiting,
 )
-from mmrs_core.testing.programs import go, hold, notify, program, robot, use
+from mmrs_core.testing.small_programs import go, hold, notify, program, robot, use
 
 
 def labels(each):

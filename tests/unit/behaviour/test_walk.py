@@ -12,7 +12,7 @@ from mmrs_core.behaviour.walk import (
     reversed_graph,
     successors,
 )
-from mmrs_core.testing.programs import hold, robot
+from mmrs_core.testing.small_programs import hold, robot
 
 
 def looped():

@@ -7,7 +7,7 @@ import pytest
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.runtime.run import simulate
-from mmrs_core.testing.programs import ROBOT_TYPE, robot_type
+from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import (
     MOVE_KINDS,
     PLAIN_ROBOT,

@@ -15,7 +15,7 @@ from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.run import assumed
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import go, hold, notify, program, robot, robot_type, use
+from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
 
 
 def shown(records):

@@ -13,7 +13,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.legs import CLIMBING
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.scene import Area, AreaUse, Policy
-from mmrs_core.testing.programs import BEHAVIOUR, MOVE, go, hold, notify, program, robot, robot_type, use
+from mmrs_core.testing.small_programs import BEHAVIOUR, MOVE, go, hold, notify, program, robot, robot_type, use
 
 FLYER = ("urn:test", "Flyer")
 

@@ -7,7 +7,7 @@ import pytest
 from mmrs_core.contributions.execution import CommandId, SlotCommand, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.runtime.slots import InProcessBus
-from mmrs_core.testing.programs import program, robot
+from mmrs_core.testing.small_programs import program, robot
 
 A, B = ("a", "s"), ("b", "s")
 
