@@ -24,7 +24,7 @@ class DataType:
         ns_uri: of the package that declares it.
         name: as in the metamodel, such as EDouble.
         python: the class of its values.
-        parse: reads a value from text; raises ValueError with a message that begins with the text.
+        parse: reads a value from text; raises ValueError, whose message begins with the text.
         render: writes a value as EMF does; the value must be of the class ``python``.
         primitive_default: what an attribute holds that was never set; None except for Java's primitive types.
         primitive: whether a value can not be null.
@@ -53,11 +53,16 @@ class DataType:
         return isinstance(value, self.python)
 
 
+def shown(text: str) -> str:
+    """Return a text as messages quote it, cut where it is long."""
+    return repr(text) if len(text) <= 60 else f"{text[:57]!r}..."
+
+
 def parse_boolean(text: str) -> bool:
     """Read a truth value, in any case of letters, as EMF does."""
     word = text.lower()
     if word not in ("true", "false"):
-        raise ValueError(f"{text!r}: not true or false")
+        raise ValueError(f"{shown(text)}: not true or false")
     return word == "true"
 
 
@@ -65,7 +70,7 @@ def parse_real(text: str) -> float:
     """Read a number in Java's notation, which has NaN, Infinity and a trailing d or f."""
     stripped = text.strip()
     if not _JAVA_REAL.fullmatch(stripped, 0):
-        raise ValueError(f"{text!r}: not a number")
+        raise ValueError(f"{shown(text)}: not a number")
     return float(stripped if stripped[-1] == "y" else stripped.rstrip("fFdD"))
 
 
@@ -93,12 +98,12 @@ def render_real(value: object) -> str:
 def _integer(bits: int | None) -> Callable[[str], int]:
     def parse(text: str) -> int:
         if not _JAVA_INTEGER.fullmatch(text):
-            raise ValueError(f"{text!r}: not a whole number")
+            raise ValueError(f"{shown(text)}: not a whole number")
         if bits is not None and len(text) > 25:
-            raise ValueError(f"{text[:12]}...: does not fit into {bits} bits")
+            raise ValueError(f"{shown(text)}: does not fit into {bits} bits")
         value = int(text)
         if bits is not None and not -(1 << bits - 1) <= value < 1 << bits - 1:
-            raise ValueError(f"{text!r}: does not fit into {bits} bits")
+            raise ValueError(f"{shown(text)}: does not fit into {bits} bits")
         return value
 
     return parse
@@ -108,12 +113,12 @@ def _parse_decimal(text: str) -> Decimal:
     try:
         return Decimal(text)
     except InvalidOperation:
-        raise ValueError(f"{text!r}: not a decimal number") from None
+        raise ValueError(f"{shown(text)}: not a decimal number") from None
 
 
 def _parse_character(text: str) -> str:
     if len(text) != 1:
-        raise ValueError(f"{text!r}: not one character")
+        raise ValueError(f"{shown(text)}: not one character")
     return text
 
 
@@ -121,14 +126,14 @@ def _parse_bytes(text: str) -> bytes:
     try:
         return bytes.fromhex(text)
     except ValueError:
-        raise ValueError(f"{text!r}: not bytes in hexadecimal digits") from None
+        raise ValueError(f"{shown(text)}: not bytes in hexadecimal digits") from None
 
 
 def parse_date(text: str) -> datetime:
     """Read a date as EMF writes it; one without a zone is taken as UTC."""
     match = _DATE.fullmatch(text)
     if match is None:
-        raise ValueError(f"{text!r}: not a date such as 2024-05-01T10:11:12.123+0200")
+        raise ValueError(f"{shown(text)}: not a date such as 2024-05-01T10:11:12.123+0200")
     year, month, day, hour, minute, second, fraction, zone = match.groups()
     micro = int((fraction or "").ljust(6, "0") or "0")
     try:
@@ -137,7 +142,7 @@ def parse_date(text: str) -> datetime:
         )
         offset = datetime.strptime(zone, "%z").tzinfo if zone and zone != "Z" else UTC
     except ValueError:
-        raise ValueError(f"{text!r}: no such date") from None
+        raise ValueError(f"{shown(text)}: no such date") from None
     return date.replace(tzinfo=offset)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.languages.metaclass import Feature, Metaclass
@@ -96,6 +96,10 @@ class Element(metaclass=ElementType):
             raise AttributeError(
                 f"{name}: no feature of {type(self).__name__}{hint and '; ' + hint}", name=name, obj=self
             )
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
+        """Refuse to be copied or pickled: a copy would drag its container and all it refers to along."""
+        raise TypeError(f"{type(self).__name__}: an element is not copied; write its model and read it again")
 
     def __repr__(self) -> str:
         """Return the class, its name or id if it has one, and its place."""

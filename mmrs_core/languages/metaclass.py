@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.datatypes import DataType, shown
 from mmrs_core.languages.naming import nearest
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Enumeration:
             if literal.literal == text:
                 return literal.name
         known = ", ".join(literal.literal for literal in self.literals)
-        raise ValueError(f"{text!r}: not a literal of {self.name} ({known})")
+        raise ValueError(f"{shown(text)}: not a literal of {self.name} ({known})")
 
     def render(self, value: object) -> str:
         """Return the literal of a name, which must be one."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.datatypes import shown
 from mmrs_core.languages.documents import Draft, Pending
 from mmrs_core.languages.element import Element, Unknown, label_of
 from mmrs_core.languages.hrefs import linked_file
@@ -55,7 +56,7 @@ def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Pa
         kind = reference.feature.type.name
         _fault(
             "XMI006",
-            f"{reference.feature.name}: {uri} leads to no element",
+            f"{reference.feature.name}: {shown(uri)} leads to no element",
             reference,
             draft,
             _hint(kind, uri),
@@ -64,7 +65,7 @@ def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Pa
 
 
 def _hint(kind: str, uri: str) -> str:
-    return "" if "/" in uri else f"write the path of a {kind}, such as //@{kind.lower()}s.0, or an id"
+    return "" if "/" in uri else f"write the path of the {kind}, such as //@{kind.lower()}s.0, or its id"
 
 
 def _opened(
