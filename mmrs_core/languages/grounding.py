@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sized
+from typing import get_args
 
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError
@@ -11,14 +12,29 @@ from mmrs_core.languages.grounding_coordinates import Ground, ground_of
 from mmrs_core.languages.grounding_frame import fault
 from mmrs_core.languages.grounding_parts import area_of, names_of, part_of, position_of
 from mmrs_core.languages.grounding_robot import MISSING, robot_type_of
-from mmrs_core.languages.grounding_values import child, children, number, text, texts, value
+from mmrs_core.languages.grounding_values import child, children, literal, number, text, texts, value
+from mmrs_core.languages.metaclass import Enumeration
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import Area, Dependency, Policy, Robot, RobotType, Scene, Task
+from mmrs_core.scene import (
+    Area,
+    Dependency,
+    Policy,
+    PolicyEvent,
+    PolicyResponse,
+    Robot,
+    RobotType,
+    Scene,
+    Task,
+    TravelMode,
+)
 
 __all__ = ["Ground", "area_of", "ground", "ground_of", "part_of", "robot_type_of"]
 
 UNKNOWN_TYPE = "GND003"
 NOT_INSTALLED = "GND004"
+EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
+RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
+MODES: tuple[TravelMode, ...] = get_args(TravelMode)
 AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
 
@@ -58,7 +74,11 @@ def ground(models: ModelSet) -> Scene:
 def policies_of(element: Element) -> tuple[Policy, ...]:
     """Return the policies that a mission, robot type or transition declares."""
     return tuple(
-        Policy(text(each, "event"), text(each, "response"), number(each, "after"))
+        Policy(
+            literal(each, "event", EVENTS, "LINK_LOST"),
+            literal(each, "response", RESPONSES, "HOLD"),
+            number(each, "after"),
+        )
         for each in children(element, "policies")
     )
 
@@ -104,7 +124,7 @@ def _robot(robot: Element, name: str, robot_type: RobotType, error: float, laid:
         home=position_of(home, laid),
         return_home=value(robot, "returnHome") is not False,
         payload=number(robot, "payload") or 0.0,
-        travel_mode=text(robot, "travelMode") or "NORMAL",
+        travel_mode=literal(robot, "travelMode", MODES, "NORMAL"),
         clearance=robot_type.half_diagonal + error,
         place=place_of(robot),
     )
@@ -142,7 +162,9 @@ def _missing(element: Element) -> Iterator[Diagnostic]:
             continue
         found = value(element, feature.name)
         count = len(found) if isinstance(found, Sized) and feature.many else int(found is not None)
-        if count < feature.lower:
+        if isinstance(feature.type, Enumeration) and not feature.many and not feature.type.accepts(found):
+            yield fault(element, f"has the {feature.name} {found!r}, which is none", code=MISSING)
+        elif count < feature.lower:
             yield fault(element, f"has {count} {feature.name}, {feature.lower} are needed", code=MISSING)
 
 

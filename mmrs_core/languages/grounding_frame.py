@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.element import Element, descendants, is_kind, place_of
-from mmrs_core.languages.grounding_values import child, children, number, text
-from mmrs_core.scene import Frame
+from mmrs_core.languages.grounding_values import child, children, literal, number, text
+from mmrs_core.scene import AltitudeReference, Frame
 
 MISSION = "urn:mmrs:mission:1.0"
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+REFERENCES: tuple[AltitudeReference, ...] = get_args(AltitudeReference)
 NOWHERE = "GND001"
 """Code of the faults that keep a coordinate from having a place."""
 
@@ -57,7 +58,7 @@ def frame_of(mission: Element | None, context: Element | None) -> Frame:
     """Return how the frame lies on the Earth; a local one where the origin is relative or has no place."""
     origin = origin_of(mission)
     placed = origin if origin is not None and is_geographic(origin) and on_earth(origin) else None
-    reference = (text(mission, "altitudeReference") if mission is not None else "") or "ELLIPSOID"
+    reference = literal(mission, "altitudeReference", REFERENCES, "ELLIPSOID")
     return Frame(
         crs=(text(mission, "crs") if mission is not None else "") or "EPSG:4326",
         latitude=number(placed, "latitude") if placed is not None else None,

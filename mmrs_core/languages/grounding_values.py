@@ -7,7 +7,11 @@ None or empty.
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 from mmrs_core.languages.element import Element
+
+Literal = TypeVar("Literal", bound=str)
 
 
 def value(element: Element, name: str) -> object:
@@ -27,6 +31,12 @@ def text(element: Element, name: str) -> str:
     """Return a text or the name of an enumeration's literal."""
     found = value(element, name)
     return found if isinstance(found, str) else ""
+
+
+def literal(element: Element | None, name: str, known: tuple[Literal, ...], default: Literal) -> Literal:
+    """Return the name of an enumeration's literal; the default where it is absent or not among the known."""
+    found = text(element, name) if element is not None else ""
+    return next((each for each in known if each == found), default)
 
 
 def texts(element: Element, name: str) -> tuple[str, ...]:

@@ -404,3 +404,9 @@ def test_ground_of_half_a_mission_places_what_it_can():
     made = mission.Mission(team=mission.Team(robots=[mission.Robot(home=geo()), mission.Robot()]))
     made.tasks = [core_registry().create("urn:mmrs:mission:1.0", "Fork")]
     assert list(ground_of(made, None).positions) == [made.team.robots[0].home]
+
+
+def test_literal_that_does_not_exist_is_refused(registry):
+    made = simple(registry, geo())
+    made.team.robots[0].travelMode = "RECKLESS"
+    assert faults(made) == ["/team/robots[0] has the travelMode 'RECKLESS', which is none"]
