@@ -1,0 +1,78 @@
+"""The page about hooks tells every hook with its exact signature, and its examples work."""
+
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+from mmrs_core import hookspecs
+from mmrs_core.plugins import load_plugins
+
+PAGE = (Path(__file__).parents[2] / "docs" / "hooks.md").read_text(encoding="utf-8")
+HOOKS = {name: hook for name, hook in vars(hookspecs).items() if name.startswith("mmrs_")}
+EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+
+
+def signature_of(name):
+    return f"{name}{inspect.signature(HOOKS[name])}".replace("'", "")
+
+
+def implemented_by(example):
+    return [name for name in HOOKS if f"def {name}(" in example]
+
+
+@pytest.mark.parametrize("name", HOOKS)
+def test_every_hook_is_told_with_its_exact_signature(name):
+    assert f"\n### `{signature_of(name)}`\n" in PAGE
+
+
+def test_no_hook_is_told_that_does_not_exist():
+    assert set(re.findall(r"^### `(\w+)\(", PAGE, re.MULTILINE)) == set(HOOKS)
+
+
+@pytest.mark.parametrize("name", HOOKS)
+def test_every_hook_has_an_example(name):
+    assert [example for example in EXAMPLES if name in implemented_by(example)]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: " ".join(implemented_by(example)))
+def test_an_example_is_a_plugin_that_loads(example, tmp_path):
+    namespace = {"__file__": str(tmp_path / "plugin.py"), "__name__": "kites"}
+    exec(compile(example, "docs/hooks.md", "exec"), namespace)  # noqa: S102  the page's own code
+    plugin = type("Plugin", (), {n: staticmethod(namespace[n]) for n in implemented_by(example)})()
+    plugins = load_plugins(only_core=True, extra={"kites": plugin})
+    for name in implemented_by(example):
+        if inspect.signature(HOOKS[name]).parameters:
+            continue
+        declared = list(namespace[name]())
+        assert declared
+        expected = re.search(r"Iterable\[(\w+)\]", signature_of(name)).group(1)
+        assert {type(each).__name__ for each in declared} == {expected}
+    plugins.observe_stage("plan", None)
+
+
+def test_every_field_of_what_is_declared_is_told():
+    from dataclasses import fields
+
+    from mmrs_core.contributions import checks, commands, constraints, execution, rules, symbols, targets
+
+    told = {
+        "mmrs_constraints": constraints.Constraint,
+        "mmrs_rules": rules.Rule,
+        "mmrs_robot_kinds": rules.RobotKind,
+        "mmrs_move_kinds": rules.MoveKind,
+        "mmrs_checks": checks.Check,
+        "mmrs_targets": targets.Target,
+        "mmrs_backends": execution.BackendFactory,
+        "mmrs_conditions": execution.Condition,
+        "mmrs_map_symbols": symbols.MapSymbol,
+        "mmrs_commands": commands.Command,
+    }
+    missing = []
+    for name, descriptor in told.items():
+        section = PAGE.split(f"### `{name}(")[1].split("\n### ")[0]
+        missing += [
+            f"{name}: {field.name}" for field in fields(descriptor) if f"`{field.name}`" not in section
+        ]
+    assert missing == []

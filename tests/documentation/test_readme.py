@@ -1,0 +1,63 @@
+"""What the README tells to type works, in the order in which it tells it."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
+COMMANDS = [line[2:] for block in BLOCKS for line in block.splitlines() if line.startswith("$ ")]
+SET_UP = "python3 -m venv .venv && .venv/bin/pip install -r requirements-dev.txt && .venv/bin/mmrs demo"
+TESTS = ".venv/bin/pytest"
+
+
+def test_the_first_command_is_the_whole_set_up():
+    assert COMMANDS[0] == SET_UP
+    assert (ROOT / "requirements-dev.txt").is_file()
+
+
+def test_the_tests_are_one_command():
+    assert COMMANDS[1] == TESTS
+
+
+def test_every_line_of_a_console_block_is_a_command():
+    lines = [line for block in BLOCKS for line in block.splitlines()]
+    assert [line for line in lines if not line.startswith("$ ")] == []
+
+
+def test_every_page_that_the_readme_names_exists():
+    links = re.findall(r"\]\((\S+?)\)", README)
+    assert links
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_every_command_of_the_readme_works(tmp_path):
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    for command in [".venv/bin/mmrs demo", *COMMANDS[2:]]:
+        done = subprocess.run(
+            shlex.split(command.replace(".venv/bin/", "")),
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=240,
+        )
+        if done.returncode != 0:
+            pytest.fail(f"{command}: ends with {done.returncode}\n{done.stdout}\n{done.stderr}")
+
+
+def test_the_demo_leaves_what_the_readme_promises(tmp_path):
+    promised = re.findall(r"^\| `(\S+?)` \|", README, re.MULTILINE)
+    assert len(promised) == 5
+    command = [str(Path(sys.executable).parent / "mmrs"), "demo"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0, done.stderr
+    assert [name for name in promised if not (tmp_path / "mmrs-demo" / name).exists()] == []
