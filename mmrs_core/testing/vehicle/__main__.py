@@ -1,0 +1,36 @@
+"""Runs one simulated vehicle from the command line, until it is interrupted."""
+
+from __future__ import annotations
+
+import argparse
+import threading
+
+from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
+
+
+def main() -> int:
+    """Run the vehicle and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m mmrs_core.testing.vehicle", description=__doc__)
+    add = parser.add_argument
+    add("--port", type=int, default=14_550, help="UDP port of the ground station")
+    add("--host", default="127.0.0.1", help="address of the ground station")
+    add("--kind", choices=("copter", "sub", "rover"), default="copter")
+    add("--home", default="42.37,13.35", metavar="LATITUDE,LONGITUDE")
+    add("--system", type=int, default=1)
+    add("--speedup", type=float, default=1.0)
+    given = parser.parse_args()
+    try:
+        latitude, longitude = map(float, given.home.split(","))
+    except ValueError:
+        parser.error(f"--home {given.home}: is not LATITUDE,LONGITUDE")
+    settings = Settings(given.kind, latitude, longitude, given.system)
+    with SimulatedVehicle(given.port, settings, host=given.host, speedup=given.speedup):
+        try:
+            threading.Event().wait()
+        except KeyboardInterrupt:
+            return 130
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
