@@ -1,23 +1,31 @@
-from math import cos, pi
-
 import numpy as np
 import pytest
 import shapely
 
-from mmrs_core.geometry.clearance import circumscribed, grow, shrink
+from mmrs_core.geometry.clearance import circle_about, grow, shrink
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
 
 
 def test_the_circle_in_pieces_holds_the_true_circle():
-    radius = circumscribed(5.0, 2)
-    assert radius * cos(pi / 8) == pytest.approx(5.0)
+    drawn = shapely.Polygon(circle_about(5.0, 8))
+    assert drawn.exterior.distance(shapely.Point(0.0, 0.0)) == pytest.approx(5.0)
 
 
 def test_every_point_of_the_grown_edge_keeps_the_distance():
     edge = grow(SQUARE, 5.0).exterior
     points = shapely.line_interpolate_point(edge, np.linspace(0.0, edge.length, 5000))
     assert shapely.distance(points, shapely.Polygon(SQUARE)).min() >= 5.0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_corners_of_any_angle_keep_the_distance(seed):
+    rng = np.random.default_rng(seed)
+    turns = np.sort(rng.uniform(0.0, 2 * np.pi, int(rng.integers(3, 9))))
+    ring = rng.uniform(3.0, 25.0, (len(turns), 1)) * np.c_[np.cos(turns), np.sin(turns)]
+    edge = grow([tuple(corner) for corner in ring], 4.0).exterior
+    points = shapely.line_interpolate_point(edge, np.linspace(0.0, edge.length, 3000))
+    assert shapely.distance(points, shapely.Polygon(ring)).min() >= 4.0
 
 
 def test_growing_gives_little_away():

@@ -1,0 +1,162 @@
+"""The quickest way among some grown areas: level legs at a few heights, upright ones between them.
+
+A node of the search is a place (start, goal or a corner of an area) at a height (that of start or
+goal, or just above or below an area). A* with the exact time of a free way as its bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from math import hypot
+
+import numpy as np
+
+from mmrs_core.planning.obstacles import HEIGHT_MARGIN, Flags, Floats, Obstacles
+from mmrs_core.planning.sight import Sight
+from mmrs_core.scene import Position
+
+_ABOVE = 1e-3
+"""Metres that a height is above or below what an area blocks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """Metres per second, level, up and down; a rate that is not positive rules that way out."""
+
+    cruise: float
+    climb: float
+    descent: float
+
+    def upright(self, rise: float) -> float:
+        """Return the seconds of an upright way; inf where it is ruled out."""
+        if abs(rise) <= 1e-6:
+            return 0.0
+        rate = self.climb if rise > 0 else self.descent
+        return abs(rise) / rate if rate > 0 else float("inf")
+
+    def leg(self, start: Position, end: Position) -> float:
+        """Return the seconds of a straight leg: the slower of its level and its upright part."""
+        level = hypot(end[0] - start[0], end[1] - start[1]) / self.cruise
+        return max(level, self.upright(end[2] - start[2]))
+
+
+class Layers:
+    """One search among the active areas, all others left out of account."""
+
+    def __init__(
+        self,
+        obstacles: Obstacles,
+        sight: Sight,
+        active: Sequence[int],
+        ends: tuple[Position, Position],
+        band: tuple[float, float],
+        rates: Rates,
+    ) -> None:
+        """Lay out places and heights.
+
+        Args:
+            obstacles: of the robot.
+            sight: over the same obstacles.
+            active: indices of the areas that count.
+            ends: start and goal.
+            band: heights (lowest, highest) at which the robot may travel.
+            rates: of the robot.
+        """
+        self._sight, self._active, self._rates = sight, list(active), rates
+        self._ends = ends
+        corners = [obstacles.grown[area].corners for area in self._active]
+        self._places: Floats = np.concatenate([[ends[0][:2], ends[1][:2]], *corners])
+        self._low, self._high = obstacles.low[self._active], obstacles.high[self._active]
+        self._heights = self._levels(band)
+        self._blocks = [obstacles.blocks_at(height)[self._active] for height in self._heights]
+        self._rows: dict[int, Flags] = {}
+        self._columns: dict[int, list[bool]] = {}
+
+    def _levels(self, band: tuple[float, float]) -> list[float]:
+        around = [*(self._high + _ABOVE).tolist(), *(self._low - _ABOVE).tolist()]
+        inside = [height for height in around if band[0] <= height <= band[1]]
+        return sorted({self._ends[0][2], self._ends[1][2], *inside})
+
+    def way(self) -> list[Position] | None:
+        """Return the quickest way from start to goal; None if there is none."""
+        count = len(self._heights)
+        goal = count + self._heights.index(self._ends[1][2])
+        start = self._heights.index(self._ends[0][2])
+        best = {start: 0.0}
+        came: dict[int, int] = {}
+        queue = [(self._bound(start), start)]
+        done = set()
+        while queue:
+            _, node = heappop(queue)
+            if node == goal:
+                return self._back(came, goal)
+            if node in done:
+                continue
+            done.add(node)
+            for other, seconds in self._neighbours(node):
+                reached = best[node] + seconds
+                if reached < best.get(other, float("inf")) - 1e-12:
+                    best[other], came[other] = reached, node
+                    heappush(queue, (reached + self._bound(other), other))
+        return None
+
+    def _back(self, came: dict[int, int], node: int) -> list[Position]:
+        nodes = [node]
+        while nodes[-1] in came:
+            nodes.append(came[nodes[-1]])
+        return [self._position(each) for each in reversed(nodes)]
+
+    def _position(self, node: int) -> Position:
+        place, level = divmod(node, len(self._heights))
+        east, north = self._places[place].tolist()
+        return (east, north, self._heights[level])
+
+    def _bound(self, node: int) -> float:
+        east, north, up = self._position(node)
+        goal = self._ends[1]
+        level = hypot(goal[0] - east, goal[1] - north) / self._rates.cruise
+        return level + self._rates.upright(goal[2] - up)
+
+    def _neighbours(self, node: int) -> Iterator[tuple[int, float]]:
+        count = len(self._heights)
+        place, level = divmod(node, count)
+        for other in (level - 1, level + 1):
+            if 0 <= other < count and self._open(place)[min(level, other)]:
+                rise = self._heights[other] - self._heights[level]
+                yield node - level + other, self._rates.upright(rise)
+        free = np.flatnonzero(~(self._row(place) & self._blocks[level]).any(axis=1))
+        way = self._places[free] - self._places[place]
+        seconds = np.hypot(way[:, 0], way[:, 1]) / self._rates.cruise
+        for other, each in zip(free.tolist(), seconds.tolist(), strict=True):
+            if other != place:
+                yield other * count + level, each
+
+    def _row(self, place: int) -> Flags:
+        """Return (places, active areas): what lies between a place and each other."""
+        row = self._rows.get(place)
+        if row is None:
+            here = self._place(place)
+            ends = [self._sight.between(here, self._place(end)) for end in (0, 1)]
+            corners = [self._sight.to_corners(here, area) for area in self._active]
+            row = self._rows[place] = np.concatenate([ends, *corners])[:, self._active]
+        return row
+
+    def _place(self, index: int) -> tuple[float, float]:
+        east, north = self._places[index].tolist()
+        return east, north
+
+    def _open(self, place: int) -> list[bool]:
+        """Return, by gap between neighbouring heights, whether the way up or down a place is clear."""
+        column = self._columns.get(place)
+        if column is None:
+            here = self._place(place)
+            over = self._sight.between(here, here)[self._active]
+            column = self._columns[place] = [
+                not bool(
+                    (over & (self._low + HEIGHT_MARGIN < high) & (low < self._high - HEIGHT_MARGIN)).any()
+                )
+                for low, high in zip(self._heights[:-1], self._heights[1:], strict=True)
+            ]
+        return column

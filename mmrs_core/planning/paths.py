@@ -1,0 +1,183 @@
+"""Routes of straight legs around, over and under what a robot must keep away from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from math import dist, inf
+
+import numpy as np
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.geometry.segments import legs_of
+from mmrs_core.planning.layers import Layers, Rates
+from mmrs_core.planning.obstacles import Flags, Obstacles
+from mmrs_core.planning.plane import shortest_way
+from mmrs_core.planning.sight import Sight
+from mmrs_core.scene import Area, Position
+
+_ABOVE = 1e-3
+"""Metres that a height is above or below what an area blocks."""
+
+_HEIGHTS = 5
+"""Heights at most that are tried beside those of start and goal."""
+
+
+class Space:
+    """The space of one robot, made once and asked often; it remembers what it found out.
+
+    A straight leg is the answer where it is clear. Else the robot goes up or down to one height, on
+    the shortest way around all that blocks there, and up or down to the goal; the quickest of several
+    heights is taken. Where no single height will do, a search over several heights follows. At last,
+    corners are cut by sloped legs where these are clear and quicker.
+    """
+
+    def __init__(
+        self,
+        areas: Iterable[Area],
+        clearance: float,
+        floor: float = -inf,
+        ceiling: float = inf,
+        *,
+        rates: Rates | None = None,
+    ) -> None:
+        """Grow the areas.
+
+        Args:
+            areas: to keep away from, as drawn.
+            clearance: of the robot, metres; each area's safety distance comes on top.
+            floor: lowest height at which the robot travels, metres.
+            ceiling: highest height, metres.
+            rates: of travel, which decide between going around and going over; None: 1 m/s each.
+        """
+        self.floor, self.ceiling = floor, ceiling
+        self.rates = rates or Rates(1.0, 1.0, 1.0)
+        self._obstacles = Obstacles(tuple(areas), clearance)
+        self._sight = Sight(self._obstacles)
+        self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
+
+    def is_clear(self, polyline: Sequence[Position]) -> bool:
+        """Return whether a polyline (one point or more) keeps its distance from every area."""
+        return not self._blockers(polyline).any()
+
+    def blockers(self, polyline: Sequence[Position]) -> str:
+        """Return the names of the areas that a polyline is too near to, quoted; empty if it is clear."""
+        return self._obstacles.names(self._blockers(polyline))
+
+    def _blockers(self, polyline: Sequence[Position]) -> Flags:
+        flags: Flags = np.logical_or.reduce(self._obstacles.blocking(legs_of(polyline)), axis=0)
+        return flags
+
+    def seconds(self, route: Sequence[Position]) -> float:
+        """Return how long a route takes at the robot's rates."""
+        return sum(self.rates.leg(one, two) for one, two in pairwise(route))
+
+    def route(self, start: Position, goal: Position) -> tuple[Position, ...]:
+        """Return the positions of a quick way from start to goal, both included, at least two.
+
+        Floor and ceiling bind the heights in between; start and goal may be anywhere.
+
+        Raises:
+            UnreachableError: there is no way; the message names the areas that block it.
+        """
+        found = self._routes.get((start, goal))
+        if found is None:
+            found = self._routes[start, goal] = self._search(start, goal)
+        if isinstance(found, str):
+            raise UnreachableError(found)
+        return found
+
+    def _search(self, start: Position, goal: Position) -> tuple[Position, ...] | str:
+        """Return the route, or why there is none."""
+        for end, name in ((start, "start"), (goal, "goal")):
+            inside = self.blockers((end,))
+            if inside:
+                return f"{name} {_words(end)} is within the clearance of {inside}"
+        blockers = self._blockers((start, goal))
+        if not blockers.any() and self.rates.leg(start, goal) < inf:
+            return (start, goal)
+        way = self._at_one_height(start, goal)
+        return self._cut_short(way) if way else self._at_several_heights(start, goal, blockers)
+
+    def _at_one_height(self, start: Position, goal: Position) -> list[Position] | None:
+        """Return the quickest way of the sort up or down, level, up or down; None if there is none."""
+        level = dist(start[:2], goal[:2]) / self.rates.cruise
+        best: list[Position] | None = None
+        quickest = inf
+        for upright, height in self._heights(start, goal):
+            if upright + level >= quickest or not self._columns_clear(start, goal, height):
+                continue
+            longest = (quickest - upright) * self.rates.cruise
+            blocks = self._obstacles.blocks_at(height)
+            flat = shortest_way(self._obstacles, self._sight, start[:2], goal[:2], blocks, longest)
+            if flat is not None:
+                way = [start, *((*place, height) for place in flat), goal]
+                way = [here for i, here in enumerate(way) if i == 0 or here != way[i - 1]]
+                if self.seconds(way) < quickest:
+                    best, quickest = way, self.seconds(way)
+        return best
+
+    def _heights(self, start: Position, goal: Position) -> list[tuple[float, float]]:
+        """Return (seconds up and down, height) for heights worth a try, quickest first."""
+        over = self._sight.between(start[:2], goal[:2])
+        around = [
+            *(self._obstacles.high[over] + _ABOVE).tolist(),
+            *(self._obstacles.low[over] - _ABOVE).tolist(),
+        ]
+        inside = {height for height in around if self.floor <= height <= self.ceiling}
+        costs = sorted((self._upright(start, goal, height), height) for height in inside)
+        ends = sorted((self._upright(start, goal, height), height) for height in {start[2], goal[2]})
+        topmost = costs[_HEIGHTS:] and [max(costs, key=lambda each: each[1])]
+        return sorted({*ends, *costs[:_HEIGHTS], *topmost})
+
+    def _upright(self, start: Position, goal: Position, height: float) -> float:
+        return self.rates.upright(height - start[2]) + self.rates.upright(goal[2] - height)
+
+    def _columns_clear(self, start: Position, goal: Position, height: float) -> bool:
+        columns = np.array([[start, (*start[:2], height)], [(*goal[:2], height), goal]])
+        return not self._obstacles.blocking(columns).any()
+
+    def _at_several_heights(
+        self, start: Position, goal: Position, active: Flags
+    ) -> tuple[Position, ...] | str:
+        """Return the quickest way that may change its height at corners, or why there is none."""
+        band = (self.floor, self.ceiling)
+        while True:
+            chosen = np.flatnonzero(active).tolist()
+            way = Layers(self._obstacles, self._sight, chosen, (start, goal), band, self.rates).way()
+            if way is None:
+                return self._no_way(start, goal, active)
+            blockers = self._blockers(way)
+            if not (blockers & ~active).any():
+                return self._cut_short(way)
+            active = active | blockers
+
+    def _no_way(self, start: Position, goal: Position, active: Flags) -> str:
+        names = self._obstacles.names(active)
+        between = f"from {_words(start)} to {_words(goal)} between {self.floor:g} m and {self.ceiling:g} m"
+        return f"no way {between} keeps clear of {names}" if names else f"no way {between} up or down"
+
+    def _cut_short(self, way: Sequence[Position]) -> tuple[Position, ...]:
+        """Return the quickest way through some of the positions, in order, by clear straight legs."""
+        count = len(way)
+        pairs = [(i, j) for i in range(count) for j in range(i + 2, count)]
+        if not pairs:
+            return tuple(way)
+        legs = np.array([[way[i], way[j]] for i, j in pairs])
+        clear = ~np.logical_or.reduce(self._obstacles.blocking(legs), axis=1)
+        steps = {(i, i + 1) for i in range(count - 1)}
+        steps |= {pair for pair, free in zip(pairs, clear.tolist(), strict=True) if free}
+        best, came = [0.0, *[inf] * (count - 1)], [0] * count
+        for i, j in sorted(steps):
+            reached = best[i] + self.rates.leg(way[i], way[j])
+            if reached < best[j] - 1e-9:
+                best[j], came[j] = reached, i
+        picks = [count - 1]
+        while picks[-1]:
+            picks.append(came[picks[-1]])
+        return tuple(way[i] for i in reversed(picks))
+
+
+def _words(position: Position) -> str:
+    east, north, up = position
+    return f"({east:.1f}, {north:.1f}, {up:.1f})"
