@@ -93,7 +93,7 @@ CONSTRAINTS = (
         "The temperature suits every robot type.",
         (CONTEXT, "Environment"),
         _too_cold_or_hot,
-        "fly on another day, or with another robot",
+        "go on another day, or with another robot",
         Severity.WARNING,
     ),
 )

@@ -105,7 +105,7 @@ def _line_through(task: Element, models: ModelSet) -> Iterator[Finding]:
             first = int(np.flatnonzero(legs)[0])
             yield finding(
                 task,
-                f"its line is too near to {called(area.element)} for every robot, from point {first} on",
+                f"its line is too near to {called(area.element)} for every robot, behind its point {first}",
             )
 
 

@@ -108,8 +108,8 @@ def _pressure(robot: Element, models: ModelSet) -> Iterator[Finding]:
 def _carry_on(policy: Element, models: ModelSet) -> Iterator[Finding]:
     if text(policy, "event") == "BATTERY_LOW" and text(policy, "response") == "CONTINUE":
         owner = container_of(policy)
-        whose = f" of {called(owner)}" if owner is not None else ""
-        yield finding(policy, f"lets the robot go on until the battery is empty{whose}")
+        whom = called(owner) if owner is not None else "a robot"
+        yield finding(policy, f"lets {whom} go on until the battery is empty")
 
 
 CONSTRAINTS = (

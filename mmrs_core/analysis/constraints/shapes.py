@@ -25,7 +25,7 @@ def _crossing(feature: str) -> Callable[[Element, ModelSet], Iterator[Finding]]:
         ring = sketch_of(models).ring(element, feature)
         if ring is not None and not _is_flat(ring) and not LinearRing(ring).is_simple:
             place = _first_crossing(ring)
-            yield finding(element, f"its {feature} crosses or touches itself{place}")
+            yield finding(element, f"its border crosses or touches itself{place}")
 
     return check
 
@@ -34,7 +34,9 @@ def _flat(feature: str) -> Callable[[Element, ModelSet], Iterator[Finding]]:
     def check(element: Element, models: ModelSet) -> Iterator[Finding]:
         ring = sketch_of(models).ring(element, feature)
         if ring is not None and _is_flat(ring):
-            yield finding(element, f"its {feature} bounds no area: its {len(ring)} vertices are on one line")
+            yield finding(
+                element, f"its border holds no area: {len(ring)} different vertices, all on one line"
+            )
 
     return check
 
@@ -44,7 +46,7 @@ def _repeating(feature: str) -> Callable[[Element, ModelSet], Iterator[Finding]]
         ring, corners = sketch_of(models).ring(element, feature), children(element, feature)
         if ring is not None and len(ring) < len(corners):
             yield finding(
-                element, f"its {feature} repeats {len(corners) - len(ring)} of its {len(corners)} vertices"
+                element, f"its border repeats {len(corners) - len(ring)} of its {len(corners)} vertices"
             )
 
     return check
@@ -55,16 +57,11 @@ def _is_flat(ring: Ring) -> bool:
 
 
 def _first_crossing(ring: Ring) -> str:
-    """Return which sides cross first; empty for rings that would take long to search."""
+    """Return which two sides meet first, in words; empty if only neighbours overlap."""
     sides = [shapely.LineString(pair) for pair in zip(ring, (*ring[1:], ring[0]), strict=True)]
-    if len(sides) > 500:
-        return ""
-    for first, side in enumerate(sides):
-        for second in range(first + 1, len(sides)):
-            apart = second - first not in (1, len(sides) - 1)
-            if apart and side.intersects(sides[second]):
-                return f": the side from vertex {first} meets the side from vertex {second}"
-    return ""
+    pairs = shapely.STRtree(sides).query(sides, predicate="intersects").T.tolist()
+    apart = sorted((one, other) for one, other in pairs if 1 < other - one < len(sides) - 1)
+    return ": the sides from vertices {} and {} meet".format(*apart[0]) if apart else ""
 
 
 def _holes(task: Element, models: ModelSet) -> Iterator[Finding]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -236,5 +237,11 @@ def registry() -> Registry:
 
 
 @pytest.fixture
-def models(registry: Registry) -> Models:
-    return Models(registry, errand(registry), place(), quad(), program())
+def fresh_models(registry: Registry) -> Callable[[], Models]:
+    """Return a function that makes the sound project anew."""
+    return lambda: Models(registry, errand(registry), place(), quad(), program())
+
+
+@pytest.fixture
+def models(fresh_models: Callable[[], Models]) -> Models:
+    return fresh_models()
