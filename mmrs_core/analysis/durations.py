@@ -101,7 +101,7 @@ def _moving(
 
 def _spread(leg: Leg, seconds: tuple[float, float], move: Move, kinematics: Kinematics) -> Span:
     """Return the span where the way may be longer or shorter by what is not known of its ends."""
-    if leg.radius == 0.0:
+    if leg.radius == 0.0 or len(leg.points) == 1:
         return Span(*seconds)
     slowest = min(move.speed or kinematics.cruise, kinematics.climb, kinematics.descent)
     more = leg.radius / slowest if slowest > 0.0 else inf

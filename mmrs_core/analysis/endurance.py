@@ -106,8 +106,8 @@ def _judged_uses(
 
 
 def _rounded(margin: float, allowed: float) -> float:
-    """Return the margin, and zero where it is below zero by rounding of sums alone."""
-    return 0.0 if -1e-9 * allowed <= margin < 0.0 else margin
+    """Return the margin, and zero where it is below zero by the rounding of coordinates and sums alone."""
+    return 0.0 if -1e-6 * allowed <= margin < 0.0 else margin
 
 
 def _judge_recharge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:

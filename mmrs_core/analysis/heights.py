@@ -97,7 +97,8 @@ def _missing_for_depth(input: CheckInput, robot: RobotProgram, allowed: float | 
 
 
 def _deepest(motion: Motion, surface: float) -> tuple[float, int] | None:
-    return max(((surface - _lowest(leg), leg.move) for leg in motion.legs), default=None)
+    depths = ((surface - _lowest(leg), leg.move) for leg in motion.legs)
+    return max(depths, key=lambda depth: depth[0], default=None)
 
 
 def _lowest(leg: Leg) -> float:

@@ -1,0 +1,71 @@
+"""Random behaviours that synchronise, and an exploration of all their runs, step by step."""
+
+from hypothesis import strategies as st
+from small_behaviours import hold, notify, program, robot
+
+from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock
+
+SILENT = {"begin", "end", "act"}
+
+
+@st.composite
+def behaviours(draw, choices=True, loops=False, resets=False):
+    """Draw a behaviour of two to four robots with up to five slots."""
+    names = [f"r{number}" for number in range(draw(st.integers(2, 4)))]
+    slots = [f"{draw(st.sampled_from(names))}.s{number}" for number in range(draw(st.integers(1, 5)))]
+    return program(*(draw(_robots(name, slots, choices, loops, resets)) for name in names))
+
+
+@st.composite
+def _robots(draw, name, slots, choices, loops, resets):
+    moves = [f"m{number}" for number in range(draw(st.integers(1, 5)))]
+    own = [slot.partition(".")[2] for slot in slots if slot.startswith(f"{name}.")]
+    made = [
+        hold(move, before=_actions(draw, slots, resets), after=_actions(draw, slots, resets))
+        for move in moves
+    ]
+    waits, ways = {}, {}
+    for number, move in enumerate(("start", *moves)):
+        if own and draw(st.booleans()):
+            waits[move] = draw(st.lists(st.sampled_from(own), min_size=1, max_size=2, unique=True))
+        if choices and draw(st.integers(0, 3)) == 0:
+            least = 0 if loops else number
+            after = [*moves[least:], "stop"]
+            ways[move] = ("c", draw(st.sampled_from(after)), draw(st.sampled_from(after)))
+    return robot(name, made, waits=waits, choices=ways, slots=own)
+
+
+def _actions(draw, slots, resets):
+    kind = draw(st.integers(0, 5))
+    if kind > 2:
+        return ()
+    chosen = draw(st.lists(st.sampled_from(slots), min_size=1, max_size=2, unique=True))
+    return (notify(*chosen, active=not (resets and kind == 0)),)
+
+
+def deadlocks(behaviour, limit=4_000):
+    """Return whether some run of the behaviour ends with a robot waiting; None: too many states."""
+    first = _settled(behaviour, initial(behaviour))
+    seen = {first}
+    pending = [first]
+    while pending:
+        state = pending.pop()
+        if is_deadlock(behaviour, state):
+            return True
+        for step in enabled(behaviour, state):
+            after = _settled(behaviour, apply(behaviour, state, step))
+            if after not in seen:
+                if len(seen) >= limit:
+                    return None
+                seen.add(after)
+                pending.append(after)
+    return False
+
+
+def _settled(behaviour, state):
+    """Make all steps that touch nothing of other robots: their order does not matter."""
+    while True:
+        step = next((step for step in enabled(behaviour, state) if step.label in SILENT), None)
+        if step is None:
+            return state
+        state = apply(behaviour, state, step)

@@ -1,0 +1,189 @@
+"""Distances kept from areas, worked out by hand."""
+
+from dataclasses import replace
+from math import sqrt
+
+import pytest
+from checking import finding, findings, given, kind, land, rover, square, strange, take_off
+from small_behaviours import go, hold, robot
+
+from mmrs_core.behaviour.program import Target
+from mmrs_core.contributions.checks import Status
+from mmrs_core.scene import Area, AreaUse, Part
+
+
+def past(*moves, area, home=(0.0, 0.0, 0.0), **more):
+    return finding("clearance", given(robot("a", moves, home=home), areas=(area,), **more))
+
+
+def to_object(move, target):
+    return replace(move, target=target)
+
+
+def test_margin_is_distance_less_safety_distance_half_diagonal_and_position_error():
+    verdict = past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 6.0), distance=2.0), position_error=0.25)
+    assert verdict.status is Status.SAFE
+    assert verdict.margin == pytest.approx(5.0 - 2.0 - 0.5 - 0.25)
+    assert (verdict.robot, verdict.move, verdict.area, verdict.unit) == ("a", "by", "tower", "m")
+
+
+def test_a_leg_through_an_area_is_violated_by_all_that_is_required():
+    verdict = past(go("m1", (20.0, 0.0, 0.0)), area=square(distance=2.0))
+    assert verdict.status is Status.VIOLATED
+    assert verdict.margin == pytest.approx(-2.5)
+    assert (verdict.robot, verdict.move, verdict.area) == ("a", "m1", "tower")
+
+
+def test_touching_the_required_distance_is_safe():
+    assert past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 1.5))).status is Status.SAFE
+
+
+def test_a_millimetre_too_near_is_violated():
+    verdict = past(go("by", (20.0, 0.0, 0.0)), area=square(at=(10.0, 1.499)))
+    assert verdict.status is Status.VIOLATED
+    assert verdict.margin == pytest.approx(-0.001)
+
+
+def test_an_obstacle_may_be_passed_above_with_the_same_distance():
+    high = past(go("over", (20.0, 0.0, 9.5)), area=square(high=9.0), home=(0.0, 0.0, 9.5))
+    low = past(go("over", (20.0, 0.0, 9.4)), area=square(high=9.0), home=(0.0, 0.0, 9.4))
+    assert (high.status, low.status) == (Status.SAFE, Status.VIOLATED)
+    assert low.margin == pytest.approx(-0.1)
+
+
+def test_an_obstacle_may_be_passed_beneath():
+    verdict = past(go("under", (20.0, 0.0, 0.0)), area=square(low=4.0, high=9.0))
+    assert verdict.status is Status.SAFE
+    assert verdict.margin == pytest.approx(3.5)
+
+
+def test_distance_to_an_upper_edge_is_measured_across():
+    verdict = past(go("by", (20.0, 0.0, 13.0)), area=square(at=(10.0, 5.0), high=10.0), home=(0.0, 0.0, 13.0))
+    assert verdict.margin == pytest.approx(sqrt(4.0**2 + 3.0**2) - 0.5)
+
+
+def test_the_notch_of_a_concave_area_may_be_entered():
+    notched = Area(
+        "u", AreaUse.FORBIDDEN, ((5, -5), (15, -5), (15, 5), (12, 5), (12, -2), (8, -2), (8, 5), (5, 5))
+    )
+    verdict = past(go("in", (10.0, 3.0, 0.0)), area=notched, home=(10.0, 20.0, 0.0))
+    assert verdict.status is Status.SAFE
+    assert verdict.margin == pytest.approx(2.0 - 0.5)
+
+
+def test_emergency_areas_forbid_nothing():
+    verdict = past(go("m1", (20.0, 0.0, 0.0)), area=square(use=AreaUse.EMERGENCY))
+    assert verdict.status is Status.SAFE
+
+
+def test_launch_and_landing_columns_count():
+    crane = square("crane", at=(0.0, 0.0), low=5.0, high=6.0)
+    flight = robot("a", [take_off("up", 10.0), land("down")])
+    verdict = finding("clearance", given(flight, areas=(crane,), robot_kind=kind(launches=True)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "up")
+
+
+def test_the_home_of_a_robot_that_stays_counts():
+    verdict = past(area=square(at=(0.0, 0.0)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "start")
+
+
+def test_each_violated_area_is_named_once_at_its_worst_move():
+    areas = (square("near", at=(10.0, 1.2)), square("far", at=(30.0, 1.4)), square("off", at=(10.0, 40.0)))
+    moves = [go("m1", (20.0, 0.0, 0.0)), go("m2", (40.0, 0.1, 0.0)), go("m3", (0.0, 0.2, 0.0))]
+    found = findings("clearance", given(robot("a", moves), areas=areas))
+    assert [(v.area, v.move, v.status) for v in found] == [
+        ("near", "m3", Status.VIOLATED),
+        ("far", "m3", Status.VIOLATED),
+    ]
+
+
+def test_both_arms_of_a_choice_count():
+    detour = [hold("fork"), go("left", (20.0, 30.0, 0.0)), go("right", (20.0, 0.0, 0.0))]
+    made = robot("a", detour, choices={"fork": ("c", "left", "right")}, jumps={"left": "stop"})
+    verdict = finding("clearance", given(made, areas=(square(),)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "right")
+
+
+def test_a_leg_begins_wherever_an_arm_of_a_choice_may_have_ended():
+    moves = [
+        hold("fork"),
+        go("left", (0.0, 30.0, 0.0)),
+        go("right", (5.0, 0.0, 0.0)),
+        go("on", (20.0, 0.0, 0.0)),
+    ]
+    made = robot("a", moves, choices={"fork": ("c", "left", "right")}, jumps={"left": "on"})
+    verdict = finding("clearance", given(made, areas=(square(at=(10.0, 15.0)),)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "on")
+
+
+def test_an_object_is_as_far_as_its_tolerance_from_its_place():
+    near = Target((20.0, 0.0, 0.0), "buoy", 3.0)
+    moves = [to_object(go("to buoy", (0.0, 0.0, 0.0)), near)]
+    verdict = past(*moves, area=square(at=(20.0, 6.0)))
+    assert verdict.margin == pytest.approx(5.0 - 3.0 - 0.5)
+
+
+def test_what_is_not_known_of_an_object_is_carried_into_the_next_leg_until_a_known_target():
+    near = Target((20.0, 0.0, 0.0), "buoy", 3.0)
+    moves = [
+        to_object(go("to buoy", (0.0, 0.0, 0.0)), near),
+        go("aside", (20.0, -40.0, 0.0)),
+        go("back", (0.0, -40.0, 0.0)),
+    ]
+    both = (square("by", at=(26.0, -20.0)), square("end", at=(20.0, -44.0)))
+    by = past(*moves, area=both[0])
+    end = past(*moves, area=both[1])
+    assert by.margin == pytest.approx(5.0 - 3.0 - 0.5)
+    assert end.margin == pytest.approx(3.0 - 0.5 - 3.0)
+
+
+def test_an_object_without_a_place_is_unknown_and_says_so():
+    lost = to_object(go("to buoy", (0.0, 0.0, 0.0)), Target(None, "buoy", None))
+    verdict = past(lost, go("home", (0.0, 0.0, 0.0)), area=square(at=(0.0, 30.0)))
+    assert (verdict.status, verdict.move) == (Status.UNKNOWN, "to buoy")
+    assert verdict.message == (
+        "a: GoTo 'to buoy': where the object 'buoy' is, is not known, and 1 more moves are not known"
+    )
+
+
+def test_an_object_without_a_tolerance_is_unknown():
+    vague = to_object(go("to buoy", (0.0, 0.0, 0.0)), Target((5.0, 0.0, 0.0), "buoy", None))
+    verdict = past(vague, area=square(at=(0.0, 30.0)))
+    assert verdict.status is Status.UNKNOWN
+    assert "how far the object 'buoy' may be from its place" in verdict.message
+
+
+def test_a_violation_is_reported_beside_what_is_unknown():
+    moves = [go("m1", (20.0, 0.0, 0.0)), strange("dig")]
+    found = findings("clearance", given(robot("a", moves), areas=(square(),)))
+    assert [verdict.status for verdict in found] == [Status.VIOLATED, Status.UNKNOWN]
+    assert "nobody contributed what a move of kind 'Burrow' does" in found[1].message
+
+
+def test_no_context_is_not_checked():
+    verdict = finding("clearance", given(robot("a", [go("m1", (1.0, 0.0, 0.0))])))
+    assert (verdict.status, verdict.message) == (Status.NOT_CHECKED, "a: no context was given")
+
+
+def test_a_robot_without_a_home_is_unknown():
+    verdict = past(go("m1", (1.0, 0.0, 0.0)), area=square(at=(0.0, 30.0)), home=None)
+    assert verdict.status is Status.UNKNOWN
+
+
+def test_a_missing_robot_type_is_unknown_and_named():
+    verdict = finding("clearance", given(robot("a", []), type=rover(), areas=(square(),)))
+    without = given(robot("a", []), areas=(square(),))
+    without.types.clear()
+    verdict = finding("clearance", without)
+    assert (verdict.status, verdict.message) == (Status.UNKNOWN, "a: robot type 'rover' is not described")
+
+
+def test_half_the_diagonal_is_computed_from_the_dimensions_of_the_type():
+    size = Part((), {"width": 2.0, "length": 3.0, "height": 6.0})
+    verdict = past(
+        go("by", (20.0, 0.0, 0.0)),
+        area=square(at=(10.0, 6.0)),
+        type=rover(half_diagonal=0.1, attributes={"size": size}),
+    )
+    assert verdict.margin == pytest.approx(5.0 - 3.5)

@@ -1,0 +1,237 @@
+"""Heights, depths, ranges, equipment and weather against hand-made figures."""
+
+from dataclasses import replace
+
+import pytest
+from checking import FLYER, finding, findings, given, kind, land, rover, square, strange, take_off
+from small_behaviours import go, hold, robot, use
+
+from mmrs_core.analysis.heights import ATMOSPHERE, GRAVITY
+from mmrs_core.behaviour.program import Heading, Target
+from mmrs_core.contributions.checks import Status
+from mmrs_core.scene import DeviceAction, Part
+
+AWAY = go("away", (30.0, 40.0, 0.0))
+
+
+def flight(height=10.0, over=None):
+    return robot("a", [take_off("up", height), go("over", over or (5.0, 0.0, height)), land("down")])
+
+
+def flyer(**more):
+    return kind(launches=True, **more)
+
+
+def test_the_largest_height_is_compared_with_the_ceiling():
+    verdict = finding("altitude", given(flight(10.0, (5.0, 0.0, 14.0)), robot_kind=flyer(ceiling=12.0)))
+    assert (verdict.status, verdict.move, verdict.unit) == (Status.VIOLATED, "over", "m")
+    assert verdict.margin == pytest.approx(-2.0)
+
+
+def test_take_off_and_landing_may_be_below_the_floor():
+    verdict = finding("altitude", given(flight(), robot_kind=flyer(floor=2.0, ceiling=30.0)))
+    assert verdict.status is Status.SAFE
+    assert verdict.margin == pytest.approx(8.0)
+
+
+def test_a_flight_below_the_floor_is_violated():
+    verdict = finding("altitude", given(flight(10.0, (5.0, 0.0, 1.5)), robot_kind=flyer(floor=2.0)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "over")
+    assert verdict.margin == pytest.approx(-0.5)
+
+
+def test_no_limits_of_height_are_not_checked():
+    assert finding("altitude", given(flight())).status is Status.NOT_CHECKED
+
+
+def test_a_kind_that_nobody_contributed_is_unknown():
+    verdict = finding("altitude", given(flight(), robot_kind=kind(FLYER)))
+    assert verdict.status is Status.UNKNOWN
+    assert "nobody contributed how robots of type 'rover' move" in verdict.message
+
+
+def dive(depth, *, surface=0.0, type=None, robot_kind=None, density=None):
+    moves = [go("down", (0.0, 0.0, -depth))]
+    environment = {} if density is None else {"waterDensity": density}
+    return given(
+        robot("a", moves), type=type, robot_kind=robot_kind, surface=surface, environment=environment
+    )
+
+
+def test_pressure_follows_from_depth_and_density():
+    allowed = ATMOSPHERE + 1000.0 * GRAVITY * 12.0
+    deep = rover(attributes={"maxOperatingPressure": allowed})
+    verdict = finding("depth", dive(10.0, type=deep, density=1000.0))
+    assert (verdict.status, verdict.unit, verdict.move) == (Status.SAFE, "Pa", "down")
+    assert verdict.margin == pytest.approx(1000.0 * GRAVITY * 2.0)
+
+
+def test_depth_counts_from_the_surface():
+    allowed = ATMOSPHERE + 1000.0 * GRAVITY * 12.0
+    deep = rover(attributes={"maxOperatingPressure": allowed})
+    verdict = finding("depth", dive(10.0, surface=3.0, type=deep, density=1000.0))
+    assert verdict.status is Status.VIOLATED
+    assert verdict.margin == pytest.approx(-1000.0 * GRAVITY)
+
+
+def test_a_dive_without_figures_is_unknown_and_says_which():
+    verdict = finding("depth", dive(10.0))
+    assert verdict.status is Status.UNKNOWN
+    assert verdict.message == (
+        "a: goes 10.00 m under the surface, the maxOperatingPressure of robot type 'rover'"
+        " and the environment's waterDensity not given"
+    )
+
+
+def test_a_flying_robot_below_the_origin_is_not_taken_to_dive():
+    assert finding("depth", dive(10.0, robot_kind=flyer())).status is Status.NOT_CHECKED
+
+
+def test_a_robot_above_the_surface_is_not_checked_for_depth():
+    assert finding("depth", given(robot("a", [AWAY]))).status is Status.NOT_CHECKED
+
+
+def test_range_is_the_largest_distance_from_home():
+    near = given(robot("a", [AWAY]), type=rover(attributes={"communicationRange": 60.0}))
+    verdict = finding("range", near)
+    assert (verdict.status, verdict.move) == (Status.SAFE, "away")
+    assert verdict.margin == pytest.approx(10.0)
+
+
+def test_out_of_range_is_violated():
+    far = given(robot("a", [AWAY]), type=rover(attributes={"communicationRange": 45.0}))
+    assert finding("range", far).margin == pytest.approx(-5.0)
+
+
+def test_an_unstated_range_is_unknown():
+    verdict = finding("range", given(robot("a", [AWAY])))
+    assert verdict.status is Status.UNKNOWN
+    assert verdict.message == "a: the communicationRange of robot type 'rover' is not given"
+
+
+def test_payload_is_compared_with_what_the_type_carries():
+    loaded = replace(robot("a", []), payload=2.0)
+    assert finding("payload", given(loaded, type=rover(max_payload=2.5))).margin == pytest.approx(0.5)
+    assert finding("payload", given(loaded, type=rover(max_payload=1.5))).status is Status.VIOLATED
+
+
+def test_a_type_without_a_largest_payload_carries_none():
+    assert finding("payload", given(robot("a", []))).status is Status.SAFE
+    assert finding("payload", given(replace(robot("a", []), payload=0.1))).status is Status.VIOLATED
+
+
+@pytest.mark.parametrize(("speed", "margin"), [(3.0, 1.0), (5.0, -1.0), (0.5, -0.5)])
+def test_commanded_speed_stays_within_the_capability(speed, margin):
+    moves = [go("m1", (9.0, 0.0, 0.0), speed=speed)]
+    verdict = finding("speed", given(robot("a", moves), type=rover(speed=(1.0, 4.0))))
+    assert verdict.margin == pytest.approx(margin)
+    assert verdict.status is (Status.SAFE if margin >= 0 else Status.VIOLATED)
+
+
+def test_speed_by_travel_mode_is_not_checked():
+    assert finding("speed", given(robot("a", [AWAY]))).status is Status.NOT_CHECKED
+
+
+CAMERA = {"camera": {"shoot": 2.0}}
+
+
+def photo(**more):
+    return hold("photo", after=(replace(use("camera", "shoot"), **more),))
+
+
+def test_devices_and_actions_that_the_type_has_are_safe():
+    assert finding("devices", given(robot("a", [photo()]), type=rover(devices=CAMERA))).status is Status.SAFE
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"device": "lamp"}, "'rover' has no device 'lamp'"),
+        ({"name": "zoom"}, "device 'camera' does not support action 'zoom'"),
+        ({"parameters": (("iso", "100"),)}, "action 'shoot' of device 'camera' has no parameter 'iso'"),
+    ],
+)
+def test_what_the_type_lacks_is_named(wrong, words):
+    verdict = finding("devices", given(robot("a", [photo(**wrong)]), type=rover(devices=CAMERA)))
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "photo")
+    assert verdict.message == f"a: HoldPosition 'photo': {words}"
+
+
+def test_parameters_that_the_action_accepts_are_safe():
+    type = rover(devices=CAMERA)
+    action = DeviceAction("shoot", 2.0, ("iso",))
+    camera = replace(type.devices["camera"], actions={"shoot": action})
+    made = robot("a", [photo(parameters=(("iso", "100"),))])
+    assert (
+        finding("devices", given(made, type=replace(type, devices={"camera": camera}))).status is Status.SAFE
+    )
+
+
+def test_a_heading_needs_its_device():
+    looking = replace(AWAY, heading=Heading(Target((0.0, 0.0, 0.0)), "lamp"))
+    verdict = finding("devices", given(robot("a", [looking]), type=rover(devices=CAMERA)))
+    assert verdict.message == "a: GoTo 'away' points device 'lamp', which 'rover' does not have"
+
+
+def test_wind_is_compared_with_what_a_flying_robot_holds_against():
+    windy = given(
+        flight(),
+        robot_kind=flyer(),
+        type=rover(attributes={"positionHold": 8.0}),
+        environment={"windSpeed": 9.0},
+    )
+    verdict = finding("wind", windy)
+    assert (verdict.status, verdict.margin, verdict.unit) == (Status.VIOLATED, -1.0, "m/s")
+
+
+def test_wind_without_a_position_hold_is_unknown():
+    verdict = finding("wind", given(flight(), robot_kind=flyer(), environment={"windSpeed": 9.0}))
+    assert (verdict.status, verdict.message) == (
+        Status.UNKNOWN,
+        "a: the positionHold of robot type 'rover' is not given",
+    )
+
+
+def test_no_wind_stated_is_not_checked():
+    assert finding("wind", given(flight(), robot_kind=flyer())).status is Status.NOT_CHECKED
+
+
+def test_wind_does_not_concern_what_stays_on_the_ground():
+    idle = given(robot("a", []), robot_kind=flyer(), environment={"windSpeed": 9.0})
+    driving = given(robot("a", [AWAY]), environment={"windSpeed": 9.0})
+    assert [finding("wind", each).status for each in (idle, driving)] == [Status.NOT_CHECKED] * 2
+
+
+@pytest.mark.parametrize(("temperature", "margin"), [(5.0, 5.0), (38.0, 2.0), (-3.0, -3.0)])
+def test_temperature_stays_within_the_operating_range(temperature, margin):
+    bounds = Part((), {"min": 0.0, "max": 40.0})
+    made = given(
+        robot("a", []),
+        type=rover(attributes={"operatingTemperature": bounds}),
+        environment={"temperature": temperature},
+    )
+    verdict = finding("temperature", made)
+    assert (verdict.margin, verdict.unit) == (margin, "°C")
+    assert verdict.status is (Status.SAFE if margin >= 0 else Status.VIOLATED)
+
+
+def test_temperature_without_an_operating_range_is_unknown():
+    verdict = finding("temperature", given(robot("a", []), environment={"temperature": 20.0}))
+    assert verdict.status is Status.UNKNOWN
+
+
+def test_no_temperature_stated_is_not_checked():
+    assert finding("temperature", given(robot("a", []))).status is Status.NOT_CHECKED
+
+
+@pytest.mark.parametrize("name", ["altitude", "range", "endurance", "energy", "states", "clearance"])
+def test_a_move_of_an_unknown_kind_leaves_what_depends_on_it_unknown(name):
+    made = given(
+        robot("a", [strange("dig")]),
+        robot_kind=kind(ceiling=10.0),
+        type=rover(attributes={"communicationRange": 60.0}),
+        areas=(square(at=(0.0, 50.0)),),
+    )
+    verdicts = findings(name, made)
+    assert [verdict.status for verdict in verdicts] == [Status.UNKNOWN]
+    assert "Burrow" in verdicts[0].message
