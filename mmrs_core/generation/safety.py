@@ -90,7 +90,8 @@ def policies_of(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
 
 def explicit(policy: Policy) -> Policy:
     """Return the policy with the seconds that the fault must last, where there are any."""
-    return replace(policy, after=AFTER.get(policy.event) if policy.after is None else policy.after)
+    after = AFTER.get(policy.event) if policy.after is None else policy.after
+    return replace(policy, after=None if after == inf else after)
 
 
 def _of_type(type: RobotType | None) -> Iterable[Policy]:
