@@ -220,6 +220,7 @@ class Maker:
                 "Drone",
                 name=name,
                 gps=True,
+                communicationRange=5000.0,
                 onBoardObstacleAvoidance=False,
                 launchType="VTOL",
                 maxAltitude=120.0,

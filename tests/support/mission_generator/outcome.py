@@ -11,6 +11,7 @@ import shapely
 from mission_generator.missions import sample
 from mmrs_core import pipeline
 from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.behaviour.replay import Outcome as Outcomes
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import InfeasibleError, InvalidModelError
 from mmrs_core.languages.writing import write_model
@@ -71,11 +72,12 @@ def _carry_out(folder, contributions, outcome):
     program = pipeline.program_of(behaviour, contributions)
     place = pipeline.place_of_scene(scene)
     against = pipeline.refusals(pipeline.verify(program, place, contributions), program)
-    outcome.complaints += [f"verify: {verdict}" for verdict in against]
+    outcome.complaints += [f"verify: {each.property} {each.status.value}: {each.message}" for each in against]
     run = pipeline.simulate(program, place, contributions)
     replayed = replay(program, run.records)
-    if not replayed.ok:
-        outcome.complaints.append(f"replay: {replayed}")
+    outcome.complaints += [f"replay: {complaint}" for complaint in replayed.complaints]
+    if replayed.outcome is not Outcomes.SUCCESS:
+        outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
     outcome.makespan = run.ending.time
     outcome.complaints += list(_intrusions(scene, run.tracks))
     outcome.coverage = dict(_coverage(scene, program))
@@ -93,7 +95,7 @@ def _intrusions(scene, tracks):
     areas = list(scene.kept_from())
     for name, track in tracks.items():
         own = scene.robot(name).clearance
-        points = np.array([sample.position for sample in track])
+        points = np.array([(sample.east, sample.north, sample.up) for sample in track])
         for area in areas:
             keep = own + area.safety_distance
             low, high = area.low - keep + NEAR, area.high + keep - NEAR
