@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import ast
+import json
+from math import dist, hypot
+
+import pytest
+import shapely
+
+from mmrs_core import pipeline
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.contributions.checks import Status
+from mmrs_core.scene import Serve, Step
+
+JUSTIFIED_UNKNOWNS = {"Objects in the pool": {"clearance"}}
+
+
+def test_it_is_valid_without_a_warning(example):
+    assert example.faults == ()
+
+
+def served(steps):
+    for step in steps:
+        if isinstance(step, Serve):
+            yield step.task
+        for _, inner in getattr(step, "arms", ()):
+            yield from served(inner)
+
+
+def test_every_task_is_served(example):
+    tasks = {name for name, _ in example.scene.works}
+    assert {task for robot in example.plan.robots for task in served(robot.steps)} == tasks
+
+
+def test_every_robot_has_something_to_do(example):
+    assert all(any(isinstance(step, Step) for step in robot.steps) for robot in example.plan.robots)
+
+
+def test_nothing_stands_against_the_behaviour(example):
+    assert pipeline.refusals(example.verdicts, example.program) == ()
+
+
+def test_only_what_the_mission_accepts_is_unknown(example):
+    unknown = {verdict.property for verdict in example.verdicts if verdict.status is Status.UNKNOWN}
+    assert unknown == JUSTIFIED_UNKNOWNS.get(example.scene.name, set())
+
+
+def test_planning_twice_gives_the_same_plan(example):
+    assert pipeline.plan(example.scene) == example.plan
+
+
+def test_the_behaviour_survives_a_file(example, contributions, tmp_path):
+    from mmrs_core.languages.reading import read_model
+
+    pipeline.save(example.behaviour, tmp_path / "behaviour.xmi", contributions)
+    again = read_model(tmp_path / "behaviour.xmi", contributions.languages)
+    assert again.diagnostics == ()
+    program = pipeline.program_of(again.roots[0], contributions)
+    for before, after in zip(example.program.robots, program.robots, strict=True):
+        assert [move.id for move in after.moves] == [move.id for move in before.moves]
+        assert [each.ways for each in after.transitions.values()] == [
+            each.ways for each in before.transitions.values()
+        ]
+
+
+def test_the_simulated_run_succeeds_and_its_log_replays(example, run_of):
+    run = run_of(example)
+    assert run.ending.outcome.value == "success"
+    result = replay(example.program, run.records)
+    assert result.complaints == ()
+    assert result.outcome.value == "success"
+
+
+def test_the_simulated_run_lasts_about_as_long_as_planned(example, run_of):
+    # Accelerations and turns are not planned for.
+    assert 0.8 * example.plan.makespan <= run_of(example).ending.time <= 1.5 * example.plan.makespan
+
+
+def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
+    for name, track in run_of(example).tracks.items():
+        clearance = example.scene.robot(name).clearance
+        for area in example.scene.kept_from():
+            shape = shapely.Polygon(area.shell)
+            kept = area.safety_distance + clearance
+            for sample in track:
+                east, north, up = sample.position
+                level = shape.distance(shapely.Point(east, north))
+                above = max(area.low - up, up - area.high, 0.0)
+                assert hypot(level, above) >= kept - 0.3, (name, area.name, sample)
+
+
+def test_every_robot_is_home_at_the_end(example, run_of):
+    for robot in example.program.robots:
+        end = run_of(example).tracks[robot.id][-1].position
+        assert dist(end, robot.home) < 0.5
+
+
+def test_controllers_for_mavlink_compile(example, contributions):
+    # Objects are found by the vehicle itself, which no MAVLink vehicle can: such steps are lossy.
+    lossy = example.scene.name in JUSTIFIED_UNKNOWNS
+    files = pipeline.render(
+        example.program, example.place, "mavlink-python", contributions, allow_lossy=lossy
+    )
+    programs = [file for file in files if file.path.endswith(".py")]
+    assert len(programs) > len(example.program.robots)
+    for file in programs:
+        ast.parse(file.content, file.path)
+
+
+def test_ground_station_plans_hold_every_robot_that_flies(taken, contributions):
+    example = taken("carbon-dioxide")
+    files = pipeline.render(example.program, example.place, "qgc-plan", contributions, allow_lossy=True)
+    plans = [json.loads(file.content) for file in files if file.path.endswith(".plan")]
+    assert len(plans) == 3
+    assert all(plan["fileType"] == "Plan" and len(plan["mission"]["items"]) > 50 for plan in plans)
+    assert all(len(plan["geoFence"]["polygons"]) == 1 for plan in plans)
+    assert all(len(plan["rallyPoints"]["points"]) == 2 for plan in plans)
+
+
+def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
+    scene = taken("carbon-dioxide").scene
+    for (task, _), work in scene.works.items():
+        if work.coverage is None:
+            continue
+        assert (work.coverage.width, work.coverage.length) == (12.0, 12.0), task
+
+
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [
+        ("carbon-dioxide", {"multicopter"}),
+        ("pool", {"auv"}),
+        ("mixed-team", {"multicopter", "auv", "plain_robot"}),
+    ],
+)
+def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):
+    assert {robot.kind for robot in taken(name).scene.robots} == kinds
+
+
+def test_a_small_battery_makes_a_drone_of_the_mixed_team_recharge(taken):
+    plan = taken("mixed-team").plan
+    assert max(robot.sorties for robot in plan.robots) >= 2
