@@ -1,4 +1,4 @@
-"""Where the coordinates of a mission and its context lie in one local metric frame."""
+"""Where the coordinates of a mission or behaviour and its context lie in one local metric frame."""
 
 from __future__ import annotations
 
@@ -44,22 +44,22 @@ class Ground:
     faults: tuple[Diagnostic, ...] = ()
 
 
-def ground_of(mission: Element | None, context: Element | None) -> Ground:
-    """Lay all coordinates of both models into the frame of the mission's origin.
+def ground_of(model: Element | None, context: Element | None) -> Ground:
+    """Lay all coordinates of a mission or behaviour, and of its context, into the frame of the origin.
 
     Never raises: coordinates that cannot be placed are left out, and why is among the faults.
     """
-    frame, origin = frame_of(mission, context), origin_of(mission)
+    frame, origin = frame_of(model, context), origin_of(model)
     faults: list[Diagnostic] = []
     positions: dict[Element, Position] = {}
-    if mission is not None and origin is not None:
-        faults.extend(fault(origin, message) for message in origin_faults(mission, origin, frame))
-        if is_relative(origin) and child(mission, "origin") is origin:
+    if model is not None and origin is not None:
+        faults.extend(fault(origin, message) for message in origin_faults(model, origin, frame))
+        if is_relative(origin) and child(model, "origin") is origin:
             positions[origin] = (0.0, 0.0, 0.0)
     crs = (text(context, "crs") if context is not None else "") or frame.crs
-    for root, own_crs in ((mission, frame.crs), (context, crs)):
+    for root, own_crs in ((model, frame.crs), (context, crs)):
         _place_geographic(root, own_crs, frame, positions, faults)
-    relative = [each for root in (mission, context) for each in coordinates_of(root) if is_relative(each)]
+    relative = [each for root in (model, context) for each in coordinates_of(root) if is_relative(each)]
     _place_relative(relative, reference_in(context), positions, faults)
     return Ground(frame, positions, tuple(faults))
 

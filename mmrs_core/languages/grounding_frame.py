@@ -45,28 +45,40 @@ def coordinates_of(root: Element | None) -> Iterator[Element]:
             yield element
 
 
-def origin_of(mission: Element | None) -> Element | None:
-    """Return the coordinate of the frame's origin: the mission's own, else the first robot's home."""
-    if mission is None:
+def origin_of(model: Element | None) -> Element | None:
+    """Return the frame's origin: the model's own, else the home of its first robot that has one.
+
+    Args:
+        model: a mission or a behaviour.
+    """
+    if model is None:
         return None
-    explicit = child(mission, "origin")
-    homes = (child(robot, "home") for robot in children(child(mission, "team"), "robots"))
+    explicit, team = child(model, "origin"), child(model, "team")
+    homes = (child(robot, "home") for robot in children(model if team is None else team, "robots"))
     return explicit if explicit is not None else next((home for home in homes if home is not None), None)
 
 
-def frame_of(mission: Element | None, context: Element | None) -> Frame:
-    """Return how the frame lies on the Earth; a local one where the origin is relative or has no place."""
-    origin = origin_of(mission)
+def frame_of(model: Element | None, context: Element | None) -> Frame:
+    """Return how the frame lies on the Earth; a local one where the origin is relative or has no place.
+
+    Args:
+        model: a mission or a behaviour; the latter says itself where the water surface is.
+        context: of a mission.
+    """
+    if model is None:
+        return Frame("EPSG:4326", None, None)
+    origin = origin_of(model)
     placed = origin if origin is not None and is_geographic(origin) and on_earth(origin) else None
-    reference = literal(mission, "altitudeReference", REFERENCES, "ELLIPSOID")
+    reference = literal(model, "altitudeReference", REFERENCES, "ELLIPSOID")
+    above = model if is_kind(model, BEHAVIOUR, "Behaviour") or context is None else context
     return Frame(
-        crs=(text(mission, "crs") if mission is not None else "") or "EPSG:4326",
+        crs=text(model, "crs") or "EPSG:4326",
         latitude=number(placed, "latitude") if placed is not None else None,
         longitude=number(placed, "longitude") if placed is not None else None,
         altitude=_altitude(placed, reference) if placed is not None else None,
         altitude_reference=reference,
-        geoid_separation=number(mission, "geoidSeparation") if mission is not None else None,
-        surface=(number(context, "surfaceHeight") if context is not None else None) or 0.0,
+        geoid_separation=number(model, "geoidSeparation"),
+        surface=number(above, "surfaceHeight") or 0.0,
     )
 
 
@@ -89,7 +101,7 @@ def height_of(coordinate: Element, frame: Frame) -> float | str:
 
 
 def reference_in(context: Element | None) -> Reference:
-    """Return what the relative coordinates of a mission and its context count from."""
+    """Return what the relative coordinates of a mission or behaviour and of its context count from."""
     base = child(context, "origin") if context is not None else None
     inside = set(coordinates_of(context)) if base is not None else set()
 
@@ -117,7 +129,7 @@ def circles_among(coordinates: Iterable[Element], reference: Reference) -> Itera
         done.update(way)
 
 
-def origin_faults(mission: Element, origin: Element, frame: Frame) -> Iterator[str]:
+def origin_faults(model: Element, origin: Element, frame: Frame) -> Iterator[str]:
     """Yield what contradicts that the origin is at height 0, and at (0, 0, 0) where it is relative.
 
     A relative home that serves as origin for want of another only says that the frame is a local one; it
@@ -127,7 +139,7 @@ def origin_faults(mission: Element, origin: Element, frame: Frame) -> Iterator[s
         moved = (
             any(number(origin, axis) for axis in ("x", "y", "z")) or child(origin, "reference") is not None
         )
-        if moved and child(mission, "origin") is origin:
+        if moved and child(model, "origin") is origin:
             yield "is the origin, so it can only be at x = y = z = 0, without a reference"
         return
     if frame.altitude_reference == "ORIGIN" and number(origin, "altitude"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
-from mmrs_core.analysis.constraints.findings import MISSION, called, finding, listed
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding, listed
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
@@ -145,15 +145,15 @@ def called_type(robot_type: Element | None) -> str:
     return called(robot_type) if robot_type is not None else "its type"
 
 
-def _accepted(mission: Element, models: ModelSet) -> Iterator[Finding]:
+def _accepted(root: Element, models: ModelSet) -> Iterator[Finding]:
     from mmrs_core.analysis.checks import CHECKS
 
     known = sorted(check.name for check in CHECKS)
-    for name in texts(mission, "acceptedUnknowns"):
+    for name in texts(root, "acceptedUnknowns"):
         if name not in known:
             guess = nearest(name, known)
             yield finding(
-                mission,
+                root,
                 f"accepts that {name!r} stays unknown, which is no check of the core",
                 f"checks are {', '.join(known)}{'; ' + guess if guess else ''}; a plug-in may have others",
             )
@@ -171,6 +171,14 @@ CONSTRAINTS = (
         "MML012",
         "Unknowns are accepted by the names of checks.",
         (MISSION, "Mission"),
+        _accepted,
+        "name a check, such as clearance",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "BL049",
+        "Unknowns are accepted by the names of checks.",
+        (BEHAVIOUR, "Behaviour"),
         _accepted,
         "name a check, such as clearance",
         Severity.WARNING,

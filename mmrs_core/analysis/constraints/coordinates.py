@@ -51,7 +51,7 @@ def _altitude_of_origin(mission: Element, models: ModelSet) -> Iterator[Finding]
 
 
 def _altitude_of_behaviour_origin(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    yield from _without_base(behaviour, _behaviour_origin(behaviour), behaviour)
+    yield from _without_base(behaviour, origin_of(behaviour), behaviour)
 
 
 def _without_base(model: Element, origin: Element | None, root: Element) -> Iterator[Finding]:
@@ -64,12 +64,6 @@ def _without_base(model: Element, origin: Element | None, root: Element) -> Iter
     if given:
         others = f", as {len(given) - 1} more here have" if len(given) > 1 else ""
         yield finding(given[0], f"has an altitude{others}, but the origin {path_of(origin)} has none")
-
-
-def _behaviour_origin(behaviour: Element) -> Element | None:
-    homes = (child(robot, "home") for robot in children(behaviour, "robots"))
-    first = next((home for home in homes if home is not None), None)
-    return child(behaviour, "origin") or first
 
 
 def _circles(mission: Element, models: ModelSet) -> Iterator[Finding]:
@@ -94,7 +88,7 @@ def _local_or_geographic(mission: Element, models: ModelSet) -> Iterator[Finding
 
 
 def _local_or_geographic_behaviour(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
-    origin = _behaviour_origin(behaviour)
+    origin = origin_of(behaviour)
     if origin is not None and is_relative(origin):
         yield from _mixed([*coordinates_of(behaviour)])
 

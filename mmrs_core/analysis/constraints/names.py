@@ -152,6 +152,13 @@ CONSTRAINTS = (
         "keep one value for each key",
     ),
     Constraint(
+        "BL048",
+        "A robot has one policy for an event.",
+        (BEHAVIOUR, "Robot"),
+        _policies,
+        _ONE_POLICY,
+    ),
+    Constraint(
         "BL041",
         "A wait has one policy for an event.",
         (BEHAVIOUR, "MoveTransition"),

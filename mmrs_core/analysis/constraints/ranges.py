@@ -228,6 +228,20 @@ CONSTRAINTS = (
         "give the delay in seconds, 0 for at once",
     ),
     _constraint(
+        "BL046",
+        "The reserve is a part of the whole: at least 0 and less than 1.",
+        (BEHAVIOUR, "Behaviour"),
+        _Range(("reserve",), low=0.0, high=1.0, without_high=True),
+        "write 0.2 for a reserve of twenty per cent",
+    ),
+    _constraint(
+        "BL047",
+        "Position error and separation of a behaviour are not negative.",
+        (BEHAVIOUR, "Behaviour"),
+        _at_least_zero("positionError", "minimumSeparation"),
+        "give the distance in metres, or leave it out",
+    ),
+    _constraint(
         "BL023",
         "Holding a position takes no negative time.",
         (BEHAVIOUR, "HoldPosition"),

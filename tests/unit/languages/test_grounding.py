@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.diagnostics import Place
 from mmrs_core.errors import InvalidModelError
-from mmrs_core.languages import context, mission, robot
+from mmrs_core.languages import behaviour, context, mission, robot
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding import area_of, ground, ground_of, part_of, robot_type_of
 from mmrs_core.languages.modelset import ModelSet
@@ -410,3 +410,18 @@ def test_literal_that_does_not_exist_is_refused(registry):
     made = simple(registry, geo())
     made.team.robots[0].travelMode = "RECKLESS"
     assert faults(made) == ["/team/robots[0] has the travelMode 'RECKLESS', which is none"]
+
+
+def test_context_is_laid_beside_a_behaviour(registry):
+    home = behaviour.GeoCoordinate(latitude=42.37, longitude=13.35)
+    made = behaviour.Behaviour(
+        targets=[behaviour.RelativeCoordinate(x=3.0, y=4.0), home],
+        robots=[behaviour.Robot(id="r1"), behaviour.Robot(id="r2", home=home)],
+        surfaceHeight=2.0,
+    )
+    place = context.Context(origin=geo(42.371), surfaceHeight=9.0, forbiddenAreas=[])
+    laid = ground_of(made, place)
+    assert laid.positions[home] == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+    assert laid.positions[made.targets[0]] == (3.0, 4.0, 0.0)
+    assert laid.positions[place.origin] == pytest.approx((0.0, 111.08, 0.0), abs=0.01)
+    assert laid.frame.surface == 2.0
