@@ -12,34 +12,19 @@ from __future__ import annotations
 from bisect import bisect_right
 from math import hypot, inf
 
-from mmrs_core.behaviour.as_scene import robot_of, scene_of
-from mmrs_core.behaviour.policies import in_precedence, response_to
+from mmrs_core.behaviour.as_scene import robot_of
+from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
-from mmrs_core.behaviour.semantics import NOTIFY
 from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState, Sample
-from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import escape_path
-from mmrs_core.runtime.legs import (
-    STILL,
-    Leg,
-    Stretch,
-    bearing,
-    cost,
-    current,
-    stretches,
-    turn,
-    wind,
-)
-from mmrs_core.scene import Kinematics, Position
+from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
+from mmrs_core.runtime.legs import STILL, Flow, Leg, Stretch, bearing, cost, current, stretches, turn, wind
+from mmrs_core.scene import Position
 
-DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
-FEEDBACK = (BEHAVIOUR, "Feedback")
 RECHARGE = (BEHAVIOUR, "Recharge")
 STOP = (BEHAVIOUR, "Stop")
-
-SLACK = 1e-6
-"""Seconds, and seconds at mean power, that rounding may cost."""
 
 
 class SimulatedRobot:
@@ -60,16 +45,15 @@ class SimulatedRobot:
         if given.options:
             raise ValueError(f"option '{sorted(given.options)[0]}': the simulation has none of that name")
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
-        self._kinematics = _kinematics(given)
-        self._kinds = _move_kinds(given)
-        self._capacity = _capacity(self._kinematics)
-        self._policies = in_precedence(given.robot.policies, given.policies)
+        self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
+        policies = in_precedence(given.robot.policies, given.policies)
+        self._battery = Battery(given, self._kinematics, self._robot.home, policies)
         self.notes: list[str] = []
         self._grounded, self._done, self._halted, self._rolling = True, False, False, False
         self._move: Move | None = None
         self._fault: Fault | None = None
         home = self._robot.home
-        self._legs = [Leg(0.0, 0.0, home, home, (0.0, 0.0), self._capacity, 0.0)]
+        self._legs = [Leg(0.0, 0.0, home, home, (0.0, 0.0), self._battery.capacity, 0.0)]
         self._first = 0
 
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
@@ -115,33 +99,24 @@ class SimulatedRobot:
 
     def fault(self, now: float) -> Fault | None:
         """Return a battery that is empty or low, too much wind, or a silent device."""
-        leg = self._leg(now)
-        if leg.rate > 0.0 and leg.charge_at(now) <= SLACK:
-            return Fault("BATTERY_EMPTY", f"after {now - self._legs[0].begin:.0f} s")
-        if self._fault is not None:
-            return self._fault
-        if leg.rate > 0.0 and self._reserve_left(leg, now) <= SLACK:
-            return Fault("BATTERY_LOW", f"{leg.charge_at(now):.0f} s left")
-        return None
+        return self._fault or self._battery.fault(self._leg(now), now, self._flow())
 
     def next_event(self, now: float) -> float | None:
         """Return when the movement ends or something goes wrong."""
         if self._fault is not None:
             return now
+        flow = self._flow()
         pending = self._legs[self._leg_index(now) :]
-        events = [self._legs[-1].end]
-        for leg in pending:
-            if leg.empty_at <= leg.end:
-                events.append(leg.empty_at)
-            if (low := self._low_at(leg, now)) is not None:
-                events.append(low)
-        return min((event for event in events if event > now), default=inf)
+        events = (event for leg in pending for event in self._battery.events(leg, now, flow))
+        return min((event for event in (self._legs[-1].end, *events) if event > now), default=inf)
 
     def state(self, now: float) -> RobotState:
         """Return where the robot is."""
         leg = self._leg(now)
         speed = leg.speed if now < leg.end else 0.0
-        return RobotState(now, leg.position(now), speed, leg.heading(now), self._energy(leg.charge_at(now)))
+        return RobotState(
+            now, leg.position(now), speed, leg.heading(now), self._battery.energy(leg.charge_at(now))
+        )
 
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Do what a fault's response says, from wherever the robot is; only the first call counts."""
@@ -163,7 +138,7 @@ class SimulatedRobot:
         for leg in self._legs:
             end = leg.end if leg.end < inf else leg.begin
             for time, position in ((leg.begin, leg.start), (end, leg.finish)):
-                sample = Sample(time, *position, self._energy(leg.charge_at(time)))
+                sample = Sample(time, *position, self._battery.energy(leg.charge_at(time)))
                 if not samples or samples[-1] != sample:
                     samples.append(sample)
         return tuple(samples)
@@ -227,11 +202,8 @@ class SimulatedRobot:
             self._done = True
         if move.is_a(RECHARGE):
             last = self._legs[-1]
-            self._legs.append(
-                Leg(
-                    last.end, last.end, last.finish, last.finish, (last.headings[1],) * 2, self._capacity, 0.0
-                )
-            )
+            full, faces = self._battery.capacity, (last.headings[1], last.headings[1])
+            self._legs.append(Leg(last.end, last.end, last.finish, last.finish, faces, full, 0.0))
 
     def _catch_up(self, now: float) -> None:
         """End what is going on at this time, or fill the time since it ended; what was wrong is over."""
@@ -260,13 +232,14 @@ class SimulatedRobot:
         direction = bearing(position, look.target.position)
         return None if direction is None else (direction - look.angle_degrees) % 360.0
 
-    def _flow(self) -> tuple[float, float]:
+    def _flow(self) -> Flow:
         """Return the velocity of what the robot moves in: the air, the water, or neither."""
         if self._kinematics.launches:
             return STILL if self._grounded else wind(self._given.environment)
-        under_water = self._legs[-1].finish[2] < self._given.program.frame.surface
-        afloat = self._kinematics.ceiling <= self._given.program.frame.surface
-        return current(self._given.environment) if under_water or afloat else STILL
+        surface = self._given.program.frame.surface
+        dives = self._kinematics.floor < surface >= self._kinematics.ceiling
+        in_water = dives or self._legs[-1].finish[2] < surface
+        return current(self._given.environment) if in_water else STILL
 
     def _costs_nothing(self) -> bool:
         return self._done or (self._kinematics.launches and self._grounded)
@@ -277,73 +250,11 @@ class SimulatedRobot:
         if isinstance(limit, int | float) and self._kinematics.launches and seconds > 0.0 and flow > limit:
             self._fault = Fault("WIND", f"{flow:g} m/s, but the robot holds its position up to {limit:g} m/s")
 
-    def _energy(self, charge: float) -> float | None:
-        if charge == inf:
-            return inf
-        return charge * self._kinematics.power if self._kinematics.power > 0.0 else None
-
-    def _reserve_left(self, leg: Leg, time: float) -> float:
-        """Return the seconds left beyond what the response to a low battery takes; inf: no response."""
-        response = response_to("BATTERY_LOW", self._policies)
-        if response in ("HOLD", "CONTINUE", "STOP_THRUST"):
-            return inf
-        path = escape_path(response, leg.position(time), self._robot.home, self._given)
-        back = stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=self._flow())
-        return leg.charge_at(time) - sum(each.seconds * each.rate for each in back)
-
-    def _low_at(self, leg: Leg, now: float) -> float | None:
-        """Return when in this leg the battery gets low, by bisection; None: not in it."""
-        early, late = max(leg.begin, now), min(leg.end, leg.empty_at)
-        if leg.rate <= 0.0 or late == inf or self._reserve_left(leg, late) > 0.0:
-            return None
-        while late - early > SLACK:
-            middle = (early + late) / 2.0
-            early, late = (middle, late) if self._reserve_left(leg, middle) > 0.0 else (early, middle)
-        return late
-
     def _cut_where_empty(self) -> None:
         for index in range(self._first, len(self._legs)):
             if self._legs[index].empty_at < self._legs[index].end:
                 self._legs[index:] = [self._legs[index].until(self._legs[index].empty_at)]
                 return
-
-
-def _kinematics(given: BackendInput) -> Kinematics:
-    kind = robot_kind_of(given.type, given.robot_kinds)
-    if kind is None:
-        raise UnsupportedError(
-            f"robot '{given.robot.id}': nobody contributed how type '{given.type.name}' moves"
-        )
-    types = {robot.type_name: given.type for robot in given.program.robots}
-    scene = scene_of(given.program, types, environment=given.environment, reserve=0.0)
-    return kind.kinematics(scene.robot(given.robot.id), scene)
-
-
-def _move_kinds(given: BackendInput) -> dict[str, MoveKind]:
-    """Return the kind of every move; a move or action that nobody knows is refused, never skipped."""
-    kinds: dict[str, MoveKind] = {}
-    unknown: list[str] = []
-    for move in given.robot.moves:
-        name = most_specific(move.metaclasses, given.move_kinds)
-        if name is None:
-            unknown.append(f"robot '{given.robot.id}', move '{move.id}': {move.kind}")
-        else:
-            kinds[move.id] = given.move_kinds[name]
-        for action in (*move.before, *move.after):
-            if not any(action.is_a(known) for known in (DEVICE_ACTION, FEEDBACK, NOTIFY)):
-                unknown.append(
-                    f"robot '{given.robot.id}', move '{move.id}': action {action.metaclasses[0][1]}"
-                )
-    if unknown:
-        raise UnsupportedError(f"robot '{given.robot.id}': moves or actions of unknown kinds", unknown)
-    return kinds
-
-
-def _capacity(kinematics: Kinematics) -> float:
-    """Return for how many seconds at mean power full batteries last."""
-    if kinematics.endurance < inf:
-        return kinematics.endurance
-    return kinematics.energy / kinematics.power if kinematics.power > 0.0 else inf
 
 
 SIMULATION = BackendFactory(

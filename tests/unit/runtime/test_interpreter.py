@@ -8,11 +8,12 @@ import pytest
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.execution import Condition, Fault, RobotState
+from mmrs_core.contributions.execution import BackendInput, Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import SimulatedClock
+from mmrs_core.runtime.clock import RealClock, SimulatedClock
 from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.run import assumed
+from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
@@ -343,3 +344,22 @@ def test_many_robots_run_much_faster_than_real_time(fly):
     run = fly(behaviour, robot_type(lifetime=None))
     assert run.ending.outcome is Outcome.SUCCESS
     assert run.ending.time == pytest.approx(200 * 60.0)
+
+
+def test_a_run_can_follow_the_worlds_time(kinds):
+    behaviour = program(
+        robot("a", [go("g", (12, 0, 0), after=(notify("b.s"),))]),
+        robot("b", [hold("h", 1.0)], waits={"h": ["s"]}),
+    )
+    moved = {
+        each.id: SimulatedRobot(
+            BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
+        )
+        for each in behaviour.robots
+    }
+    clock = RealClock(rate=100.0)
+    records = list(interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=clock, conditions={}))
+    result = replay(behaviour, records)
+    assert result.accepted
+    assert result.outcome is Outcome.SUCCESS
+    assert 4.0 <= result.duration <= clock.now()

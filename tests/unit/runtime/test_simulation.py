@@ -13,7 +13,17 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.legs import CLIMBING
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.scene import Area, AreaUse, Policy
-from mmrs_core.testing.small_programs import BEHAVIOUR, MOVE, go, hold, notify, program, robot, robot_type, use
+from mmrs_core.testing.small_programs import (
+    BEHAVIOUR,
+    MOVE,
+    go,
+    hold,
+    notify,
+    program,
+    robot,
+    robot_type,
+    use,
+)
 
 FLYER = ("urn:test", "Flyer")
 
@@ -189,6 +199,12 @@ def test_current_slows_down_what_is_under_water_and_wind_does_not(fly):
     assert times(fly(behaviour, environment={"windSpeed": 30.0}), "g") == (0.0, 10.0)
 
 
+def test_current_does_not_trouble_a_robot_on_land(fly):
+    behaviour = program(robot("r", [go("g", (30, 0, 0))]))
+    against = {"currentSpeed": 3.0, "currentDirection": 270.0}
+    assert times(fly(behaviour, environment=against), "g") == (0.0, 10.0)
+
+
 def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(kinds, fly):
     # A kind that leaves the duration open up to the stop at each end.
     moves = [go("g", (30, 0, 0)), go("h", (60, 0, 0))]
@@ -273,7 +289,7 @@ def test_unknown_moves_and_actions_are_refused_and_listed_never_skipped(kinds):
 
 
 def test_a_robot_of_a_kind_that_nobody_contributed_is_refused(kinds):
-    with pytest.raises(UnsupportedError, match="nobody contributed how type 'rover' moves"):
+    with pytest.raises(UnsupportedError, match="type 'rover': nobody contributed how it moves"):
         SimulatedRobot(given(program(robot("r", [])), kinds, robot_type(metaclass=("urn:x", "Blimp"))))
 
 

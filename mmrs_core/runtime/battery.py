@@ -1,0 +1,81 @@
+"""The batteries of a simulated robot: what is left, when they are low, when they are empty.
+
+What they hold is counted in seconds at mean power, since a type may tell its lifetime and not the
+energy of its batteries.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+
+from mmrs_core.behaviour.policies import response_to
+from mmrs_core.contributions.execution import BackendInput, Fault
+from mmrs_core.runtime.escape import escape_path
+from mmrs_core.runtime.legs import Flow, Leg, stretches
+from mmrs_core.scene import Kinematics, Policy, Position
+
+SLACK = 1e-6
+"""Seconds, and seconds at mean power, that rounding may cost."""
+
+_STAYING = ("HOLD", "CONTINUE", "STOP_THRUST")
+
+
+class Battery:
+    """All batteries of a robot together.
+
+    Attributes:
+        capacity: seconds at mean power when they are full; inf for a wired robot.
+    """
+
+    def __init__(
+        self, given: BackendInput, kinematics: Kinematics, home: Position, policies: tuple[Policy, ...]
+    ) -> None:
+        self.capacity = _capacity(kinematics)
+        self._given, self._kinematics, self._home = given, kinematics, home
+        self._response = response_to("BATTERY_LOW", policies)
+
+    def energy(self, charge: float) -> float | None:
+        """Return joules; inf for a wired robot, None where the type does not tell."""
+        if charge == inf:
+            return inf
+        return charge * self._kinematics.power if self._kinematics.power > 0.0 else None
+
+    def fault(self, leg: Leg, now: float, flow: Flow) -> Fault | None:
+        """Return whether they are empty, or so low that what is left just suffices for the response."""
+        if leg.rate <= 0.0 or leg.charge == inf:
+            return None
+        left = leg.charge_at(now)
+        if left <= SLACK:
+            return Fault("BATTERY_EMPTY", f"at {now:.0f} s")
+        if self._to_spare(leg, now, flow) <= SLACK:
+            return Fault("BATTERY_LOW", f"enough for {left:.0f} s")
+        return None
+
+    def events(self, leg: Leg, now: float, flow: Flow) -> Iterator[float]:
+        """Yield when in this leg they get low, and when they are empty."""
+        if leg.rate <= 0.0 or leg.charge == inf:
+            return
+        early, late = max(leg.begin, now), min(leg.end, leg.empty_at)
+        if leg.empty_at <= leg.end:
+            yield leg.empty_at
+        if late == inf or self._to_spare(leg, late, flow) > 0.0:
+            return
+        while late - early > SLACK:
+            middle = (early + late) / 2.0
+            early, late = (middle, late) if self._to_spare(leg, middle, flow) > 0.0 else (early, middle)
+        yield late
+
+    def _to_spare(self, leg: Leg, time: float, flow: Flow) -> float:
+        """Return the seconds left beyond what the response takes; inf where it takes none."""
+        if self._response in _STAYING:
+            return inf
+        path = escape_path(self._response, leg.position(time), self._home, self._given)
+        way = stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=flow)
+        return leg.charge_at(time) - sum(each.seconds * each.rate for each in way)
+
+
+def _capacity(kinematics: Kinematics) -> float:
+    if kinematics.endurance < inf:
+        return kinematics.endurance
+    return kinematics.energy / kinematics.power if kinematics.power > 0.0 else inf

@@ -1,0 +1,56 @@
+"""What plug-ins contributed about a robot and its moves; what nobody knows is refused."""
+
+from __future__ import annotations
+
+from mmrs_core.behaviour.as_scene import scene_of
+from mmrs_core.behaviour.program import BEHAVIOUR, Action
+from mmrs_core.behaviour.semantics import NOTIFY
+from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.scene import Kinematics
+
+DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
+FEEDBACK = (BEHAVIOUR, "Feedback")
+
+
+def kinematics_of(given: BackendInput) -> Kinematics:
+    """Return what the robot can do with full batteries and nothing kept in reserve.
+
+    Raises:
+        UnsupportedError: if nobody contributed how robots of its type move.
+        InfeasibleError: if its type lacks the figures.
+    """
+    kind = robot_kind_of(given.type, given.robot_kinds)
+    if kind is None:
+        who = f"robot '{given.robot.id}': type '{given.type.name}'"
+        raise UnsupportedError(f"{who}: nobody contributed how it moves", [who])
+    types = {robot.type_name: given.type for robot in given.program.robots}
+    scene = scene_of(given.program, types, environment=given.environment, reserve=0.0)
+    return kind.kinematics(scene.robot(given.robot.id), scene)
+
+
+def move_kinds_of(given: BackendInput) -> dict[str, MoveKind]:
+    """Return the kind of every move, by its identifier.
+
+    Raises:
+        UnsupportedError: if moves or actions are of kinds that nobody knows; lists all of them.
+    """
+    kinds: dict[str, MoveKind] = {}
+    unknown: list[str] = []
+    for move in given.robot.moves:
+        where = f"robot '{given.robot.id}', move '{move.id}'"
+        name = most_specific(move.metaclasses, given.move_kinds)
+        if name is None:
+            unknown.append(f"{where}: {move.kind}")
+        else:
+            kinds[move.id] = given.move_kinds[name]
+        strange = (action for action in (*move.before, *move.after) if not _is_known(action))
+        unknown.extend(f"{where}: action {action.metaclasses[0][1]}" for action in strange)
+    if unknown:
+        raise UnsupportedError(f"robot '{given.robot.id}': moves or actions of unknown kinds", unknown)
+    return kinds
+
+
+def _is_known(action: Action) -> bool:
+    return any(action.is_a(name) for name in (DEVICE_ACTION, FEEDBACK, NOTIFY))
