@@ -351,12 +351,10 @@ def test_a_run_can_follow_the_worlds_time(kinds):
         robot("a", [go("g", (12, 0, 0), after=(notify("b.s"),))]),
         robot("b", [hold("h", 1.0)], waits={"h": ["s"]}),
     )
-    moved = {
-        each.id: SimulatedRobot(
-            BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
-        )
-        for each in behaviour.robots
-    }
+    backends = {}
+    for each in behaviour.robots:
+        given = BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
+        backends[each.id] = SimulatedRobot(given)
     clock = RealClock(rate=100.0)
     records = list(interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=clock, conditions={}))
     result = replay(behaviour, records)
