@@ -14,7 +14,7 @@ CONDITION_FAILED = "CONDITION_FAILED"
 STOPPED = "STOPPED"
 
 
-class Fault(Exception):
+class Fault(Exception):  # noqa: N818  # the word that policies and logs use
     """Something went wrong; `event` says what, and the robot's policies say what it does about it."""
 
     def __init__(self, event: str, message: str) -> None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .ardupilot import MavlinkVehicle
 from .clock import Clock
 from .dry import DryVehicle
 from .faults import LINK_LOST, STOPPED, Fault, Refused
@@ -22,7 +23,7 @@ from .ports import open_port
 from .program import Robot
 from .responses import policy_for, respond
 from .slots import LocalSlots, Slots
-from .vehicle import MavlinkVehicle, Vehicle
+from .vehicle import Vehicle
 from .watch import Watch
 
 OK, FAILED, USAGE, LINK, INTERRUPTED = 0, 1, 2, 5, 130

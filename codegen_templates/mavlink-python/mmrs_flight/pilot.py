@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import inf
 
 from .clock import Clock
 from .commands import Unanswered
@@ -43,7 +44,7 @@ Say = Callable[[str], None]
 GLANCE_SECONDS = 0.1
 FULL = 0.99
 RECHARGE_FACTOR = 3.0
-WAIT_SECONDS = 3600.0
+PEER_SECONDS = 30.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,6 +219,7 @@ class Pilot:
             action.slots,
             action.active,
             lambda lamport: self._write("ntf", detail, slots, lamport),
+            self._delivery(self._desk.clock.now()),
         )
 
     def _leave(self, step: Step) -> Step:
@@ -246,33 +248,48 @@ class Pilot:
     def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
         slots, clock = self._desk.slots, self._desk.clock
         kept = record if record is not None else (lambda lamport: None)
-        begun, limit, told = clock.now(), self._patience(), False
+        begun = alone = clock.now()
+        told = False
         while not slots.take(self._robot.id, names, kept):
             if not told:
                 self._desk.say(f"{self._robot.id!a} waits for {', '.join(map(ascii, names))}")
                 told = True
-            self._check_wait(names, begun, limit)
+            if not self._orphaned(names):
+                alone = clock.now()
+            self._check_wait(names, begun, alone)
             slots.await_change(GLANCE_SECONDS)
             self._vehicle.rest(0.0)
 
-    def _check_wait(self, names: tuple[str, ...], begun: float, limit: float) -> None:
+    def _delivery(self, begun: float) -> Callable[[tuple[str, ...]], None]:
+        def check(silent: tuple[str, ...]) -> None:
+            self._vehicle.rest(0.0)
+            if self._desk.clock.now() - begun > self._patience(PEER_LOST, PEER_SECONDS):
+                shown = ", ".join(map(ascii, silent))
+                self._raise_unless_carried_on(Fault(PEER_LOST, f"no answer from {shown}"))
+
+        return check
+
+    def _check_wait(self, names: tuple[str, ...], begun: float, alone: float) -> None:
         if self._desk.stop.is_set():
             raise Stopped()
-        if self._desk.clock.now() - begun > limit:
-            shown = ", ".join(map(ascii, names))
+        now, shown = self._desk.clock.now(), ", ".join(map(ascii, names))
+        limit = self._patience(WAIT_TOO_LONG, inf)
+        if now - begun > limit:
             self._raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {shown}"))
+        if now - alone > self._patience(PEER_LOST, PEER_SECONDS):
+            self._raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
+
+    def _orphaned(self, names: tuple[str, ...]) -> bool:
+        slots, senders = self._desk.slots, dict(self._robot.senders)
         for name in names:
-            if self._orphaned(name):
-                self._raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets slot {name!a}"))
+            alone = all(slots.lost((sender,)) for sender in senders.get(name, ()))
+            if alone and not slots.take(self._robot.id, (name,), lambda lamport: None):
+                return True
+        return False
 
-    def _orphaned(self, name: str) -> bool:
-        slots, senders = self._desk.slots, dict(self._robot.senders).get(name, ())
-        alone = bool(senders) and all(slots.lost((sender,)) for sender in senders)
-        return alone and not slots.take(self._robot.id, (name,), lambda lamport: None)
-
-    def _patience(self) -> float:
-        policy = policy_for(WAIT_TOO_LONG, self._robot, self.policies)
-        return WAIT_SECONDS if policy.after is None else policy.after
+    def _patience(self, event: str, usual: float) -> float:
+        policy = policy_for(event, self._robot, self.policies)
+        return usual if policy.after is None else policy.after
 
     def _raise_unless_carried_on(self, fault: Fault) -> None:
         if policy_for(fault.event, self._robot, self.policies).response != CONTINUE:

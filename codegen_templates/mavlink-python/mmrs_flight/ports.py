@@ -96,7 +96,8 @@ class TcpPort:
 
     def write(self, data: bytes) -> object:
         """Send all of it."""
-        return self._socket.sendall(data)
+        self._socket.sendall(data)
+        return None
 
     def close(self) -> None:
         """Close the connection."""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 Record = Callable[[int], None]
-Guard = Callable[[], None]
+Guard = Callable[[tuple[str, ...]], None]
 
 
 class Slots(Protocol):
@@ -21,8 +21,14 @@ class Slots(Protocol):
         """Return the next logical time of this robot's process."""
         ...
 
-    def notify(self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record) -> None:
-        """Record a notification, then set the slots; return when all owners have them."""
+    def notify(
+        self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
+    ) -> None:
+        """Record a notification, then set the slots; return when all owners have them.
+
+        `guard` is called again and again until then, with the owners that have not answered; it raises
+        what should end the attempt.
+        """
         ...
 
     def take(self, robot: str, names: Iterable[str], record: Record) -> bool:
@@ -58,15 +64,13 @@ class LocalSlots:
             self._lamport += 1
             return self._lamport
 
-    def notify(self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record) -> None:
+    def notify(
+        self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
+    ) -> None:
         """Record the notification and set all slots at once."""
         with self._changed:
             record(self.tick())
-            if active:
-                self._active.update(slots)
-            else:
-                self._active.difference_update(slots)
-            self._changed.notify_all()
+            self._set(slots, active)
 
     def take(self, robot: str, names: Iterable[str], record: Record) -> bool:
         """Record that the robot goes on if all its slots of these names are active; say whether."""
@@ -91,3 +95,10 @@ class LocalSlots:
         with self._changed:
             self._left.add(robot)
             self._changed.notify_all()
+
+    def _set(self, slots: Iterable[tuple[str, str]], active: bool) -> None:
+        if active:
+            self._active.update(slots)
+        else:
+            self._active.difference_update(slots)
+        self._changed.notify_all()

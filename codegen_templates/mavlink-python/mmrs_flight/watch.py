@@ -5,12 +5,12 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Sequence
 
+from .ardupilot import MavlinkVehicle
 from .clock import Clock
 from .faults import BATTERY_LOW, LINK_LOST, Fault, Stopped
 from .link import Link
 from .program import Policy, Robot
 from .responses import CONTINUE, policy_for
-from .vehicle import MavlinkVehicle
 
 SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0

@@ -63,7 +63,7 @@ class SimulatedVehicle:
         self._mav = mavlink.MAVLink(None, srcSystem=self.autopilot.settings.system, srcComponent=1)
         self._mav.robust_parsing = True
         self._missions = MissionProtocol(self.autopilot.stores, self._send)
-        self._due: dict[Callable[[], None], float] = {}
+        self._due: dict[str, float] = {}
         self._muted = threading.Event()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="simulated vehicle", daemon=True)
@@ -157,7 +157,7 @@ class SimulatedVehicle:
         )
 
     def _tell(self, tell: Callable[[SimulatedVehicle], None], period: float) -> None:
-        key = tell.__get__(self)
+        key = tell.__name__
         if self.autopilot.time >= self._due.get(key, 0.0):
             self._due[key] = self.autopilot.time + period
             tell(self)
