@@ -107,6 +107,13 @@ def _origin(mission: Element, models: ModelSet) -> Iterator[Finding]:
             yield finding(origin, message)
 
 
+def _origin_of_behaviour(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
+    origin = origin_of(behaviour)
+    if origin is not None:
+        for message in origin_faults(behaviour, origin, frame_of(behaviour, None)):
+            yield finding(origin, message)
+
+
 def _somewhere(coordinate: Element, models: ModelSet) -> Iterator[Finding]:
     target = child(coordinate, "reference")
     if target is None:
@@ -220,6 +227,13 @@ CONSTRAINTS = (
         (BEHAVIOUR, "Behaviour"),
         _local_or_geographic_behaviour,
         "give the behaviour a geographic origin, or make all coordinates relative",
+    ),
+    Constraint(
+        "BL050",
+        "The origin is at height 0, and a relative one at x = y = z = 0.",
+        (BEHAVIOUR, "Behaviour"),
+        _origin_of_behaviour,
+        "give the behaviour another origin, or set its surfaceHeight",
     ),
     Constraint(
         "BL022",
