@@ -1,0 +1,106 @@
+"""What every descriptor of the shipped plug-ins must be, whatever it is about."""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from importlib.metadata import distribution
+from pathlib import Path
+
+import pytest
+
+NAMES = ("auv", "multicopter", "survey")
+CODE = {"auv": "AUV", "multicopter": "MUL", "survey": "SUR"}
+ROOT = Path(__file__).parents[3]
+
+
+def of(name, sort):
+    declare = getattr(import_module(f"mmrs_{name}.plugin"), f"mmrs_{sort}", tuple)
+    return list(declare())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_map_symbols_are_short_coloured_and_offer_fields_that_exist(plugins, name):
+    languages = plugins.contributions.languages
+    for symbol in of(name, "map_symbols"):
+        features = {feature.name for feature in languages.metaclass(*symbol.metaclass).features}
+        assert set(symbol.fields) <= features
+        assert re.fullmatch("#[0-9a-f]{6}", symbol.colour)
+        assert 1 <= len(symbol.icon) <= 2
+        assert symbol.label == symbol.label.lower()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_constraint_has_the_plugins_code_and_tells_how_to_mend_a_breach(name):
+    found = of(name, "constraints")
+    assert [each.code for each in found] == [f"{CODE[name]}{i:03d}" for i in range(1, len(found) + 1)]
+    for each in found:
+        assert each.hint
+        assert each.title[0].isupper()
+        assert not each.title.endswith(".")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("sort", ["rules", "robot_kinds", "move_kinds", "constraints"])
+def test_descriptors_are_about_metaclasses_that_exist(plugins, name, sort):
+    languages = plugins.contributions.languages
+    for each in of(name, sort):
+        assert languages.metaclass(*each.metaclass).key == each.metaclass
+
+
+@pytest.mark.parametrize("sort", ["rules", "move_kinds"])
+def test_every_task_and_move_of_the_plugins_has_its_rule_or_kind(plugins, sort):
+    base, prefix = {
+        "rules": (("urn:mmrs:mission:1.0", "Task"), "urn:mmrs:survey"),
+        "move_kinds": (("urn:mmrs:behaviour:1.0", "Move"), "urn:mmrs:multicopter"),
+    }[sort]
+    known = set(getattr(plugins.contributions, sort))
+    for package in plugins.contributions.languages.packages:
+        if package.ns_uri.startswith(prefix):
+            concrete = {each.key for each in package.metaclasses if not each.abstract and each.is_kind(*base)}
+            assert concrete <= known
+            assert concrete
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_robot_kind_answers_every_fault(name):
+    events = {"LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT"}
+    for kind in of(name, "robot_kinds"):
+        assert set(kind.policies) == events
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_constraint_of_a_plugin_is_counted_in_its_readme(name):
+    readme = (ROOT / "plugins" / name / "README.md").read_text(encoding="utf-8")
+    codes = [each.code for each in of(name, "constraints")]
+    assert f"{codes[0]} to {codes[-1]}" in readme
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_models_in_a_readme_conform_to_the_languages(plugins, name):
+    from mmrs_core.languages.conformance import check_conformance
+    from mmrs_core.languages.reading import read_text
+
+    languages = plugins.contributions.languages
+    readme = (ROOT / "plugins" / name / "README.md").read_text(encoding="utf-8")
+    (model,) = re.findall(r"```xml\n(.*?)```", readme, re.DOTALL)
+    if not model.startswith("<?xml"):
+        model = _in_a_mission(model)
+    found = read_text(model.encode(), "README.md", languages)
+    assert (*found.diagnostics, *check_conformance(found, languages)) == ()
+
+
+def _in_a_mission(task):
+    prefixes = " ".join(f'xmlns:{name}="urn:mmrs:{name}:1.0"' for name in ("mission", "survey"))
+    xsi = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+    home = '<home xsi:type="mission:RelativeCoordinate" x="0.0" y="0.0"/>'
+    team = f'<team><robots name="a" type="t">{home}</robots></team>'
+    return f"<mission:Mission {prefixes} {xsi}>{team}{task}</mission:Mission>"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_plugin_is_a_distribution_of_its_own(name):
+    found = distribution(f"mmrs-{name}")
+    (entry,) = [each for each in found.entry_points if each.group == "mmrs.plugins"]
+    assert (entry.name, entry.value) == (name, f"mmrs_{name}.plugin")
+    assert [requirement.split(">")[0] for requirement in found.requires or []] == ["mmrs-core"]
