@@ -6,18 +6,20 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from mmrs_core.behaviour.notifying import resolve
-from mmrs_core.behaviour.positions import UNREADABLE, Positions, positions_of
 from mmrs_core.behaviour.program import Action, Heading, Move, Program, RobotProgram, Target, Transition
 from mmrs_core.diagnostics import Diagnostic, Place, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, container_of, metaclass_of, place_of
 from mmrs_core.languages.grounding import policies_of
-from mmrs_core.languages.grounding_coordinates import Ground
+from mmrs_core.languages.grounding_coordinates import ground_of
 from mmrs_core.languages.grounding_frame import fault
 from mmrs_core.languages.grounding_parts import part_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Name, Position, Value
+
+UNREADABLE = "BL000"
+"""Code of the faults that keep a behaviour from being read at all."""
 
 _HELD_ELSEWHERE = frozenset(
     {"name", "task", "rule", "preActions", "postActions", "target", "distance", "heading", "speed"}
@@ -46,9 +48,8 @@ class _Reading:
     def __init__(self, behaviour: bl.Behaviour, registry: Registry) -> None:
         self._behaviour, self._registry = behaviour, registry
         self._place = place_of(behaviour)
-        self._positions: Positions = positions_of(behaviour)
-        self._ground = Ground(self._positions.frame, self._positions.by_coordinate)
-        self.faults: list[Diagnostic] = list(self._positions.faults)
+        self._ground = ground_of(behaviour, None)
+        self.faults: list[Diagnostic] = list(self._ground.faults)
 
     def program(self) -> Program:
         behaviour = self._behaviour
@@ -62,7 +63,7 @@ class _Reading:
             raise InvalidModelError(f"{where}: the behaviour cannot be read", faults)
         return Program(
             name=behaviour.name or "",
-            frame=self._positions.frame,
+            frame=self._ground.frame,
             robots=robots,
             position_error=behaviour.positionError,
             minimum_separation=behaviour.minimumSeparation,
@@ -145,7 +146,7 @@ class _Reading:
         """Return where a coordinate lies; None for none, and for one with a fault."""
         if coordinate is not None and container_of(coordinate) is not self._behaviour:
             self._add(coordinate, "is no target of this behaviour")
-        return self._positions.by_coordinate.get(coordinate) if coordinate is not None else None
+        return self._ground.positions.get(coordinate) if coordinate is not None else None
 
     def _heading(self, heading: bl.Heading) -> Heading | None:
         if heading.target is None:
