@@ -72,6 +72,8 @@ def _footprint(part: Part, device: Device, altitude: float) -> Footprint:
     resolution = number(part, "groundResolution")
     if resolution is not None:
         return footprint_of(device.properties, altitude, resolution, device.id)
+    if altitude <= 0.0:
+        raise InfeasibleError(f"what one photo covers is not known at {altitude:g} m: give a footprint")
     seen = footprint_at(device.properties, altitude)
     if seen is None:
         keys = ", ".join(CAMERA_KEYS[:3])

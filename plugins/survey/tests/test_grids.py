@@ -94,6 +94,12 @@ def test_a_grid_of_which_nobody_knows_the_footprint_is_refused(robot, task):
         spacing(robot, task, {})
 
 
+def test_under_water_a_footprint_must_be_given(robot, task):
+    optics = robot().type.devices["camera"]
+    with pytest.raises(InfeasibleError, match="not known at -3 m: give a footprint"):
+        spacing_of(grid(task).part, optics, -3.0)
+
+
 def test_an_overlap_that_leaves_no_distance_is_refused(robot, task):
     with pytest.raises(InfeasibleError, match="leave no distance between photos"):
         spacing(robot, task, {}, footprintWidth=30.0, footprintLength=20.0, sideOverlap=1.0)
