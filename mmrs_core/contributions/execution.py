@@ -47,6 +47,11 @@ class Sample:
     up: float
     energy: float | None
 
+    @property
+    def position(self) -> Position:
+        """Return where the robot was: east, north, up."""
+        return (self.east, self.north, self.up)
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:

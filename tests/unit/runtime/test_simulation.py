@@ -70,7 +70,7 @@ def test_a_move_that_ends_at_a_distance_stops_there(fly):
 
 def test_a_robot_begins_at_its_home(fly):
     run = fly(program(robot("r", [hold("h")], home=(3.0, 4.0, 5.0))))
-    assert (run.tracks["r"][0].east, run.tracks["r"][0].north, run.tracks["r"][0].up) == (3.0, 4.0, 5.0)
+    assert run.tracks["r"][0].position == (3.0, 4.0, 5.0)
 
 
 def test_a_turn_takes_the_angle_over_the_turn_rate(fly):
