@@ -66,9 +66,10 @@ def _action_asked(task: Element) -> str:
 
 def able(task: Element, models: ModelSet) -> tuple[DrawnRobot, ...]:
     """Return the robots of the team whose type is known and has the devices and actions that a task names."""
-    return tuple(
-        robot for robot in sketch_of(models).robots if robot.type is not None and not lacks(task, robot.type)
-    )
+    team = sketch_of(models).robots
+    types = {robot.type for robot in team if robot.type is not None}
+    fit = {robot_type for robot_type in types if not lacks(task, robot_type)}
+    return tuple(robot for robot in team if robot.type in fit)
 
 
 def _nobody(task: Element, models: ModelSet) -> Iterator[Finding]:

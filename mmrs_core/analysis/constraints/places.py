@@ -30,8 +30,8 @@ def _home(robot: Element, models: ModelSet) -> Iterator[Finding]:
     drawn = next((each for each in sketch.robots if each.element is robot), None)
     if drawn is None or drawn.home is None or drawn.clearance is None:
         return
-    for area in sketch.kept_from:
-        distance, needed = area.distance(drawn.home), area.safety_distance + drawn.clearance
+    for area, distance in sketch.distances(drawn.home):
+        needed = area.safety_distance + drawn.clearance
         if distance < needed - EXACT:
             yield finding(robot, f"its home is {_from(distance, area)}; it must keep {needed:.2f} m")
 
@@ -63,8 +63,8 @@ def _unreachable(task: Element, point: Element, what: str, models: ModelSet) -> 
     smallest = _smallest_clearance(task, models)
     if position is None or smallest is None:
         return
-    for area in sketch.kept_from:
-        distance, needed = area.distance(position), area.safety_distance + smallest
+    for area, distance in sketch.distances(position):
+        needed = area.safety_distance + smallest
         if distance < needed - EXACT:
             yield finding(
                 task,

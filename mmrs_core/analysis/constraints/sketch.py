@@ -14,7 +14,7 @@ from functools import cached_property
 from math import hypot, sqrt
 
 import shapely
-from shapely.geometry import Point, Polygon
+from shapely.geometry import Polygon
 
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding_coordinates import Ground, ground_of
@@ -38,17 +38,13 @@ class DrawnArea:
     high: float
     safety_distance: float
 
-    def distance(self, position: Position) -> float:
-        """Return the exact distance of a position from the area as drawn, in metres."""
-        aside = float(shapely.distance(self.shape, Point(position[0], position[1])))
-        return hypot(aside, self._off(position[2]))
-
     def reach(self, clearance: float, up: float) -> float:
         """Return how far to its side it keeps out a robot at a height, metres; negative: not at all."""
-        keep, off = self.safety_distance + clearance, self._off(up)
+        keep, off = self.safety_distance + clearance, self.off(up)
         return sqrt(keep * keep - off * off) if off <= keep else -1.0
 
-    def _off(self, up: float) -> float:
+    def off(self, up: float) -> float:
+        """Return how far a height is above or below the area, metres; 0 between its two sides."""
         return max(self.low - up, up - self.high, 0.0)
 
 
@@ -90,6 +86,13 @@ class Sketch:
     def kept_from(self) -> tuple[DrawnArea, ...]:
         """The areas that robots keep away from."""
         return tuple(area for area in self.areas if area.use is not AreaUse.EMERGENCY)
+
+    def distances(self, position: Position) -> Iterator[tuple[DrawnArea, float]]:
+        """Yield the areas that robots keep away from, with the exact distance of a position from each."""
+        shapes = [area.shape for area in self.kept_from]
+        aside = shapely.distance(shapes, shapely.points(position[0], position[1])) if shapes else ()
+        for area, sideways in zip(self.kept_from, aside, strict=True):
+            yield area, hypot(float(sideways), area.off(position[2]))
 
     @cached_property
     def robots(self) -> tuple[DrawnRobot, ...]:

@@ -9,14 +9,13 @@ from math import inf
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from shapely.geometry import Polygon
 
 from mmrs_core.analysis.constraints import CONSTRAINTS
-from mmrs_core.analysis.constraints.sketch import DrawnArea
+from mmrs_core.analysis.constraints.sketch import Sketch
 from mmrs_core.geometry.segments import legs_of, prism_distance
 from mmrs_core.languages import context, mission
 from mmrs_core.languages.grounding_frame import circles_among
-from mmrs_core.scene import AreaUse
+from mmrs_core.languages.modelset import ModelSet
 
 CIRCLES = [each for each in CONSTRAINTS if each.code == "MML040"]
 CLOSED = [each for each in CONSTRAINTS if each.code in ("MML048", "MML050")]
@@ -100,9 +99,20 @@ coordinates = st.floats(-100, 100)
 )
 def test_distance_of_an_area_is_that_of_the_prism_as_drawn(position, low, high):
     ring = ((0.0, 0.0), (40.0, 0.0), (40.0, 30.0), (20.0, 10.0), (0.0, 30.0))
-    area = DrawnArea(context.Area(), AreaUse.OBSTACLE, Polygon(ring), low, high, 0.0)
+    place = context.Context(
+        obstacles=[
+            context.Obstacle(
+                shell=[mission.RelativeCoordinate(x=x, y=y) for x, y in ring],
+                minHeight=None if low == -inf else low,
+                maxHeight=None if high == inf else high,
+            )
+        ]
+    )
+    home = mission.Robot(home=mission.RelativeCoordinate(x=0.0, y=0.0))
+    drawn = Sketch(ModelSet(mission.Mission(team=mission.Team(robots=[home])), place, {}, ()))
+    ((_, found),) = drawn.distances(position)
     (expected,) = prism_distance(legs_of([position, position]), ring, low, high)
-    assert area.distance(position) == pytest.approx(float(expected), abs=1e-9)
+    assert found == pytest.approx(float(expected), abs=1e-9)
 
 
 @given(st.lists(st.integers(-1, 7), min_size=8, max_size=8))
