@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, Undefined
 
 from mmrs_core.contributions.targets import Target
 from mmrs_core.errors import InternalError
@@ -17,8 +17,6 @@ from mmrs_core.generation.escaping import (
     name,
     python_literal,
 )
-
-Filter = Callable[[object], Code]
 
 
 def environment_of(target: Target) -> Environment:
@@ -35,9 +33,16 @@ def environment_of(target: Target) -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    own: dict[str, Filter] = {"py": python_literal, "json": json_literal, "comment": comment, "cell": cell}
-    environment.filters.update(own | {"identifier": identifier, "name": name})
-    environment.filters.update({name: _coded(encode) for name, encode in target.filters.items()})
+    filters: dict[str, Callable[[object], str]] = {
+        "py": python_literal,
+        "json": json_literal,
+        "comment": comment,
+        "cell": cell,
+        "identifier": identifier,
+        "name": name,
+        **target.filters,
+    }
+    environment.filters.update({key: _coded(encode) for key, encode in filters.items()})
     return environment
 
 
@@ -59,5 +64,10 @@ def _encoded(value: object) -> object:
     raise ValueError(f"{value!r} is written without a filter that encodes it")
 
 
-def _coded(encode: Callable[[object], str]) -> Filter:
-    return lambda value: Code(encode(value))
+def _coded(encode: Callable[[object], str]) -> Callable[[object], Code]:
+    def coded(value: object) -> Code:
+        if isinstance(value, Undefined):
+            str(value)
+        return Code(encode(value))
+
+    return coded

@@ -111,7 +111,7 @@ def file_stems(names: Sequence[str], *, hyphens: bool = True) -> dict[str, str]:
     strange = r"[^A-Za-z0-9-]+" if hyphens else r"[^A-Za-z0-9]+"
     kept = {name: re.sub(strange, "_", name)[:LONGEST_NAME].strip("_-") for name in names}
     claims = [stem.casefold() for stem in kept.values()]
-    plain = {n: s for n, s in kept.items() if s == n and claims.count(s.casefold()) == 1}
+    plain = {n: s for n, s in kept.items() if s and s == n and claims.count(s.casefold()) == 1}
     for length in (8, 64):
         others = {n: f"{kept[n]}_{_digest(n)[:length]}".lstrip("_") for n in kept if n not in plain}
         stems = {name: (plain | others)[name] for name in names}

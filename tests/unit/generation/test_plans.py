@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.qgc.target import QGC_PLAN
+from mmrs_core.generation.render import render
+from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.scene import Frame
+from mmrs_core.testing.programs import (
+    L_AQUILA,
+    MULTICOPTER,
+    go_to,
+    move,
+    photo,
+    program,
+    robot_program,
+    take_off,
+    target_input,
+    two_drones,
+)
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+
+
+def plans(*moves, allow_lossy=False, transitions=None, frame=L_AQUILA, home=(0.0, 0.0, 0.0)):
+    robot = robot_program("alpha", moves, transitions=transitions, home=home)
+    given = target_input(program(robot, frame=frame))
+    files = render(QGC_PLAN, given, allow_lossy=allow_lossy)
+    return {file.path: json.loads(file.content) for file in files}
+
+
+def items(plan):
+    return [(item["command"], item["params"]) for item in plan["mission"]["items"]]
+
+
+def refused(*moves, **options):
+    with pytest.raises(UnsupportedError) as error:
+        plans(*moves, **options)
+    return error.value.elements
+
+
+def test_a_flight_takes_off_goes_and_lands():
+    plan = plans(take_off("up", 20.0), go_to("a", (0.0, 30.0, 25.0)), LAND)["alpha.plan"]
+    assert [command for command, _ in items(plan)] == [22, 178, 16, 21]
+
+
+def test_heights_are_above_the_robots_home():
+    plan = plans(take_off("up", 20.0), go_to("a", (0.0, 30.0, 25.0)), LAND, home=(0.0, 0.0, 5.0))[
+        "alpha.plan"
+    ]
+    assert [params[6] for command, params in items(plan) if command != 178] == [20.0, 20.0, 0.0]
+    assert plan["mission"]["plannedHomePosition"] == [42.37, 13.35, 725.0]
+
+
+def test_places_are_degrees_with_seven_decimals():
+    plan = plans(take_off("up", 20.0), go_to("a", (40.0, 30.0, 25.0)), LAND)["alpha.plan"]
+    _, params = items(plan)[2]
+    expected = LocalFrame("EPSG:4326", 42.37, 13.35).to_geographic([(40.0, 30.0)])[0]
+    assert params[4:6] == [round(expected[0], 7), round(expected[1], 7)]
+
+
+def test_every_item_is_traced_to_its_move():
+    files = plans(take_off("up", 20.0), go_to("a", (0.0, 30.0, 25.0), task="photos"), LAND)
+    trace = files["qgc-plan.manifest.json"]["trace"]
+    assert [(t["step"], t["move"], t["task"]) for t in trace] == [
+        ("item 1", "up", ""),
+        ("item 2", "a", "photos"),
+        ("item 3", "a", "photos"),
+        ("item 4", "down", ""),
+    ]
+
+
+def test_a_trajectory_in_two_legs_has_two_waypoints():
+    goes = go_to("a", (0.0, 30.0, 25.0), trajectory="VERTICAL_FIRST")
+    plan = plans(take_off("up", 20.0), goes, LAND)["alpha.plan"]
+    assert [params[4:] for command, params in items(plan) if command == 16] == [
+        [42.37, 13.35, 25.0],
+        [42.3702701, 13.35, 25.0],
+    ]
+
+
+def test_a_distance_from_the_target_is_kept():
+    goes = replace(go_to("a", (0.0, 30.0, 20.0)), distance=10.0)
+    plan = plans(take_off("up", 20.0), goes, LAND)["alpha.plan"]
+    north = (items(plan)[2][1][4] - 42.37) * 111_080
+    assert north == pytest.approx(20.0, abs=0.05)
+
+
+def test_an_action_follows_its_waypoint():
+    goes = replace(go_to("a", (0.0, 30.0, 20.0)), after=(photo(),))
+    plan = plans(take_off("up", 20.0), goes, LAND)["alpha.plan"]
+    assert [command for command, _ in items(plan)] == [22, 178, 16, 2000, 19, 21]
+
+
+def test_a_heading_is_a_region_of_interest_until_it_ends():
+    looks = go_to("a", (0.0, 30.0, 20.0), heading=Heading(Target((5.0, 5.0, 0.0)), "camera"))
+    plan = plans(take_off("up", 20.0), looks, go_to("b", (0.0, 0.0, 20.0)), LAND)["alpha.plan"]
+    assert [command for command, _ in items(plan)] == [22, 178, 195, 16, 197, 16, 21]
+
+
+def test_the_speed_of_the_travel_mode_stands_where_the_move_gives_none():
+    plan = plans(take_off("up", 20.0), go_to("a", (0.0, 30.0, 20.0), speed=None), LAND)["alpha.plan"]
+    assert items(plan)[1] == (178, [1.0, 6.0, -1.0, 0.0, 0.0, 0.0, 0.0])
+
+
+def test_a_second_sortie_is_a_second_plan():
+    files = plans(
+        take_off("up", 20.0),
+        LAND,
+        move("charge", "Recharge", duration=3600.0),
+        take_off("again", 15.0),
+        replace(LAND, id="down again"),
+    )
+    assert [c for c, _ in items(files["alpha.sortie-2.plan"])] == [22, 21]
+
+
+def test_forbidden_areas_are_exclusion_polygons_as_drawn():
+    plan = plans(take_off("up", 20.0), LAND)["alpha.plan"]
+    (polygon,) = plan["geoFence"]["polygons"]
+    assert polygon["inclusion"] is False
+    corner = LocalFrame("EPSG:4326", 42.37, 13.35).to_geographic([(100.0, 0.0)])[0]
+    assert polygon["polygon"][0] == [round(corner[0], 7), round(corner[1], 7)]
+    assert len(polygon["polygon"]) == 4
+
+
+def test_rally_points_keep_their_clearance_inside_emergency_areas():
+    plan = plans(take_off("up", 20.0), LAND)["alpha.plan"]
+    ((latitude, longitude, height),) = plan["rallyPoints"]["points"]
+    east, north = LocalFrame("EPSG:4326", 42.37, 13.35).to_local([latitude], [longitude])[0]
+    assert -39.5 <= east <= -20.5
+    assert 0.5 <= north <= 19.5
+    assert height == 20.0
+
+
+def test_a_wait_is_refused_with_its_slots():
+    (fault,) = refused(take_off("up", 20.0), LAND, transitions={1: Transition(1, 2, waits=("go",))})
+    assert fault == "robot 'alpha', move 'up': waits for go, which only an operator can do in a plan"
+
+
+def test_a_wait_that_is_lost_becomes_a_loiter_that_the_operator_ends():
+    waiting = {1: Transition(1, 2, waits=("go",))}
+    files = plans(take_off("up", 20.0), LAND, transitions=waiting, allow_lossy=True)
+    assert [command for command, _ in items(files["alpha.plan"])] == [22, 17, 21]
+
+
+def test_a_plan_ends_at_a_choice():
+    choosing = {2: Transition(2, 3, condition="windy", otherwise=4)}
+    moves = (take_off("up", 20.0), go_to("a", (0.0, 9.0, 20.0)), go_to("b", (9.0, 9.0, 20.0)), LAND)
+    assert refused(*moves, transitions=choosing) == ("robot 'alpha', move 'a': chooses by 'windy'",)
+    files = plans(*moves, transitions=choosing, allow_lossy=True)
+    assert [command for command, _ in items(files["alpha.plan"])] == [22, 178, 16]
+
+
+def test_everything_that_a_plan_cannot_say_is_listed():
+    refusals = tuple(QGC_PLAN.refusals(target_input(two_drones())))
+    assert [refusal.split(": ", 1)[0] for refusal in refusals] == [
+        "robot 'alpha', move 'a4'",
+        "robot 'beta', move 'b1'",
+        "robot 'beta', move 'b2'",
+    ]
+
+
+def test_a_move_of_an_unknown_kind_is_refused_even_if_it_is_a_goto():
+    spiral = replace(go_to("a", (0.0, 9.0, 20.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
+    assert refused(take_off("up", 20.0), spiral, LAND) == (
+        "robot 'alpha', move 'a': Spiral is not known to this target",
+    )
+
+
+def test_a_take_off_to_no_height_is_refused():
+    (fault,) = refused(take_off("up", 0.0), LAND)
+    assert "takes off to 0 m" in fault
+
+
+def test_a_home_of_unknown_height_above_the_sea_is_refused():
+    ellipsoid = Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID")
+    (fault,) = refused(take_off("up", 20.0), LAND, frame=ellipsoid)
+    assert "height of its home above mean sea level is not known" in fault
+
+
+def test_the_geoid_separation_makes_the_height_above_the_sea_known():
+    ellipsoid = Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID", 47.5)
+    plan = plans(take_off("up", 20.0), LAND, frame=ellipsoid)["alpha.plan"]
+    assert plan["mission"]["plannedHomePosition"][2] == 722.5
+
+
+def test_a_local_behaviour_is_refused_whatever_is_allowed():
+    local = Frame("EPSG:4326", None, None)
+    assert any("is local" in fault for fault in refused(take_off("up", 20.0), LAND, frame=local))
+    with pytest.raises(UnsupportedError, match="is local"):
+        plans(take_off("up", 20.0), LAND, frame=local, allow_lossy=True)
+
+
+def test_an_object_target_is_refused():
+    goes = replace(go_to("a", (0.0, 9.0, 20.0)), target=Target((0.0, 9.0, 20.0), "a buoy", 2.0))
+    (fault,) = refused(take_off("up", 20.0), goes, LAND)
+    assert "goes to an object" in fault
