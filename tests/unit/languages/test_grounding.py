@@ -425,3 +425,14 @@ def test_context_is_laid_beside_a_behaviour(registry):
     assert laid.positions[made.targets[0]] == (3.0, 4.0, 0.0)
     assert laid.positions[place.origin] == pytest.approx((0.0, 111.08, 0.0), abs=0.01)
     assert laid.frame.surface == 2.0
+
+
+@pytest.mark.parametrize("latitude", [-77.8, 0.0, 42.37, 69.6])
+@pytest.mark.parametrize(("north", "east"), [(0.03, 0.0), (0.0, 0.05), (-0.02, 0.04)])
+def test_distances_are_those_on_the_ellipsoid(registry, latitude, north, east):
+    from pyproj import Geod
+
+    far = geo(latitude + north, 13.35 + east)
+    x, y, _ = point_of(simple(registry, geo(latitude, 13.35), point=far))
+    *_, metres = Geod(ellps="WGS84").inv(13.35, latitude, 13.35 + east, latitude + north)
+    assert hypot(x, y) == pytest.approx(metres, abs=0.02)
