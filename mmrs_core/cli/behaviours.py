@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import report
@@ -15,28 +16,43 @@ from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.element import Element, metaclass_of
+from mmrs_core.languages.element import metaclass_of
 from mmrs_core.languages.grounding import area_of, ground_of, robot_type_of
+from mmrs_core.languages.grounding_parts import names_of
 from mmrs_core.languages.grounding_values import children, number
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import Place, program_of
-from mmrs_core.scene import Area, RobotType
+from mmrs_core.scene import Area
 
 _AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
-    """A behaviour that was read from files.
+class BehaviourFiles:
+    """What the files of a behaviour hold, right or wrong.
 
     Attributes:
-        file: of the behaviour.
-        place: with areas None where there is no context.
+        behaviour, context: None where the files hold none, or there is no file.
+        types: by name.
+        models: every file that was read.
     """
 
     file: Path
-    behaviour: bl.Behaviour
+    behaviour: bl.Behaviour | None
+    context: contexts.Context | None
+    types: Mapping[str, robots_language.Robot]
+    models: tuple[Model, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A valid behaviour.
+
+    Attributes:
+        place: with areas None where there is no context.
+    """
+
     program: Program
     place: Place
 
@@ -44,7 +60,21 @@ class Loaded:
 def load_behaviour(
     workshop: Workshop, file: Path, *, context: Path | None = None, robots: Sequence[Path] = ()
 ) -> Loaded:
-    """Return a behaviour, valid by its metamodel, with its robot types and its place.
+    """Return a valid behaviour with its robot types and its place; print its warnings.
+
+    Raises:
+        UnreadableError: if a file is missing or no model at all.
+        InvalidModelError: with all diagnostics, if any is an error.
+    """
+    files = read_behaviour_files(workshop, file, context=context, robots=robots)
+    program, behaviour = _valid(workshop, files)
+    return Loaded(program, _place(behaviour, files))
+
+
+def read_behaviour_files(
+    workshop: Workshop, file: Path, *, context: Path | None = None, robots: Sequence[Path] = ()
+) -> BehaviourFiles:
+    """Return what the files hold.
 
     Args:
         file: of the behaviour.
@@ -53,85 +83,98 @@ def load_behaviour(
 
     Raises:
         UnreadableError: if a file is missing or no model at all.
-        InvalidModelError: with all diagnostics, if any is an error.
     """
-    folder = file.resolve().parent
-    beside = folder / "context.xmi"
-    context_file = context if context is not None else (beside if beside.is_file() else None)
-    robot_files = tuple(robots) or tuple(sorted((folder / "robots").glob("*.xmi")))
-    behaviour_model = _read(workshop, file)
-    context_model = _read(workshop, context_file) if context_file is not None else None
-    robot_models = [_read(workshop, each) for each in robot_files]
-    models = [behaviour_model, *([context_model] if context_model else []), *robot_models]
-    _require_valid(workshop, models, file)
-    behaviour = _only(behaviour_model, bl.Behaviour)
-    program = program_of(behaviour, workshop.contributions)
-    place = _place(behaviour, context_model, robot_models)
-    return Loaded(file, behaviour, program, place)
+    beside = file.parent / "context.xmi"
+    place = context if context is not None else (beside if beside.is_file() else None)
+    types = tuple(robots) or tuple(sorted((file.parent / "robots").glob("*.xmi")))
+    registry = workshop.contributions.languages
+    return _as_files(
+        file, [read_model(each, registry) for each in (file, *([place] if place else []), *types)]
+    )
+
+
+def _as_files(file: Path, models: Sequence[Model]) -> BehaviourFiles:
+    roots = [root for model in models for root in model.roots]
+    return BehaviourFiles(
+        file,
+        next((root for root in models[0].roots if isinstance(root, bl.Behaviour)), None),
+        next((root for root in roots if isinstance(root, contexts.Context)), None),
+        {root.name or "": root for root in roots if isinstance(root, robots_language.Robot)},
+        tuple(models),
+    )
+
+
+def faults_of(workshop: Workshop, files: BehaviourFiles) -> tuple[Diagnostic, ...]:
+    """Return every fault of the files: of reading, of their metamodels, and of the constraints.
+
+    Raises:
+        InvalidModelError: if the behaviour's file holds no behaviour, or more than one.
+    """
+    contributions = workshop.contributions
+    faults: list[Diagnostic] = []
+    for model in files.models:
+        faults += [*model.diagnostics, *check_conformance(model, contributions.languages)]
+    if files.behaviour is None or len(files.models[0].roots) != 1:
+        raise InvalidModelError(f"{files.file}: expected one behaviour in this file", in_order(faults))
+    faults += check_behaviour(
+        files.behaviour,
+        contributions.constraints,
+        contributions.languages,
+        robots=files.types,
+        place=files.context,
+    )
+    return in_order(faults)
+
+
+def is_behaviour(workshop: Workshop, path: Path) -> bool:
+    """Return whether a path leads to a file that holds a behaviour.
+
+    Raises:
+        UnreadableError: if the file is missing or no model at all.
+    """
+    if path.is_dir():
+        return False
+    roots = read_model(path, workshop.contributions.languages).roots
+    return any(isinstance(root, bl.Behaviour) for root in roots)
 
 
 def load_program(workshop: Workshop, file: Path) -> Program:
-    """Return a behaviour by itself, valid by its metamodel.
+    """Return a behaviour by itself, valid by its metamodel and the constraints.
 
     Raises:
         UnreadableError: if the file is missing or no model at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
-    model = _read(workshop, file)
-    _require_valid(workshop, [model], file)
-    return program_of(_only(model, bl.Behaviour), workshop.contributions)
+    return _valid(workshop, _as_files(file, [read_model(file, workshop.contributions.languages)]))[0]
 
 
-def _read(workshop: Workshop, file: Path) -> Model:
-    return read_model(file, workshop.contributions.languages)
+def _valid(workshop: Workshop, files: BehaviourFiles) -> tuple[Program, bl.Behaviour]:
+    faults = faults_of(workshop, files)
+    if files.behaviour is None or has_errors(faults):
+        raise InvalidModelError(f"{files.file}: the behaviour, or what belongs to it, is not valid", faults)
+    report(faults)
+    return program_of(files.behaviour, workshop.contributions), files.behaviour
 
 
-def _require_valid(workshop: Workshop, models: Sequence[Model], file: Path) -> None:
-    registry = workshop.contributions.languages
-    faults: list[Diagnostic] = []
-    for model in models:
-        faults += [*model.diagnostics, *check_conformance(model, registry)]
-    found = in_order(faults)
-    if has_errors(found):
-        raise InvalidModelError(f"{file}: the behaviour, or what belongs to it, is not valid", found)
-    report(found)
-
-
-def _only(model: Model, kind: type[bl.Behaviour]) -> bl.Behaviour:
-    found = [root for root in model.roots if isinstance(root, kind)]
-    if len(found) != 1:
-        raise InvalidModelError(f"{model.file}: holds {len(found)} behaviours, expected one")
-    return found[0]
-
-
-def _place(behaviour: bl.Behaviour, context: Model | None, robots: Sequence[Model]) -> Place:
-    types = {found.name: found for model in robots for found in _types(model)}
-    if context is None:
+def _place(behaviour: bl.Behaviour, files: BehaviourFiles) -> Place:
+    types = {name: robot_type_of(root) for name, root in files.types.items()}
+    if files.context is None:
         return Place(types)
-    root = next((each for each in context.roots if isinstance(each, contexts.Context)), None)
-    if root is None:
-        raise InvalidModelError(f"{context.file}: holds no context")
-    return Place(types, tuple(_areas(behaviour, root)), _environment(root))
+    return Place(types, _areas(behaviour, files.context), _environment(files.context))
 
 
-def _types(model: Model) -> Iterator[RobotType]:
-    return (robot_type_of(root) for root in model.roots if isinstance(root, robots_language.Robot))
-
-
-def _areas(behaviour: Element, context: Element) -> Iterator[Area]:
+def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:
     laid = ground_of(behaviour, context)
     if laid.faults:
         raise InvalidModelError("the context has no place beside the behaviour", in_order(laid.faults))
-    for feature in _AREAS:
-        for index, area in enumerate(children(context, feature)):
-            yield area_of(area, laid, f"{feature}[{index}]")
+    areas = names_of(area for feature in _AREAS for area in children(context, feature))
+    return tuple(area_of(area, laid, name) for area, name in areas.items())
 
 
 def _environment(context: contexts.Context) -> Mapping[str, float]:
     environment = context.environment
     if environment is None:
         return {}
-    known = (
-        (feature.name, number(environment, feature.name)) for feature in metaclass_of(environment).features
-    )
+    names = [feature.name for feature in metaclass_of(environment).features]
+    known = ((name, number(environment, name)) for name in names)
     return {name: value for name, value in known if value is not None}

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.checks import Verdict
 
 
 def check(
@@ -35,7 +41,14 @@ def check(
     else:
         for line in verdict_table(verdicts):
             say(line)
-        say(f"{file}: {'not safe' if against else 'safe'}")
+        say(f"{file}: {_in_all(verdicts, against)}")
         for verdict in against:
             say(f"  - {verdict_line(verdict)}")
     return 1 if against else 0
+
+
+def _in_all(verdicts: Sequence[Verdict], against: Sequence[Verdict]) -> str:
+    if against:
+        return "not safe"
+    accepted = dict.fromkeys(each.property for each in verdicts if each.status.value == "unknown")
+    return "safe" + (f"; unknown, and accepted: {', '.join(accepted)}" if accepted else "")

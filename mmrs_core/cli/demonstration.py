@@ -11,8 +11,7 @@ from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.cli.journey import Journey, require_safe
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
-from mmrs_core.cli.preview.command import write_pictures
-from mmrs_core.cli.preview.from_plan import picture_of_plan
+from mmrs_core.cli.preview.command import picture_of, write_pictures
 from mmrs_core.cli.simulation import fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.errors import UnsupportedError
@@ -98,7 +97,7 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
     run = fly(workshop, program, place, {})
     logs = write_logs(run, program, folder / "logs")
     files.append(("what each robot did", folder / "logs", len(logs)))
-    pictures = write_pictures(picture_of_plan(journey.scene, journey.plan), folder)
+    pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / "logs"]))
     return Demonstration(journey, run, replayed, folder, tuple(files), refused)

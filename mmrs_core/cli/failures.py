@@ -63,7 +63,7 @@ def failure_of(error: Exception) -> Failure:
             reasons = tuple(reason for reason in error.reasons if reason != str(error))
             return Failure(error.exit_code, str(error), reasons)
         case UnsupportedError():
-            return Failure(error.exit_code, str(error), error.elements)
+            return Failure(error.exit_code, _without_list(error), error.elements)
         case InternalError():
             return Failure(error.exit_code, *_unexpected(error))
         case MmrsError():
@@ -74,6 +74,13 @@ def failure_of(error: Exception) -> Failure:
             return Failure(UNREADABLE, _about_file(error))
         case _:
             return Failure(MODEL_INVALID, *_unexpected(error))
+
+
+def _without_list(error: UnsupportedError) -> str:
+    """Return the message up to where it begins to list the elements, which follow in full."""
+    first = error.elements[0] if error.elements else ""
+    words = str(error)
+    return words.partition(first)[0].rstrip(": ") or words if first else words
 
 
 def _usage(error: typer.TyperException) -> str:

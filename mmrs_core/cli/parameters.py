@@ -29,6 +29,11 @@ Robots = Annotated[
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Start of the planner's random numbers.")]
 
+Assume = Annotated[
+    list[str] | None,
+    typer.Option("--assume", metavar="CONDITION=yes|no", help="What a condition answers; may be repeated."),
+]
+
 
 def robot_files(given: Iterable[Path] | None) -> tuple[Path, ...]:
     """Return the files of robot types that were named; a folder stands for all models in it.

@@ -11,6 +11,7 @@ from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
 
 _JOULES_IN_WATT_HOUR = 3600.0
 _MOST_NOTES = 4
+_WIDEST = 44
 
 
 def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
@@ -21,7 +22,7 @@ def plan_lines(scene: Scene, plan: Plan) -> Iterator[str]:
         f"{counted(at_work, 'robot')} at work, done after {clock(plan.makespan)}"
     )
     head = ("robot", "type", "tasks", "way", "time", "energy", "sorties")
-    yield from table(head, [_row(scene, robot) for robot in plan.robots])
+    yield from table(head, [_row(scene, robot) for robot in plan.robots], widest=_WIDEST)
     for note in plan.notes[:_MOST_NOTES]:
         yield f"  note: {note}"
     left = len(plan.notes) - _MOST_NOTES

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
 
 
@@ -20,12 +20,7 @@ def simulate(
     ] = None,
     context: Context = None,
     robots: Robots = None,
-    assume: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--assume", metavar="CONDITION=yes|no", help="What a condition answers; may be repeated."
-        ),
-    ] = None,
+    assume: Assume = None,
     json: Json = False,
 ) -> int:
     """Carry out a behaviour in simulation, faster than real time."""

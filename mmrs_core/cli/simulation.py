@@ -15,9 +15,8 @@ from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.preview.figures import clock, length
 from mmrs_core.errors import MmrsError
-from mmrs_core.pipeline import Place
-from mmrs_core.runtime.run import Run, assumed
-from mmrs_core.runtime.run import simulate as simulated
+from mmrs_core.pipeline import Place, simulate
+from mmrs_core.runtime.run import Run
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 
@@ -39,18 +38,14 @@ def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
 
 def fly(workshop: Workshop, program: Program, place: Place, conditions: Mapping[str, bool]) -> Run:
     """Return the simulated run of a behaviour."""
-    contributions = workshop.contributions
     return workshop.stage(
         "simulate",
         "simulating",
-        lambda: simulated(
+        lambda: simulate(
             program,
-            types=place.types,
-            robot_kinds=contributions.robot_kinds,
-            move_kinds=contributions.move_kinds,
-            conditions={**contributions.conditions, **assumed(conditions)},
-            environment=place.environment,
-            areas=place.areas or (),
+            place,
+            workshop.contributions,
+            assume=conditions,
             observe=workshop.plugins.observe_step,
         ),
     )

@@ -10,14 +10,13 @@ _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SA
 
 
 def verdict_line(verdict: Verdict) -> str:
-    """Return one verdict in one line: property, robot, what was found, where, by how much."""
-    who = f" of '{verdict.robot}'" if verdict.robot else ""
-    where = [f"move '{verdict.move}'" if verdict.move else "", f"'{verdict.area}'" if verdict.area else ""]
+    """Return one verdict in one line: property, what was found, by how much.
+
+    A message names robot, move and area itself; without one, they are told here.
+    """
     margin = "" if verdict.margin is None else f"margin {verdict.margin:.3g} {verdict.unit}".rstrip()
-    details = ", ".join(part for part in (*where, margin) if part)
-    words = f"{verdict.property}{who}: {verdict.status.value}"
-    words += f", {verdict.message}" if verdict.message else ""
-    return f"{words} ({details})" if details else words
+    told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]
+    return f"{verdict.property}: {', '.join(filter(None, (verdict.status.value, *told, margin)))}"
 
 
 def verdict_table(verdicts: Iterable[Verdict]) -> Iterator[str]:

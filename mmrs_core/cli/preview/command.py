@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
+from mmrs_core.cli.parameters import Assume, Context, Robots, Seed, robot_files
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
+    from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.preview.picture import Picture
 
 PAGE = "preview.html"
@@ -20,7 +21,12 @@ MAP = "preview.svg"
 
 def preview(
     call: typer.Context,
-    project: Project,
+    project: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PROJECT", help="The project's folder, the file of its mission, or a behaviour."
+        ),
+    ],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Where to write; else the project's folder."),
@@ -28,19 +34,24 @@ def preview(
     context: Context = None,
     robots: Robots = None,
     seed: Seed = 0,
+    assume: Assume = None,
     json: Json = False,
 ) -> int:
     """Draw a mission: map, timeline, heights, on one page.
 
-    The map is written as SVG, too.
+    A mission is planned and drawn as planned. A behaviour is simulated and drawn as it went, with what
+    its conditions are told to answer. The map is written as SVG, too.
     """
+    from mmrs_core.cli.behaviours import is_behaviour
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan import folder_of
-    from mmrs_core.cli.preview.from_plan import picture_of_plan
 
     workshop = Workshop(settings_of(call))
-    journey = Journey(workshop, project, context=context, robots=robot_files(robots), seed=seed)
-    picture = picture_of_plan(journey.scene, journey.plan)
+    types = robot_files(robots)
+    if is_behaviour(workshop, project):
+        picture = _of_behaviour(workshop, project, context, types, assume)
+    else:
+        picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
     written = write_pictures(picture, output if output is not None else folder_of(project))
     if json:
         say_json({"files": written})
@@ -48,6 +59,36 @@ def preview(
         for path in written:
             say(f"written: {path}")
     return 0
+
+
+def picture_of(journey: Journey) -> Picture:
+    """Return the picture of a planned mission, with the moves that carry it out."""
+    from mmrs_core.cli.preview.from_plan import picture_of_plan
+    from mmrs_core.cli.preview.moves import with_moves
+
+    return with_moves(picture_of_plan(journey.scene, journey.plan), journey.program)
+
+
+def _of_behaviour(
+    workshop: Workshop,
+    file: Path,
+    context: Path | None,
+    robots: tuple[Path, ...],
+    assume: list[str] | None,
+) -> Picture:
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.preview.from_run import picture_of_run
+    from mmrs_core.cli.simulation import answers, fly
+
+    conditions = answers(assume)
+    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    run = fly(workshop, loaded.program, loaded.place, conditions)
+    program, place = loaded.program, loaded.place
+    clearances = [
+        place.types[robot.type_name].half_diagonal + program.position_error for robot in program.robots
+    ]
+    kinds = workshop.contributions.move_kinds
+    return picture_of_run(program, run.records, run.tracks, kinds, place.areas or (), clearances)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

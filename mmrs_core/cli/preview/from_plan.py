@@ -18,6 +18,7 @@ from mmrs_core.scene import (
     Position,
     Recharge,
     Recover,
+    Robot,
     RobotPlan,
     Scene,
     Serve,
@@ -36,21 +37,17 @@ def picture_of_plan(scene: Scene, plan: Plan) -> Picture:
         title=scene.name,
         origin=origin_of(scene.frame),
         robots=tuple(_robot_picture(scene, robot) for robot in plan.robots),
-        zones=zones_of(scene),
+        zones=zones_of(scene.areas, (robot.clearance for robot in scene.robots)),
         tasks=task_pictures(scene, plan.begins, plan.ends),
         handovers=tuple(_handovers(plan)),
         makespan=plan.makespan,
         notes=plan.notes,
-        surface=scene.frame.surface if any(area_is_wet(scene)) else None,
+        surface=scene.frame.surface if any(_under_water(scene, robot) for robot in scene.robots) else None,
     )
 
 
-def area_is_wet(scene: Scene) -> Iterator[bool]:
-    """Yield for each robot whether it must stay under the water's surface."""
-    return (
-        robot.kinematics is not None and robot.kinematics.ceiling <= scene.frame.surface
-        for robot in scene.robots
-    )
+def _under_water(scene: Scene, robot: Robot) -> bool:
+    return robot.kinematics is not None and robot.kinematics.ceiling <= scene.frame.surface
 
 
 def _robot_picture(scene: Scene, plan: RobotPlan) -> RobotPicture:

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import atan2, degrees, dist
 
+import shapely
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.cli.preview.figures import clock, heights, length
 from mmrs_core.cli.preview.labels import Labels
@@ -15,7 +17,7 @@ from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, TaskPicture, Zone
 from mmrs_core.cli.preview.projection import Projection, projection_of
-from mmrs_core.scene import AreaUse, Point, Position, Ring
+from mmrs_core.scene import AreaUse, Point, Position
 
 _ARROW_EVERY = 90.0
 _KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "recover": "landing"}
@@ -162,7 +164,7 @@ def leg_tip(robot: str, leg: Leg) -> str:
     ups = [point[2] for point in leg.points]
     level = length(ups[0]) if max(ups) - min(ups) < 0.05 else f"{length(ups[0])} to {length(ups[-1])}"
     what = f"{_KINDS[leg.kind]} for {leg.task}" if leg.task else _KINDS[leg.kind]
-    parts = (what, f"{clock(leg.begin)} to {clock(leg.end)}", f"up {level}", leg.note)
+    parts = (what, f"{clock(leg.begin)} to {clock(leg.end)}", f"up {level}", leg.moves, leg.note)
     return f"{robot}: " + ", ".join(part for part in parts if part)
 
 
@@ -204,6 +206,7 @@ def _home(index: int, robot: RobotPicture, projection: Projection) -> str:
 
 def _words(picture: Picture, projection: Projection) -> str:
     labels = Labels(projection.width)
+    shown = shapely.box(projection.west, projection.south, projection.east, projection.north)
     for index, robot in enumerate(picture.robots):
         x, y = projection.place(robot.home)
         labels.put(robot.name, (x, y + 22), "name", colour=style_of(index).colour)
@@ -213,8 +216,9 @@ def _words(picture: Picture, projection: Projection) -> str:
             x, y = projection.place(at)
             labels.put(task.name, (x, y - (10 if task.point else 0)), "of-task", tip=_task_tip(task))
     for zone in picture.zones:
-        x, y = projection.place(_inside(zone.shell))
-        if 0 <= x <= projection.width and 0 <= y <= projection.height:
+        seen = shapely.intersection(Polygon(zone.shell), shown)
+        if not seen.is_empty:
+            x, y = projection.place(_middle_of(seen))
             labels.put(_zone_words(zone), (x, y + 4), f"of-{zone.use.value}")
     return labels.markup()
 
@@ -225,13 +229,13 @@ def _zone_words(zone: Zone) -> str:
 
 def _middle(task: TaskPicture) -> Point | None:
     if task.rings:
-        return _inside(task.rings[0])
+        return _middle_of(Polygon(task.rings[0]))
     return task.line[len(task.line) // 2] if task.line else task.point
 
 
-def _inside(ring: Ring) -> Point:
-    point = Polygon(ring).representative_point()
-    return float(point.x), float(point.y)
+def _middle_of(shape: BaseGeometry) -> Point:
+    x, y = shape.representative_point().coords[0]
+    return float(x), float(y)
 
 
 def _grid(projection: Projection) -> Iterator[str]:

@@ -19,6 +19,7 @@ class Leg:
         reach: metres that the covered ground goes on beyond both ends.
         actions: where device actions are done.
         note: more to say about it, one line; may be empty.
+        moves: which moves of the behaviour it is; empty where that is not known.
     """
 
     kind: str
@@ -30,6 +31,7 @@ class Leg:
     reach: float = 0.0
     actions: tuple[Position, ...] = ()
     note: str = ""
+    moves: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from math import isfinite
 
 from mmrs_core.cli.preview.picture import TaskPicture, Zone
@@ -18,10 +18,15 @@ def origin_of(frame: Frame) -> str:
     return f"{frame.latitude:.6f}, {frame.longitude:.6f} ({frame.crs})"
 
 
-def zones_of(scene: Scene) -> tuple[Zone, ...]:
-    """Return the areas as drawn, with the outline that the robot of the widest clearance keeps to."""
-    widest = max((robot.clearance for robot in scene.robots), default=0.0)
-    return tuple(_zone(area, area.safety_distance + widest) for area in scene.areas)
+def zones_of(areas: Iterable[Area], clearances: Iterable[float]) -> tuple[Zone, ...]:
+    """Return areas as drawn, with the outline that the robot of the widest clearance keeps to.
+
+    Args:
+        areas: as drawn.
+        clearances: of each robot without the areas' safety distances, metres.
+    """
+    widest = max(clearances, default=0.0)
+    return tuple(_zone(area, area.safety_distance + widest) for area in areas)
 
 
 def _zone(area: Area, clearance: float) -> Zone:

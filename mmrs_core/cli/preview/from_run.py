@@ -1,0 +1,187 @@
+"""Makes the picture of a run: what robots did, whoever wrote their behaviour."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import dist
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
+from mmrs_core.cli.preview.places import origin_of, zones_of
+from mmrs_core.contributions.execution import Sample
+from mmrs_core.contributions.rules import MoveKind, most_specific
+from mmrs_core.scene import Area, Name, Position
+
+_STANDSTILL = 1e-3
+_HOLD = (BEHAVIOUR, "HoldPosition")
+_RECHARGE = (BEHAVIOUR, "Recharge")
+_STATES = {"airborne": "launch", "grounded": "recover"}
+
+
+def picture_of_run(
+    program: Program,
+    records: Iterable[StepRecord],
+    tracks: Mapping[str, Sequence[Sample]],
+    move_kinds: Mapping[Name, MoveKind],
+    areas: Iterable[Area] = (),
+    clearances: Iterable[float] = (),
+) -> Picture:
+    """Return what to show of a run.
+
+    Args:
+        program: what the robots did.
+        records: the run's steps; those of one robot in the order of its log.
+        tracks: by robot, the way that it came.
+        move_kinds: what tells launches and recoveries apart from other moves.
+        areas: of the place, as drawn.
+        clearances: of each robot without the areas' safety distances, metres.
+    """
+    by_robot: dict[str, list[StepRecord]] = {robot.id: [] for robot in program.robots}
+    for record in records:
+        by_robot[record.robot].append(record)
+    robots = tuple(
+        _robot(robot, by_robot[robot.id], tracks.get(robot.id, ()), move_kinds) for robot in program.robots
+    )
+    return Picture(
+        title=program.name,
+        origin=origin_of(program.frame),
+        robots=robots,
+        zones=zones_of(areas, clearances),
+        handovers=tuple(_handovers(program, by_robot)),
+        makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
+    )
+
+
+def _robot(
+    robot: RobotProgram,
+    records: Sequence[StepRecord],
+    track: Sequence[Sample],
+    kinds: Mapping[Name, MoveKind],
+) -> RobotPicture:
+    moves = {move.id: move for move in robot.moves}
+    end = records[-1].time if records else 0.0
+    flown = sum(dist(a, b) for a, b in pairwise(_positions(track)))
+    return RobotPicture(
+        name=robot.id,
+        type_name=robot.type_name,
+        home=robot.home or (_positions(track) or [(0.0, 0.0, 0.0)])[0],
+        legs=tuple(_legs(moves, records, track, kinds)),
+        bars=tuple(_bars(moves, records, kinds)),
+        heights=tuple((sample.time, sample.up) for sample in track),
+        summary=(("moves", str(len(robot.moves))), ("way", length(flown)), ("time", clock(end))),
+    )
+
+
+def _legs(
+    moves: Mapping[str, Move],
+    records: Sequence[StepRecord],
+    track: Sequence[Sample],
+    kinds: Mapping[Name, MoveKind],
+) -> Iterator[Leg]:
+    acts = [(record.move, record.time) for record in records if record.label == "act"]
+    for begin, end in _movements(records):
+        points = _way(track, begin.time, end.time)
+        move = moves[begin.move]
+        if len(points) < 2 or sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL:
+            continue
+        done = tuple(_at(track, time) for name, time in acts if name == move.id)
+        yield Leg(
+            _kind(move, kinds), points, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}"
+        )
+
+
+def _movements(records: Sequence[StepRecord]) -> Iterator[tuple[StepRecord, StepRecord]]:
+    for record, following in pairwise(records):
+        if record.label == "begin":
+            yield record, following
+
+
+def _kind(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
+    name = most_specific(move.metaclasses, kinds)
+    state = kinds[name].leaves if name is not None else None
+    if state in _STATES:
+        return _STATES[state]
+    return "transit" if move.rule == "transit" or not (move.task or move.before or move.after) else "work"
+
+
+def _bars(
+    moves: Mapping[str, Move], records: Sequence[StepRecord], kinds: Mapping[Name, MoveKind]
+) -> Iterator[Bar]:
+    """Yield what every stretch of time between two steps was spent on: the later step tells."""
+    for record, following in pairwise(records):
+        if following.time <= record.time:
+            continue
+        move = moves[following.move]
+        if following.label in ("take", "choose"):
+            kind = "wait"
+        elif following.label == "act":
+            kind = "work"
+        elif move.is_a(_RECHARGE):
+            kind = "recharge"
+        else:
+            kind = "hold" if move.is_a(_HOLD) else _kind(move, kinds)
+        yield Bar(kind, record.time, following.time, move.task, f"move {move.id}")
+
+
+def _handovers(program: Program, by_robot: Mapping[str, Sequence[StepRecord]]) -> Iterator[Handover]:
+    waits = list(_waits(program, by_robot))
+    for robot in program.robots:
+        moves = {move.id: move for move in robot.moves}
+        for record in by_robot[robot.id]:
+            if record.label != "ntf":
+                continue
+            action = _action(moves[record.move], record.detail)
+            for slot in action.sets if action.active else ():
+                yield from (
+                    Handover(robot.id, record.time, owner, time, moves[record.move].task)
+                    for owner, name, begin, time in waits
+                    if (owner, name) == slot and owner != robot.id and begin <= record.time <= time
+                )
+
+
+def _waits(
+    program: Program, by_robot: Mapping[str, Sequence[StepRecord]]
+) -> Iterator[tuple[str, str, float, float]]:
+    """Yield (robot, slot, since, until) for every slot that a robot waited for until it went on."""
+    for robot in program.robots:
+        index = {move.id: i for i, move in enumerate(robot.moves)}
+        for before, record in pairwise(by_robot[robot.id]):
+            transition = robot.transitions.get(index[record.move])
+            if record.label == "take" and transition is not None and record.time > before.time:
+                yield from ((robot.id, slot, before.time, record.time) for slot in transition.waits)
+
+
+def _action(move: Move, detail: str) -> Action:
+    side, _, index = detail.partition(":")
+    return (move.before if side == "pre" else move.after)[int(index)]
+
+
+def _positions(track: Sequence[Sample]) -> list[Position]:
+    return [(sample.east, sample.north, sample.up) for sample in track]
+
+
+def _way(track: Sequence[Sample], begin: float, end: float) -> tuple[Position, ...]:
+    """Return where the robot was from begin to end: corners of its way, first and last interpolated."""
+    if not track:
+        return ()
+    times = [sample.time for sample in track]
+    inside = track[bisect_right(times, begin) : bisect_left(times, end)]
+    return (_at(track, begin), *_positions(inside), _at(track, end))
+
+
+def _at(track: Sequence[Sample], time: float) -> Position:
+    times = [sample.time for sample in track]
+    after = min(max(bisect_left(times, time), 1), len(track) - 1)
+    if len(track) == 1:
+        return _positions(track)[0]
+    a, b = track[after - 1], track[after]
+    part = min(max((time - a.time) / (b.time - a.time), 0.0), 1.0) if b.time > a.time else 1.0
+    return (
+        a.east + part * (b.east - a.east),
+        a.north + part * (b.north - a.north),
+        a.up + part * (b.up - a.up),
+    )
