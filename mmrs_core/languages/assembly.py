@@ -57,6 +57,7 @@ class Assembly:
             self._metaclasses |= {metaclass.key: metaclass for metaclass in package.metaclasses}
             self._types |= {(kind.ns_uri, kind.name): kind for kind in package.enumerations}
             self._types |= {(kind.ns_uri, kind.name): kind for kind in package.datatypes}
+        self._packages = {package.ns_uri: package for package in packages}
         self._tables: dict[_Key, tuple[ClassTable, Located]] = {}
         self._unlinked: list[tuple[Feature, FeatureTable, Located]] = []
 
@@ -75,7 +76,12 @@ class Assembly:
         for metaclass in (self._metaclasses[key] for key in self._tables):
             if not metaclass.abstract:
                 _complete(metaclass, implementation=implementation_class(metaclass, metaclass.interface))
-        return tuple(self._package(entry) for entry in self._located)
+        made = tuple(self._package(entry) for entry in self._located)
+        self._packages |= {package.ns_uri: package for package in made}
+        for package in made:
+            for metaclass in package.metaclasses:
+                _complete(metaclass, package=package)
+        return made
 
     def _declare(self, entry: Located) -> None:
         ns_uri = entry.table.ns_uri
@@ -197,6 +203,7 @@ class Assembly:
             tuple(kind for kind in own if isinstance(kind, DataType)),
             entry.ecore,
             entry.parent,
+            self._packages,
         )
 
 

@@ -29,6 +29,7 @@ class DataType:
         primitive_default: what an attribute holds that was never set; None except for Java's primitive types.
         primitive: whether a value can not be null.
         serializable: whether values appear in files at all.
+        java_class: the class of its values in EMF.
     """
 
     ns_uri: str
@@ -38,6 +39,7 @@ class DataType:
     render: Callable[[object], str]
     primitive_default: object = None
     serializable: bool = True
+    java_class: str = "java.lang.String"
 
     @property
     def primitive(self) -> bool:
@@ -251,7 +253,9 @@ def declared_type(ns_uri: str, name: str, java_class: str, serializable: bool = 
     The values of a class that is not known here are kept as the text that stands in the file.
     """
     python, parse, render, default = _BY_JAVA_CLASS.get(java_class, _TEXT)
-    return DataType(ns_uri, name, python, parse, render, default, serializable)
+    return DataType(
+        ns_uri, name, python, parse, render, default, serializable, java_class or "java.lang.String"
+    )
 
 
 def builtin_type(ns_uri: str, name: str) -> DataType | None:

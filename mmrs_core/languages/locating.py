@@ -95,14 +95,25 @@ class Directory:
         top, *steps = fragment.lstrip("#").removeprefix("/").split("/")
         if not steps or not steps[-1]:
             raise PluginError(f"{referrer.provider}: {referrer.table.ns_uri}: {uri} names no class")
-        ns_uri = self._document(document, int(top) if top.isdigit() else 0, referrer, uri)
+        ns_uri = self.document(document, int(top) if top.isdigit() else 0, referrer, uri)
         for step in steps[:-1]:
             if (ns_uri, step) not in self._children:
                 raise PluginError(f"{referrer.provider}: {referrer.table.ns_uri}: {uri}: no package {step}")
             ns_uri = self._children[ns_uri, step]
         return ns_uri, steps[-1]
 
-    def _document(self, document: str, root: int, referrer: Located, uri: str) -> str:
+    def document(self, document: str, root: int, referrer: Located, uri: str) -> str:
+        """Return the nsURI of the package that a document's name means.
+
+        Args:
+            document: the part of the URI before the hash; empty for the referring document itself.
+            root: which of the packages at the top of the document, where it has several.
+            referrer: the package whose file refers.
+            uri: the whole URI, for the message.
+
+        Raises:
+            PluginError: if no package at hand is meant.
+        """
         if not document:
             return self._own(referrer, root)
         if document in self._parents or document.startswith("http://www.eclipse.org/emf/200"):

@@ -131,6 +131,7 @@ class Metaclass:
         implementation: the class of its elements; None when it is abstract.
         by_name: the features by their name in the metamodel.
         by_attribute: the features by their name in Python.
+        package: the package that declares it.
     """
 
     ns_uri: str
@@ -144,6 +145,7 @@ class Metaclass:
     implementation: type[Element] | None = field(repr=False, default=None)
     by_name: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
+    package: Package | None = field(repr=False, default=None)
 
     @property
     def key(self) -> tuple[str, str]:
@@ -161,6 +163,13 @@ class Metaclass:
         except KeyError:
             hint = nearest(name, self.by_name)
             raise ValueError(f"{name}: no feature of {self.name}{hint and '; ' + hint}") from None
+
+    @property
+    def eclass(self) -> object:
+        """The same class as pyecore knows it, an ``EClass``; always the same object."""
+        from mmrs_core.languages.pyecore_classes import eclass_of  # pyecore costs 0.2 s of start-up
+
+        return eclass_of(self)
 
     def is_kind(self, ns_uri: str, name: str) -> bool:
         """Return whether it is that metaclass or one of its subtypes."""
@@ -184,6 +193,8 @@ class Package:
         provider: the distribution that brought it.
         ecore: the file it came from, or the pyecore EPackage.
         parent: nsURI of the package it stands in; empty at the top.
+        known: the packages that its types may come from, by nsURI.
+        pyecore: the EPackage made of it, once somebody asked for it.
     """
 
     ns_uri: str
@@ -196,6 +207,8 @@ class Package:
     datatypes: tuple[DataType, ...]
     ecore: Path | object = field(repr=False, default=None)
     parent: str = ""
+    known: Mapping[str, Package] = field(repr=False, default_factory=dict)
+    pyecore: object = field(repr=False, default=None)
 
     @property
     def members(self) -> Mapping[str, type[Element] | Enumeration]:

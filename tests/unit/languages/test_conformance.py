@@ -122,7 +122,7 @@ def test_the_same_reference_twice_is_a_fault(zoo):
 def test_an_end_that_does_not_refer_back_is_a_fault(zoo):
     one, other = zoo.create(ZOO, "Lion", name="1"), zoo.create(ZOO, "Lion", name="2")
     one.mate = other
-    type(other)._mmrs_slots["mate"].__delete__(other)
+    type(other)._mmrs_slots["mateOf"].__delete__(other)
     assert codes(zoo, zoo.create(ZOO, "Zoo", animals=[one, other])) == ["ECO011"]
 
 

@@ -125,12 +125,14 @@ def test_a_text_is_no_list_of_texts(make):
 def test_one_to_one_references_answer_each_other(make):
     one, other, third = make("Lion", name="1"), make("Lion", name="2"), make("Lion", name="3")
     one.mate = other
-    assert other.mate is one
-    other.mate = third
+    assert other.mateOf is one
+    third.mate = other
     assert one.mate is None
-    assert third.mate is other
-    third.mate = None
-    assert other.mate is None
+    assert other.mateOf is third
+    third.mate = one
+    assert other.mateOf is None
+    one.mateOf = None
+    assert third.mate is None
 
 
 def test_many_to_many_references_answer_each_other(make):

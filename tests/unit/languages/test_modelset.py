@@ -92,7 +92,8 @@ def test_faults_of_all_files_are_reported(project, core):
 def test_files_of_a_project_share_their_elements(project, core):
     (project / "mission.xmi").write_text(
         '<m:Mission xmlns:m="urn:mmrs:mission:1.0"><origin '
-        'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:type="m:RelativeCoordinate" x="1.0" y="2.0">'
+        'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+        'xsi:type="m:RelativeCoordinate" x="1.0" y="2.0">'
         '<reference xsi:type="m:GeoCoordinate" href="context.xmi#//@origin"/></origin></m:Mission>'
     )
     (project / "context.xmi").write_text(

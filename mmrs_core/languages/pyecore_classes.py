@@ -1,0 +1,171 @@
+"""Metaclasses as pyecore knows them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pyecore import ecore
+
+from mmrs_core.errors import InternalError
+from mmrs_core.languages.datatypes import ECORE, DataType
+from mmrs_core.languages.ecore_tables import GENMODEL
+from mmrs_core.languages.metaclass import Enumeration, Feature, Literal, Metaclass, Package
+
+_OWN_ECORE = frozenset(("EStringToStringMapEntry",))
+"""Classes of Ecore that pyecore has as data types only."""
+
+
+def epackage_of(package: Package) -> Any:
+    """Return a package as a pyecore ``EPackage``, always the same object.
+
+    It is the one that a plug-in handed in, or one made of the tables; so are the packages that it refers to.
+    """
+    if package.pyecore is None:
+        _build(package)
+    return package.pyecore
+
+
+def eclass_of(metaclass: Metaclass) -> Any:
+    """Return a metaclass as a pyecore ``EClass``, always the same object."""
+    if metaclass.ns_uri == ECORE and metaclass.name not in _OWN_ECORE:
+        return ecore.EObject.eClass
+    if metaclass.package is None:
+        raise InternalError(f"{metaclass.name}: a metaclass without a package")
+    return _classifier(epackage_of(metaclass.package), metaclass.name)
+
+
+def _classifier(epackage: Any, name: str) -> Any:
+    found = epackage.getEClassifier(name)
+    if found is None:
+        raise InternalError(f"{name}: missing from the EPackage {epackage.nsURI}")
+    return found
+
+
+def _build(package: Package) -> None:
+    """Make shells of the package and of all that it needs, then fill them: packages may refer in circles."""
+    pending, shells = [package], []
+    while pending:
+        current = pending.pop()
+        if current.pyecore is not None:
+            continue
+        if isinstance(current.ecore, ecore.EPackage):
+            object.__setattr__(current, "pyecore", _given(current))
+        else:
+            object.__setattr__(current, "pyecore", _shell(current))
+            shells.append(current)
+        pending.extend(_needed(current))
+    for shell in shells:
+        if shell.parent and shell.parent in shell.known:
+            epackage_of(shell.known[shell.parent]).eSubpackages.append(shell.pyecore)
+        for metaclass in shell.metaclasses:
+            _fill(metaclass, _classifier(shell.pyecore, metaclass.name), shell)
+
+
+def _given(package: Package) -> Any:
+    """Return the EPackage with the package's nsURI in the one that was handed in."""
+    pending: list[Any] = [package.ecore]
+    while pending:
+        epackage = pending.pop()
+        if epackage.nsURI == package.ns_uri:
+            return epackage
+        pending.extend(epackage.eSubpackages)
+    raise InternalError(f"{package.ns_uri}: not in the EPackage it came from")
+
+
+def _needed(package: Package) -> list[Package]:
+    uses = {above.ns_uri for metaclass in package.metaclasses for above in metaclass.supertypes}
+    uses |= {feature.type.ns_uri for metaclass in package.metaclasses for feature in metaclass.features}
+    uses.add(package.parent)
+    return [package.known[ns_uri] for ns_uri in sorted(uses) if ns_uri in package.known]
+
+
+def _shell(package: Package) -> Any:
+    epackage = ecore.EPackage(package.name, nsURI=package.ns_uri, nsPrefix=package.prefix)
+    _document(epackage, package.documentation)
+    for enumeration in package.enumerations:
+        epackage.eClassifiers.append(_enumeration(enumeration))
+    for datatype in package.datatypes:
+        epackage.eClassifiers.append(ecore.EDataType(datatype.name, eType=datatype.python))
+    for metaclass in package.metaclasses:
+        eclass = ecore.EClass(metaclass.name, abstract=metaclass.abstract)
+        _document(eclass, metaclass.documentation)
+        epackage.eClassifiers.append(eclass)
+    return epackage
+
+
+def _enumeration(enumeration: Enumeration) -> Any:
+    made = ecore.EEnum(enumeration.name)
+    _document(made, enumeration.documentation)
+    for literal in enumeration.literals:
+        made.eLiterals.append(_literal(literal))
+    return made
+
+
+def _literal(literal: Literal) -> Any:
+    made = ecore.EEnumLiteral(literal.name, literal.value)
+    _document(made, literal.documentation)
+    return made
+
+
+def _fill(metaclass: Metaclass, eclass: Any, package: Package) -> None:
+    for above in metaclass.supertypes:
+        if above.key != (ECORE, "EObject"):
+            eclass.eSuperTypes.append(_type(above, package))
+    for feature in metaclass.features:
+        if feature.owner is metaclass:
+            eclass.eStructuralFeatures.append(_feature(feature, package))
+    for feature in metaclass.features:
+        if feature.owner is metaclass and feature.opposite is not None:
+            _join(feature, eclass, package)
+
+
+def _join(feature: Feature, eclass: Any, package: Package) -> None:
+    """Set both ends as soon as both exist, which is when the second of them is made."""
+    assert feature.opposite is not None
+    other = _type(feature.opposite.owner, package).findEStructuralFeature(feature.opposite.name)
+    if other is not None:
+        eclass.findEStructuralFeature(feature.name).eOpposite = other
+
+
+def _feature(feature: Feature, package: Package) -> Any:
+    kind = _type(feature.type, package)
+    bounds = {"lower": feature.lower, "upper": feature.upper, "unique": feature.unique}
+    if feature.is_reference:
+        made = ecore.EReference(feature.name, kind, containment=feature.containment, **bounds)
+    else:
+        made = ecore.EAttribute(feature.name, kind, iD=feature.is_id, **bounds)
+        text = _default_text(feature)
+        if text is not None:
+            made.defaultValueLiteral = text
+    made.unsettable = feature.unsettable
+    made.transient = not feature.stored
+    _document(made, feature.documentation)
+    return made
+
+
+def _default_text(feature: Feature) -> str | None:
+    """Return the default in the form that pyecore reads: it looks for names of literals, not for literals."""
+    kind = feature.type
+    if feature.default is None or isinstance(kind, Metaclass):
+        return None
+    if isinstance(kind, Enumeration):
+        return str(feature.default)
+    return None if feature.default == kind.primitive_default else kind.render(feature.default)
+
+
+def _type(kind: Metaclass | DataType | Enumeration, package: Package) -> Any:
+    if kind.ns_uri in package.known and not (kind.ns_uri == ECORE and kind.name not in _OWN_ECORE):
+        return _classifier(package.known[kind.ns_uri].pyecore, kind.name)
+    if isinstance(kind, Metaclass):
+        return ecore.EObject.eClass
+    if kind.ns_uri == ECORE:
+        return _classifier(ecore, kind.name)
+    assert isinstance(kind, DataType)  # one of EMF's types of XML, which pyecore has not
+    return ecore.EDataType(kind.name, eType=kind.python, default_value=kind.primitive_default)
+
+
+def _document(element: Any, text: str) -> None:
+    if text:
+        annotation = ecore.EAnnotation(source=GENMODEL)
+        annotation.details["documentation"] = text
+        element.eAnnotations.append(annotation)
