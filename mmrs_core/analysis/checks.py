@@ -7,6 +7,7 @@ from mmrs_core.analysis.endurance import ENDURANCE, ENERGY, RECHARGE_CHECK
 from mmrs_core.analysis.equipment import DEVICES, PAYLOAD, SPEED
 from mmrs_core.analysis.heights import ALTITUDE, DEPTH
 from mmrs_core.analysis.range import RANGE
+from mmrs_core.analysis.separation import SEPARATION
 from mmrs_core.analysis.states import STATES
 from mmrs_core.analysis.structure import STRUCTURE
 from mmrs_core.analysis.synchronisation.check import SYNCHRONISATION
@@ -24,6 +25,7 @@ CHECKS: tuple[Check, ...] = (
     ENERGY,
     RECHARGE_CHECK,
     STATES,
+    SEPARATION,
     SPEED,
     PAYLOAD,
     DEVICES,

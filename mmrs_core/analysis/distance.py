@@ -86,27 +86,28 @@ def _rim_distances(begins: Floats, ends: Floats, corners: Floats, height: float)
 
 
 def segment_distances(p: Floats, q: Floats, c: Floats, d: Floats) -> Floats:
-    """Return the (n, m) distances between the segments p-q, each (n, 3), and c-d, each (m, 3).
+    """Return the (n, m) distances between the segments p-q, each (n, 3), and c-d, each (m, 3)."""
+    return paired_distances(p[:, None, :], q[:, None, :], c[None, :, :], d[None, :, :])
+
+
+def paired_distances(p: Floats, q: Floats, c: Floats, d: Floats) -> Floats:
+    """Return the distances between the segments p-q and c-d, pair by pair; arrays of (..., 3).
 
     The smallest of the distances of the four ends to the other segment and of the two lines, where
     these come nearest within both; so only crossings need the system of two equations solved.
     """
-    u, v = (q - p)[:, None, :], (d - c)[None, :, :]
-    w = p[:, None, :] - c[None, :, :]
-    uu, uv, vv = _dot(u, u), _dot(u, v), _dot(v, v)
-    uw, vw = _dot(u, w), _dot(v, w)
+    u, v, w = q - p, d - c, p - c
+    uu, uv, vv, uw, vw = np.broadcast_arrays(_dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w))
     determinant = uu * vv - uv * uv
-    s = np.clip(_quotient(uv * vw - vv * uw, determinant), 0.0, 1.0)
-    t = np.clip(_quotient(uu * vw - uv * uw, determinant), 0.0, 1.0)
-    zero, one = np.zeros_like(s), np.ones_like(s)
+    zero, one = np.zeros_like(uu), np.ones_like(uu)
     candidates = (
-        (s, t),
-        (zero, np.clip(_quotient(vw + zero, vv + zero), 0.0, 1.0)),
-        (one, np.clip(_quotient(vw + uv, vv + zero), 0.0, 1.0)),
-        (np.clip(_quotient(-uw + zero, uu + zero), 0.0, 1.0), zero),
-        (np.clip(_quotient(uv - uw, uu + zero), 0.0, 1.0), one),
+        (_part(uv * vw - vv * uw, determinant), _part(uu * vw - uv * uw, determinant)),
+        (zero, _part(vw, vv)),
+        (one, _part(vw + uv, vv)),
+        (_part(-uw, uu), zero),
+        (_part(uv - uw, uu), one),
     )
-    squares = [_square(w + a[..., None] * u - b[..., None] * v) for a, b in candidates]
+    squares = [_square(w + s[..., None] * u - t[..., None] * v) for s, t in candidates]
     nearest: Floats = np.sqrt(np.minimum.reduce(squares))
     return nearest
 
@@ -136,7 +137,8 @@ def _square(a: Floats) -> Floats:
     return _dot(a, a)
 
 
-def _quotient(a: Floats, b: Floats) -> Floats:
-    """Return a / b, and 0 where b is not positive: segments without length, and parallel ones."""
-    quotient: Floats = np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
-    return quotient
+def _part(a: Floats, b: Floats) -> Floats:
+    """Return a / b within 0 and 1, and 0 where b is not positive: no length, or parallel segments."""
+    quotient = np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
+    part: Floats = np.clip(quotient, 0.0, 1.0)
+    return part

@@ -48,8 +48,16 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class Duration:
-    """How long a move takes with all its actions, and which slots it sets when."""
+    """How long a move takes.
 
+    Attributes:
+        before: the actions before the movement. moved: with the movement. whole: with the actions
+            after it as well.
+        settings: which slots are set when.
+    """
+
+    before: Span
+    moved: Span
     whole: Span
     settings: tuple[Setting, ...] = ()
 
@@ -111,7 +119,7 @@ def _spread(leg: Leg, seconds: tuple[float, float], move: Move, kinematics: Kine
 def _with_actions(move: Move, moving: Span, robot_type: RobotType | None) -> Duration:
     before, first = _actions(move.before, Span(), robot_type)
     after, second = _actions(move.after, before + moving, robot_type)
-    return Duration(after, (*first, *second))
+    return Duration(before, before + moving, after, (*first, *second))
 
 
 def _actions(

@@ -14,17 +14,13 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import count
 from math import inf
-from typing import TypeAlias
 
-from mmrs_core.analysis.certainty import certain_moves
+from mmrs_core.analysis.dependencies import At, Dependencies
 from mmrs_core.analysis.durations import Durations, durations_of
 from mmrs_core.analysis.motion import motions
 from mmrs_core.analysis.verdicts import once
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.contributions.checks import CheckInput
-
-At: TypeAlias = tuple[str, int]
-"""A move: the robot's identifier and the move's index."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +28,14 @@ class Times:
     """Bounds on the run of a whole behaviour.
 
     Attributes:
-        durations: of every robot's moves.
+        durations: of every robot's moves. dependencies: what waits for what.
         earliest, latest: bounds of when a move begins; a move that can never begin is missing from
             the earliest, one without a bound is inf in the latest.
         slots: (earliest, latest) activation of each slot that somebody activates.
     """
 
     durations: Mapping[str, Durations]
+    dependencies: Dependencies
     earliest: Mapping[At, float]
     latest: Mapping[At, float]
     slots: Mapping[SlotId, tuple[float, float]]
@@ -66,9 +63,10 @@ def _times(input: CheckInput) -> Times:
     moving = motions(input)
     durations = {robot.id: durations_of(input, robot, moving[robot.id]) for robot in input.program.robots}
     earliest, first = _Earliest(input.program, durations).run()
-    latest, last = _latest(input.program, durations)
+    dependencies = Dependencies(input.program, durations)
+    latest, last = _latest(dependencies, durations)
     slots = {slot: (time, last.get(slot, inf)) for slot, time in first.items()}
-    return Times(durations, earliest, latest, slots)
+    return Times(durations, dependencies, earliest, latest, slots)
 
 
 @dataclass(slots=True)
@@ -129,102 +127,42 @@ class _Earliest:
 
 
 def _latest(
-    program: Program, durations: Mapping[str, Durations]
+    dependencies: Dependencies, durations: Mapping[str, Durations]
 ) -> tuple[dict[At, float], dict[SlotId, float]]:
-    """Return the latest begins and activations, in topological order; what is in a loop is missing."""
-    graph = _Dependencies(program, durations)
+    """Return the latest begins and activations; what is in a loop, or behind one, is missing."""
     begins: dict[At, float] = {}
     slots: dict[SlotId, float] = {}
-    for node in graph.in_order():
-        if node in graph.activators:
-            slots[node[0], str(node[1])] = _latest_activation(graph, begins, node)
+    for node in dependencies.in_order():
+        if dependencies.is_slot(node):
+            slot = (node[0], str(node[1]))
+            slots[slot] = _latest_activation(dependencies, begins, slot)
         else:
             at = (node[0], int(node[1]))
-            begins[at] = _latest_begin(graph, begins, slots, at)
+            begins[at] = _latest_begin(dependencies, durations, begins, slots, at)
     return begins, slots
 
 
-@dataclass(frozen=True, slots=True)
-class _Activation:
-    at: At
-    after: float
-    certain: bool
-
-
-class _Dependencies:
-    """What the latest begin of a move and the latest activation of a slot depend on.
-
-    Slots are told from moves by their second part: a name, not an index.
-    """
-
-    def __init__(self, program: Program, durations: Mapping[str, Durations]) -> None:
-        self.durations = durations
-        self.activators: dict[At | SlotId, list[_Activation]] = defaultdict(list)
-        self.resets: set[SlotId] = set()
-        self.arrivals: dict[At, list[tuple[At, tuple[SlotId, ...]]]] = {}
-        for robot in program.robots:
-            self._add(robot)
-
-    def _add(self, robot: RobotProgram) -> None:
-        certain = certain_moves(robot)
-        for index, duration in self.durations[robot.id].of.items():
-            self.arrivals.setdefault((robot.id, index), [])
-            for setting in duration.settings:
-                for slot in setting.slots:
-                    activation = _Activation((robot.id, index), setting.after.high, index in certain)
-                    if setting.active:
-                        self.activators[slot].append(activation)
-                    else:
-                        self.resets.add(slot)
-            transition = robot.transitions.get(index)
-            if transition is not None:
-                waits = tuple((robot.id, name) for name in transition.waits)
-                for way in transition.ways:
-                    self.arrivals.setdefault((robot.id, way), []).append(((robot.id, index), waits))
-
-    def in_order(self) -> Iterator[At | SlotId]:
-        """Yield every node after all that it depends on; nodes in or behind a loop never come."""
-        needs: dict[At | SlotId, int] = defaultdict(int)
-        feeds: dict[At | SlotId, list[At | SlotId]] = defaultdict(list)
-        for source, target in self._edges():
-            needs[target] += 1
-            feeds[source].append(target)
-        nodes: list[At | SlotId] = [*self.arrivals, *self.activators]
-        ready = [node for node in nodes if not needs[node]]
-        while ready:
-            node = ready.pop()
-            yield node
-            for target in feeds[node]:
-                needs[target] -= 1
-                if not needs[target]:
-                    ready.append(target)
-
-    def _edges(self) -> Iterator[tuple[At | SlotId, At | SlotId]]:
-        for target, arrivals in self.arrivals.items():
-            for source, waits in arrivals:
-                yield source, target
-                yield from ((slot, target) for slot in waits if slot in self.activators)
-        for slot, activations in self.activators.items():
-            yield from ((activation.at, slot) for activation in activations)
-
-
-def _latest_activation(graph: _Dependencies, begins: Mapping[At, float], node: At | SlotId) -> float:
+def _latest_activation(dependencies: Dependencies, begins: Mapping[At, float], slot: SlotId) -> float:
     """Return when a slot is active at the latest.
 
     Any activation that is certain bounds it; and some activation comes, or the run does not end.
     """
-    if (node[0], str(node[1])) in graph.resets:
+    activations = dependencies.activations_of(slot)
+    if slot in dependencies.resets or not activations:
         return inf
-    activations = graph.activators[node]
     certain = [begins[each.at] + each.after for each in activations if each.certain]
     return min(min(certain, default=inf), max(begins[each.at] + each.after for each in activations))
 
 
 def _latest_begin(
-    graph: _Dependencies, begins: Mapping[At, float], slots: Mapping[SlotId, float], at: At
+    dependencies: Dependencies,
+    durations: Mapping[str, Durations],
+    begins: Mapping[At, float],
+    slots: Mapping[SlotId, float],
+    at: At,
 ) -> float:
     latest = 0.0
-    for source, waits in graph.arrivals[at]:
-        ended = begins[source] + graph.durations[source[0]].of[source[1]].whole.high
+    for source, waits in dependencies.arrivals_at(at):
+        ended = begins[source] + durations[source[0]].of[source[1]].whole.high
         latest = max(latest, ended, *(slots.get(slot, inf) for slot in waits))
     return latest

@@ -86,6 +86,19 @@ MOVE_KINDS = move_kinds(
 )
 
 
+def uneven(low=0.5, high=2.0):
+    """Return kinds of moves that take between so many times what they should."""
+    return {
+        name: replace(
+            each,
+            seconds=lambda *args, _seconds=each.seconds: tuple(
+                factor * seconds for factor, seconds in zip((low, high), _seconds(*args), strict=True)
+            ),
+        )
+        for name, each in MOVE_KINDS.items()
+    }
+
+
 def take_off(id, altitude, **more):
     return Move(id, (TAKE_OFF, MOVE), {"altitude": altitude}, **more)
 

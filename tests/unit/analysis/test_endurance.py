@@ -4,14 +4,13 @@ from dataclasses import replace
 from math import inf
 
 import pytest
-from checking import MOVE_KINDS, finding, findings, given, kind, land, recharge, rover, stays, take_off
+from checking import finding, findings, given, kind, land, recharge, rover, take_off, uneven
 from small_behaviours import go, hold, notify, robot, use
 
 from mmrs_core.analysis.certainty import certain_moves
 from mmrs_core.analysis.times import times_of
 from mmrs_core.behaviour.program import Target
 from mmrs_core.contributions.checks import Status
-from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Battery
 
 LAUNCHES = {"robot_kind": kind(launches=True)}
@@ -199,20 +198,10 @@ def test_a_robot_that_never_recharges_is_not_checked():
     assert finding("recharge", given(robot("a", []))).status is Status.NOT_CHECKED
 
 
-def uneven(low, high):
-    """Return a kind of hold that takes between two times its duration."""
-
-    def between(move, path, kinematics, mode):
-        return (low * move.attributes["duration"], high * move.attributes["duration"])
-
-    hold_kind = hold("any").metaclasses[0]
-    return {**MOVE_KINDS, hold_kind: MoveKind(hold_kind, stays, between, frozenset())}
-
-
 def test_times_are_bounded_from_both_sides():
     waiting = robot("a", [hold("h", 10.0), hold("i", 1.0)], waits={"h": ["go"]})
     other = robot("b", [hold("n", 20.0, after=(notify("a.go"),))])
-    times = times_of(given(waiting, other, moves=uneven(0.5, 2.0)))
+    times = times_of(given(waiting, other, moves=uneven()))
     assert (times.earliest["a", 2], times.latest["a", 2]) == (10.0, 40.0)
     assert times.slots["a", "go"] == (10.0, 40.0)
 

@@ -1,0 +1,110 @@
+"""What the begin of a move and the activation of a slot depend on.
+
+A node is a move, as (robot, index), or a slot, as (robot, name). A move depends on those that lead to
+it and on the slots awaited on the way; a slot depends on the moves that activate it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from mmrs_core.analysis.certainty import certain_moves
+from mmrs_core.analysis.durations import Durations
+from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
+
+At: TypeAlias = tuple[str, int]
+Node: TypeAlias = "At | SlotId"
+
+
+@dataclass(frozen=True, slots=True)
+class Activation:
+    """One way in which a slot is activated.
+
+    Attributes:
+        at: the move that does it.
+        after: seconds from that move's begin, at most.
+        certain: whether the move is made in every run that ends.
+        moved: whether it is done after the movement.
+    """
+
+    at: At
+    after: float
+    certain: bool
+    moved: bool
+
+
+class Dependencies:
+    """The graph of a whole behaviour. Building it is linear in moves, actions and transitions.
+
+    Attributes:
+        resets: slots that are ever made inactive.
+    """
+
+    def __init__(self, program: Program, durations: Mapping[str, Durations]) -> None:
+        self.resets: set[SlotId] = set()
+        self._activations: dict[SlotId, list[Activation]] = defaultdict(list)
+        self._arrivals: dict[At, list[tuple[At, tuple[SlotId, ...]]]] = {}
+        for robot in program.robots:
+            self._add_settings(robot, durations[robot.id])
+            self._add_arrivals(robot, durations[robot.id])
+
+    def _add_settings(self, robot: RobotProgram, durations: Durations) -> None:
+        certain = certain_moves(robot)
+        for index, duration in durations.of.items():
+            early = sum(bool(action.sets) for action in robot.moves[index].before)
+            for number, setting in enumerate(duration.settings):
+                made = Activation((robot.id, index), setting.after.high, index in certain, number >= early)
+                for slot in setting.slots:
+                    if setting.active:
+                        self._activations[slot].append(made)
+                    else:
+                        self.resets.add(slot)
+
+    def _add_arrivals(self, robot: RobotProgram, durations: Durations) -> None:
+        for index in durations.of:
+            self._arrivals.setdefault((robot.id, index), [])
+            transition = robot.transitions.get(index)
+            if transition is not None:
+                waits = tuple((robot.id, name) for name in transition.waits)
+                for way in transition.ways:
+                    self._arrivals.setdefault((robot.id, way), []).append(((robot.id, index), waits))
+
+    def is_slot(self, node: Node) -> bool:
+        """Return whether a node is a slot, not a move."""
+        return isinstance(node[1], str)
+
+    def arrivals_at(self, move: Node) -> list[tuple[At, tuple[SlotId, ...]]]:
+        """Return the moves that lead to a move, each with the slots awaited on the way."""
+        return self._arrivals.get((move[0], int(move[1])), [])
+
+    def activations_of(self, slot: Node) -> list[Activation]:
+        """Return the ways in which a slot is activated; empty if nobody does it."""
+        return self._activations.get((slot[0], str(slot[1])), [])
+
+    def in_order(self) -> Iterator[Node]:
+        """Yield every node after all that it depends on; nodes in or behind a loop never come."""
+        needs: dict[Node, int] = defaultdict(int)
+        feeds: dict[Node, list[Node]] = defaultdict(list)
+        for source, target in self._edges():
+            needs[target] += 1
+            feeds[source].append(target)
+        nodes: list[Node] = [*self._arrivals, *self._activations]
+        ready = [node for node in nodes if not needs[node]]
+        while ready:
+            node = ready.pop()
+            yield node
+            for target in feeds[node]:
+                needs[target] -= 1
+                if not needs[target]:
+                    ready.append(target)
+
+    def _edges(self) -> Iterator[tuple[Node, Node]]:
+        for target, arrivals in self._arrivals.items():
+            for source, waits in arrivals:
+                yield source, target
+                yield from ((slot, target) for slot in waits if slot in self._activations)
+        for slot, activations in self._activations.items():
+            yield from ((activation.at, slot) for activation in activations)

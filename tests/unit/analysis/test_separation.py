@@ -1,0 +1,112 @@
+"""Robots that are under way at once, at 2 m/s."""
+
+import pytest
+from checking import finding, findings, given, kind, land, strange, take_off, uneven
+from small_behaviours import go, hold, notify, robot
+
+from mmrs_core.contributions.checks import Status
+
+
+def separation(*robots, least=3.0, **more):
+    return findings("separation", given(*robots, minimum_separation=least, **more))
+
+
+def crossing(wait=None, before=0.0):
+    """Return two robots whose ways cross at right angles; the second may wait before it goes."""
+    a = robot("a", [go("east", (40.0, 0.0, 0.0), after=(notify("b.go"),))], home=(0.0, 0.0, 0.0))
+    moves = [hold("before", before), go("north", (20.0, 20.0, 0.0))]
+    waits = {"before": [wait]} if wait else {}
+    return a, robot("b", moves, waits=waits, slots=["go"], home=(20.0, -20.0, 0.0))
+
+
+def test_nothing_is_checked_unless_it_is_asked_for():
+    verdict = finding("separation", given(*crossing()))
+    assert (verdict.status, verdict.message) == (Status.NOT_CHECKED, "no minimum separation is asked for")
+
+
+def test_robots_that_meet_at_a_crossing_are_violated():
+    (verdict,) = separation(*crossing())
+    assert (verdict.status, verdict.robot, verdict.move) == (Status.VIOLATED, "a", "east")
+    assert "b on 'north'" in verdict.message
+    assert verdict.margin < 0.0
+
+
+def test_robots_that_pass_a_crossing_one_after_the_other_are_safe():
+    assert [verdict.status for verdict in separation(*crossing(before=4.0))] == [Status.SAFE]
+
+
+def test_a_little_later_is_not_enough():
+    assert [verdict.status for verdict in separation(*crossing(before=2.0))] == [Status.VIOLATED]
+
+
+def test_waiting_for_the_other_is_enough_however_uncertain_times_are():
+    a, b = crossing(wait="go")
+    assert [verdict.status for verdict in separation(a, b, moves=uneven())] == [Status.SAFE]
+
+
+def test_uncertain_times_leave_a_crossing_undecided():
+    (verdict,) = separation(*crossing(before=10.0), moves=uneven())
+    assert verdict.status is Status.UNKNOWN
+    assert "let one wait for the other" in verdict.message
+
+
+def test_ways_that_are_far_enough_apart_are_safe():
+    a = robot("a", [go("east", (40.0, 0.0, 0.0))])
+    b = robot("b", [go("east", (40.0, 3.0, 0.0))], home=(0.0, 3.0, 0.0))
+    assert [verdict.status for verdict in separation(a, b)] == [Status.SAFE]
+
+
+def test_the_position_error_of_both_robots_counts():
+    a = robot("a", [go("east", (40.0, 0.0, 0.0))])
+    b = robot("b", [go("east", (40.0, 3.0, 0.0))], home=(0.0, 3.0, 0.0))
+    (verdict,) = separation(a, b, position_error=0.1)
+    assert verdict.status is Status.VIOLATED
+    assert verdict.margin == pytest.approx(-0.2)
+
+
+def test_different_heights_keep_robots_apart():
+    a = robot("a", [go("east", (40.0, 0.0, 0.0))])
+    b = robot("b", [go("north", (20.0, 20.0, 5.0))], home=(20.0, -20.0, 5.0))
+    assert [verdict.status for verdict in separation(a, b)] == [Status.SAFE]
+
+
+def test_following_at_a_distance_is_safe():
+    a = robot("a", [go("east", (60.0, 0.0, 0.0))], home=(10.0, 0.0, 0.0))
+    b = robot("b", [go("east", (40.0, 0.0, 0.0))])
+    assert [verdict.status for verdict in separation(a, b)] == [Status.SAFE]
+
+
+def test_stopping_in_the_way_is_violated():
+    a = robot("a", [go("east", (20.0, 0.0, 0.0))], home=(10.0, 0.0, 0.0))
+    b = robot("b", [go("east", (40.0, 0.0, 0.0))])
+    (verdict,) = separation(a, b)
+    assert (verdict.status, verdict.robot) == (Status.VIOLATED, "a")
+
+
+def flights(second_waits):
+    moves = [take_off("up", 10.0), go("over", (20.0, 0.0, 10.0)), land("down", after=(notify("b.go"),))]
+    a = robot("a", moves, home=(0.0, 0.0, 0.0))
+    waits = {"start": ["go"]} if second_waits else {}
+    b = robot("b", [take_off("up", 10.0), land("down")], waits=waits, slots=["go"], home=(1.0, 0.0, 0.0))
+    return separation(a, b, robot_kind=kind(launches=True))
+
+
+def test_robots_on_the_ground_are_not_counted():
+    assert [verdict.status for verdict in flights(second_waits=True)] == [Status.SAFE]
+
+
+def test_launching_side_by_side_is_violated():
+    assert [verdict.status for verdict in flights(second_waits=False)] == [Status.VIOLATED]
+
+
+def test_a_move_of_an_unknown_kind_leaves_it_undecided():
+    a = robot("a", [strange("dig")])
+    b = robot("b", [], home=(50.0, 0.0, 0.0))
+    assert [verdict.status for verdict in separation(a, b)] == [Status.UNKNOWN]
+
+
+def test_a_chain_of_waits_keeps_robots_apart():
+    a = robot("a", [go("east", (40.0, 0.0, 0.0)), go("off", (40.0, 40.0, 0.0), after=(notify("c.go"),))])
+    c = robot("c", [hold("pass", after=(notify("b.go"),))], waits={"start": ["go"]}, home=(90.0, 90.0, 0.0))
+    b = robot("b", [go("north", (20.0, 20.0, 0.0))], waits={"start": ["go"]}, home=(20.0, -20.0, 0.0))
+    assert [verdict.status for verdict in separation(a, b, c, moves=uneven())] == [Status.SAFE]
