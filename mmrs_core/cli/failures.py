@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from mmrs_core.cli.journey import RefusedError
 from mmrs_core.cli.output import report, say_json, tell
 from mmrs_core.cli.settings import DEBUG, Settings
 from mmrs_core.errors import InfeasibleError, InternalError, InvalidModelError, MmrsError, UnsupportedError
@@ -62,6 +63,10 @@ def failure_of(error: Exception) -> Failure:
         case InfeasibleError():
             reasons = tuple(reason for reason in error.reasons if reason != str(error))
             return Failure(error.exit_code, str(error), reasons)
+        case RefusedError():
+            from mmrs_core.cli.verdict_words import verdict_line
+
+            return Failure(error.exit_code, str(error), tuple(map(verdict_line, error.verdicts)))
         case UnsupportedError():
             return Failure(error.exit_code, _without_list(error), error.elements)
         case InternalError():

@@ -1,0 +1,78 @@
+"""The commands as processes: what shells and pipes see, and what they cost."""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.resources import shipped
+
+PROGRAMS = Path(sys.executable).parent
+
+
+def call(*arguments, **options):
+    command = [str(PROGRAMS / arguments[0]), *map(str, arguments[1:])]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
+
+
+def cpu_seconds(*arguments):
+    """Return the least processor time of three runs; other work on the machine does not count."""
+    times = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert call(*arguments).returncode == 0
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        times.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return min(times)
+
+
+def test_help_costs_less_than_half_a_second():
+    assert cpu_seconds("mmrs", "--help") < 0.5
+
+
+@pytest.mark.parametrize("example", ["carbon-dioxide", "pool", "mixed-team"])
+def test_validating_an_example_costs_less_than_a_second_and_a_half(example):
+    assert cpu_seconds("mmrs", "validate", shipped("examples") / example) < 1.5
+
+
+def test_help_imports_nothing_heavy():
+    heavy = ("numpy", "shapely", "pyproj", "pyecore", "jinja2", "pymavlink", "rich", "matplotlib")
+    code = (
+        "import sys; from mmrs_core.cli import run; run(['--help']);"
+        f"print([m for m in {heavy!r} if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stderr == "[]\n"
+
+
+def test_python_dash_m_is_mmrs():
+    done = subprocess.run(
+        [sys.executable, "-m", "mmrs_core", "--version"], capture_output=True, text=True, timeout=60
+    )
+    assert done.stdout.startswith("mmrs ")
+
+
+def test_a_pipe_that_closes_early_is_quiet():
+    command = (
+        f"'{PROGRAMS / 'mmrs'}' show '{shipped('examples') / 'carbon-dioxide' / 'mission.xmi'}' | head -n 1"
+    )
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60)
+    assert done.stdout.startswith("Mission ")
+    assert done.stderr == ""
+
+
+def test_standard_output_holds_one_object_with_json():
+    done = call("mmrs", "check", shipped("examples") / "handwritten", "--json")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["safe"] is True
+
+
+def test_output_works_where_the_terminal_knows_only_ascii():
+    environment = os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0", "LC_ALL": "C"}
+    done = call("mmrs", "show", shipped("examples") / "pool" / "mission.xmi", env=environment)
+    assert done.returncode == 0
+    assert done.stdout.isascii()
