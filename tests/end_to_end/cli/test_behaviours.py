@@ -163,12 +163,12 @@ def test_an_unknown_target_is_told_with_the_known_ones(mmrs, project):
 
 
 def test_generate_does_not_write_for_an_unsafe_behaviour(mmrs, project):
-    for file in (project / "robots").iterdir():
-        text = file.read_text(encoding="utf-8")
-        file.write_text(re.sub(r'maxAltitude="[\d.]+"', 'maxAltitude="2"', text), encoding="utf-8")
+    context = project / "context.xmi"
+    wide = re.sub(r'safetyDistance="[\d.]+"', 'safetyDistance="15"', context.read_text(encoding="utf-8"))
+    context.write_text(wide, encoding="utf-8")
     code, _, err = mmrs("generate", project, "--target", "qgc-plan", "-o", project / "out", "--allow-lossy")
     assert code == 1
-    assert "the behaviour is not safe\n  - altitude: violated" in err
+    assert "the behaviour is not safe\n  - clearance: violated" in err
     assert not (project / "out").exists()
 
 
