@@ -17,7 +17,7 @@ DEFAULT = "carbon-dioxide"
 def demo(
     call: typer.Context,
     example: Annotated[
-        str, typer.Argument(metavar="[EXAMPLE]", help="Name of an example; --list shows them.")
+        str, typer.Argument(metavar="EXAMPLE", help="Name of an example; --list shows them.")
     ] = DEFAULT,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where everything goes.")] = Path(
         "mmrs-demo"

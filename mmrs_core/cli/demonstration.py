@@ -14,6 +14,7 @@ from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.preview.command import picture_of, write_pictures
 from mmrs_core.cli.simulation import fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
+from mmrs_core.contributions.targets import GeneratedFile
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
@@ -28,7 +29,7 @@ class Demonstration:
 
     Attributes:
         files: (what, path, how many files) in the order in which they were made.
-        refused: by target, why it was not generated; a target need not be able to express everything.
+        left_out: by target, what it cannot express: its files go without, and its manifest says so.
     """
 
     journey: Journey
@@ -36,7 +37,7 @@ class Demonstration:
     replayed: ReplayResult
     folder: Path
     files: tuple[tuple[str, Path, int], ...]
-    refused: Mapping[str, str]
+    left_out: Mapping[str, tuple[str, ...]]
 
     @property
     def succeeded(self) -> bool:
@@ -51,8 +52,6 @@ class Demonstration:
         outcome, *_ = run_lines(self.run)
         judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
         yield f"simulated: {outcome}; {judged}"
-        for target, reason in self.refused.items():
-            yield f"not generated for {target}: {reason}"
         yield f"in {self.folder}:"
         for what, path, count in self.files:
             more = f" ({counted(count, 'file')})" if count > 1 else ""
@@ -65,7 +64,7 @@ class Demonstration:
             "verdicts": self.journey.verdicts,
             "ending": self.run.ending,
             "replay": self.replayed,
-            "refused": self.refused,
+            "left_out": self.left_out,
             "files": [{"what": what, "path": path} for what, path, _ in self.files],
         }
 
@@ -83,21 +82,37 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
     behaviour = folder / "behaviour.xmi"
     save(journey.transformed[0], behaviour, workshop.contributions)
     files: list[tuple[str, Path, int]] = [("what each robot does, move by move", behaviour, 1)]
-    refused: dict[str, str] = {}
+    left_out: dict[str, tuple[str, ...]] = {}
     for target in TARGETS:
-        if target not in workshop.contributions.targets:
-            continue
-        try:
-            rendered = render(program, place, target, workshop.contributions)
-        except UnsupportedError as error:
-            refused[target] = str(error)
-            continue
+        rendered, left_out[target] = _rendered(journey, target)
         written = write(rendered, folder / "controllers" / target)
-        files.append((f"code for {target}", folder / "controllers" / target, len(written)))
+        lossy = (
+            f", without {counted(len(left_out[target]), 'thing')} it cannot express"
+            if left_out[target]
+            else ""
+        )
+        files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(written)))
     run = fly(workshop, program, place, {})
     logs = write_logs(run, program, folder / "logs")
     files.append(("what each robot did", folder / "logs", len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / "logs"]))
-    return Demonstration(journey, run, replayed, folder, tuple(files), refused)
+    return Demonstration(journey, run, replayed, folder, tuple(files), left_out)
+
+
+def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
+    """Return the files of a target, and what had to be left out."""
+    contributions = journey.workshop.contributions
+
+    def rendered(lossy: bool) -> tuple[GeneratedFile, ...]:
+        return journey.workshop.stage(
+            "render",
+            f"generating for {target}",
+            lambda: render(journey.program, journey.place, target, contributions, allow_lossy=lossy),
+        )
+
+    try:
+        return rendered(False), ()
+    except UnsupportedError as error:
+        return rendered(True), error.elements
