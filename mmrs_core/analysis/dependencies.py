@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import TypeAlias
 
 from mmrs_core.analysis.certainty import certain_moves
@@ -85,21 +86,33 @@ class Dependencies:
         return self._activations.get((slot[0], str(slot[1])), [])
 
     def in_order(self) -> Iterator[Node]:
-        """Yield every node after all that it depends on; nodes in or behind a loop never come."""
+        """Yield every node after all that it depends on; nodes in or behind a loop never come.
+
+        Where slots and moves depend on each other in a circle, a slot that some move certainly
+        activates comes after that move alone: its other activations come later, or never.
+        """
         needs: dict[Node, int] = defaultdict(int)
         feeds: dict[Node, list[Node]] = defaultdict(list)
         for source, target in self._edges():
             needs[target] += 1
             feeds[source].append(target)
         nodes: list[Node] = [*self._arrivals, *self._activations]
+        done: set[Node] = set()
         ready = [node for node in nodes if not needs[node]]
         while ready:
             node = ready.pop()
+            done.add(node)
             yield node
             for target in feeds[node]:
                 needs[target] -= 1
-                if not needs[target]:
+                if not needs[target] and target not in done:
                     ready.append(target)
+            if not ready:
+                ready.extend(islice((slot for slot in self._activations if self._may_come(slot, done)), 1))
+
+    def _may_come(self, slot: SlotId, done: set[Node]) -> bool:
+        activations = self._activations[slot]
+        return slot not in done and any(each.certain and each.at in done for each in activations)
 
     def _edges(self) -> Iterator[tuple[Node, Node]]:
         for target, arrivals in self._arrivals.items():

@@ -150,8 +150,9 @@ def _latest_activation(dependencies: Dependencies, begins: Mapping[At, float], s
     activations = dependencies.activations_of(slot)
     if slot in dependencies.resets or not activations:
         return inf
-    certain = [begins[each.at] + each.after for each in activations if each.certain]
-    return min(min(certain, default=inf), max(begins[each.at] + each.after for each in activations))
+    latest = [(begins.get(each.at, inf) + each.after, each.certain) for each in activations]
+    certain = min((time for time, sure in latest if sure), default=inf)
+    return min(certain, max(time for time, _ in latest))
 
 
 def _latest_begin(

@@ -1,5 +1,7 @@
 """Random behaviours that synchronise, and an exploration of all their runs, step by step."""
 
+from dataclasses import replace
+
 from hypothesis import strategies as st
 from small_behaviours import hold, notify, program, robot
 
@@ -9,11 +11,31 @@ SILENT = {"begin", "end", "act"}
 
 
 @st.composite
-def behaviours(draw, choices=True, loops=False, resets=False):
-    """Draw a behaviour of two to four robots with up to five slots."""
+def behaviours(draw, choices=True, loops=False, resets=False, single=False):
+    """Draw a behaviour of two to four robots with up to five slots.
+
+    With `single`, each slot is activated in one place only.
+    """
     names = [f"r{number}" for number in range(draw(st.integers(2, 4)))]
     slots = [f"{draw(st.sampled_from(names))}.s{number}" for number in range(draw(st.integers(1, 5)))]
-    return program(*(draw(_robots(name, slots, choices, loops, resets)) for name in names))
+    made = [draw(_robots(name, slots, choices, loops, resets)) for name in names]
+    return program(*(_once(made) if single else made))
+
+
+def _once(robots):
+    """Return the robots with only the first activation of each slot left."""
+    seen = set()
+
+    def first(action):
+        left = tuple(slot for slot in action.sets if slot not in seen)
+        seen.update(left)
+        return replace(action, sets=left)
+
+    def pruned(move):
+        before = tuple(first(action) for action in move.before)
+        return replace(move, before=before, after=tuple(first(action) for action in move.after))
+
+    return [replace(robot, moves=tuple(pruned(move) for move in robot.moves)) for robot in robots]
 
 
 @st.composite

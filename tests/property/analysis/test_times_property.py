@@ -1,0 +1,111 @@
+"""Bounds on times and on what a charge is used for, against runs with times drawn at random."""
+
+from heapq import heappop, heappush
+from math import inf
+from random import Random
+
+from checking import given as input_of
+from checking import kind, uneven
+from hypothesis import assume, settings
+from hypothesis import given as for_all
+from hypothesis import strategies as st
+from random_synchronisation import behaviours
+from small_behaviours import hold, notify, program, robot
+
+from mmrs_core.analysis.order import HappensBefore
+from mmrs_core.analysis.sorties import sorties_of
+from mmrs_core.analysis.times import times_of
+
+SLACK = 1e-9
+
+
+def run(behaviour, random):
+    """Return when every move that is made begins, has ended and is left, by (robot, index).
+
+    Holds take between half and twice their time. None if the run gets stuck.
+    """
+    robots = {robot.id: robot for robot in behaviour.robots}
+    begun, ended, left, active, waiting = {}, {}, {}, {}, {}
+    order = 0
+    agenda = [(0.0, number, robot.id, robot.start, "begin") for number, robot in enumerate(behaviour.robots)]
+    while agenda:
+        now, _, name, index, event = heappop(agenda)
+        move = robots[name].moves[index]
+        if event == "begin":
+            begun[name, index] = now
+            set_now = move.before
+            order += 1
+            seconds = random.uniform(0.5, 2.0) * move.attributes.get("duration", 0.0)
+            heappush(agenda, (now + seconds, 100 + order, name, index, "end"))
+        else:
+            ended[name, index] = now
+            set_now = move.after
+            waiting[name] = index
+        for action in set_now:
+            for slot in action.sets:
+                active.setdefault(slot, now)
+        for other, at in list(waiting.items()):
+            transition = robots[other].transitions.get(at)
+            if transition and all((other, slot) in active for slot in transition.waits):
+                del waiting[other]
+                left[other, at] = now
+                order += 1
+                way = random.choice(transition.ways)
+                heappush(agenda, (now, 100 + order, other, way, "begin"))
+    stopped = all(robots[name].stop == at for name, at in waiting.items())
+    return (begun, ended, left) if stopped else None
+
+
+@settings(max_examples=80, deadline=None)
+@for_all(behaviours(), st.integers(0, 10**6))
+def test_no_run_leaves_the_bounds(behaviour, seed):
+    made = run(behaviour, Random(seed))
+    assume(made is not None)
+    begun, ended, _ = made
+    times = times_of(input_of(*behaviour.robots, moves=uneven()))
+    for at, time in begun.items():
+        assert times.earliest[at] - SLACK <= time <= times.latest.get(at, inf) + SLACK
+        assert times.earliest_end(*at) - SLACK <= ended[at] <= times.latest_end(*at) + SLACK
+
+
+@settings(max_examples=80, deadline=None)
+@for_all(behaviours(), st.integers(0, 10**6))
+def test_no_run_takes_longer_on_one_charge_than_is_reckoned_with(behaviour, seed):
+    made = run(behaviour, Random(seed))
+    assume(made is not None)
+    _, ended, left = made
+    given = input_of(*behaviour.robots, moves=uneven(), robot_kind=kind())
+    for each in behaviour.robots:
+        sorties = sorties_of(given, each)
+        bounds = {use.move: use.seconds for use in sorties.uses}
+        for at, time in (ended | left).items():
+            if at[0] == each.id and not sorties.gaps:
+                assert time <= bounds[at[1]] + SLACK
+
+
+@settings(max_examples=80, deadline=None)
+@for_all(behaviours(single=True), st.integers(0, 10**6))
+def test_what_is_certainly_over_is_over_in_every_run(behaviour, seed):
+    made = run(behaviour, Random(seed))
+    assume(made is not None)
+    begun, ended, left = made
+    given = input_of(*behaviour.robots, moves=uneven())
+    order = HappensBefore(program(*behaviour.robots), times_of(given).dependencies)
+    for later, time in begun.items():
+        for earlier in begun:
+            if earlier[0] != later[0]:
+                if order.is_over(earlier, False, later):
+                    assert ended[earlier] <= time + SLACK
+                if order.is_over(earlier, True, later):
+                    assert left[earlier] <= time + SLACK
+
+
+def test_some_waits_prove_an_order():
+    """Guard the law above against being empty."""
+    a = robot("a", [hold("h", after=(notify("b.go"),)), hold("i")])
+    b = robot("b", [hold("n")], waits={"start": ["go"]})
+    order = HappensBefore(program(a, b), times_of(input_of(a, b)).dependencies)
+    assert order.is_over(("a", 1), False, ("b", 1))
+    assert not order.is_over(("a", 1), True, ("b", 1))
+    assert order.is_over(("a", 0), True, ("b", 1))
+    assert not order.is_over(("a", 2), False, ("b", 1))
