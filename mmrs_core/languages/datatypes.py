@@ -119,9 +119,16 @@ def _parse_decimal(text: str) -> Decimal:
 
 
 def _parse_character(text: str) -> str:
+    """Read a character as EMF does: its number, or itself where it is no digit."""
+    if _JAVA_INTEGER.fullmatch(text) and len(text) < 7 and 0 <= int(text) < 1 << 16:
+        return chr(int(text))
     if len(text) != 1:
         raise ValueError(f"{shown(text)}: not one character")
     return text
+
+
+def _render_character(value: object) -> str:
+    return str(ord(str(value)))
 
 
 def _parse_bytes(text: str) -> bytes:
@@ -159,7 +166,7 @@ def _render_boolean(value: object) -> str:
 
 
 def _render_bytes(value: object) -> str:
-    return bytes(value).hex()  # type: ignore[call-overload,no-any-return]  # accepts() vouches for it
+    return bytes(value).hex().upper()  # type: ignore[call-overload,no-any-return]  # accepts() vouches for it
 
 
 _Codec = tuple[type, Callable[[str], object], Callable[[object], str], object]
@@ -195,8 +202,8 @@ _BY_JAVA_CLASS: dict[str, _Codec] = {
     "double": _real(True),
     "java.lang.Double": _real(False),
     "java.math.BigDecimal": (Decimal, _parse_decimal, str, None),
-    "char": (str, _parse_character, str, "\0"),
-    "java.lang.Character": (str, _parse_character, str, None),
+    "char": (str, _parse_character, _render_character, "\0"),
+    "java.lang.Character": (str, _parse_character, _render_character, None),
     "byte[]": (bytes, _parse_bytes, _render_bytes, None),
     "java.util.Date": (datetime, parse_date, _render_date, None),
 }

@@ -14,8 +14,8 @@ from mmrs_core.languages.xml_events import XMI, XSI
 
 _ATTRIBUTE_ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\n": "&#xA;", "\t": "&#x9;", "\r": "&#xD;"}
 _IN_ATTRIBUTE = re.compile('[&<"\n\t\r]')
-_TEXT_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#xD;"}
-_IN_TEXT = re.compile("[&<\r]|(?<=]])>")
+_TEXT_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\r": "&#xD;"}
+_IN_TEXT = re.compile('[&<"\r]|(?<=]])>')
 _NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
 
 _Attributes = list[tuple[str, str]]
@@ -53,7 +53,7 @@ class XmiWriter:
 
     def _head(self, schema_location: Mapping[str, str]) -> _Attributes:
         head = [("xmi:version", "2.0"), ("xmlns:xmi", XMI)]
-        used = [(prefix, ns_uri) for ns_uri, prefix in self._prefixes.items() if prefix]
+        used = sorted((prefix, ns_uri) for ns_uri, prefix in self._prefixes.items())
         places = [f"{ns_uri} {schema_location[ns_uri]}" for _, ns_uri in used if ns_uri in schema_location]
         if self._typed or places:
             head.append(("xmlns:xsi", XSI))
