@@ -1,0 +1,20 @@
+"""Metamodels that random models are made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.languages.registry import MetamodelSource, registry_with
+
+PROJECT = Path(__file__).parents[3]
+
+
+@pytest.fixture(scope="session")
+def registry():
+    """The core, the plug-ins' metamodels and a foreign one that uses what Ecore offers beyond ours."""
+    files = sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
+    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in files]
+    zoo = PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore"
+    return registry_with([*sources, MetamodelSource("urn:test:zoo", zoo, "zoo")])
