@@ -22,7 +22,7 @@ Node: TypeAlias = "At | SlotId"
 
 @dataclass(frozen=True, slots=True)
 class Activation:
-    """One way in which a slot is activated.
+    """One way in which a slot is activated, or made inactive.
 
     Attributes:
         at: the move that does it.
@@ -41,11 +41,12 @@ class Dependencies:
     """The graph of a whole behaviour. Building it is linear in moves, actions and transitions.
 
     Attributes:
-        resets: slots that are ever made inactive.
+        resets: where slots are made inactive, by slot. waits: after which moves slots are awaited.
     """
 
     def __init__(self, program: Program, durations: Mapping[str, Durations]) -> None:
-        self.resets: set[SlotId] = set()
+        self.resets: dict[SlotId, list[Activation]] = defaultdict(list)
+        self.waits: dict[SlotId, list[At]] = defaultdict(list)
         self._activations: dict[SlotId, list[Activation]] = defaultdict(list)
         self._arrivals: dict[At, list[tuple[At, tuple[SlotId, ...]]]] = {}
         for robot in program.robots:
@@ -59,10 +60,7 @@ class Dependencies:
             for number, setting in enumerate(duration.settings):
                 made = Activation((robot.id, index), setting.after.high, index in certain, number >= early)
                 for slot in setting.slots:
-                    if setting.active:
-                        self._activations[slot].append(made)
-                    else:
-                        self.resets.add(slot)
+                    (self._activations if setting.active else self.resets)[slot].append(made)
 
     def _add_arrivals(self, robot: RobotProgram, durations: Durations) -> None:
         for index in durations.of:
@@ -70,6 +68,8 @@ class Dependencies:
             transition = robot.transitions.get(index)
             if transition is not None:
                 waits = tuple((robot.id, name) for name in transition.waits)
+                for slot in waits:
+                    self.waits[slot].append((robot.id, index))
                 for way in transition.ways:
                     self._arrivals.setdefault((robot.id, way), []).append(((robot.id, index), waits))
 

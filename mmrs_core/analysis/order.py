@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import TypeAlias
 
-from mmrs_core.analysis.dependencies import At, Dependencies, Node
-from mmrs_core.behaviour.program import Program
+from mmrs_core.analysis.dependencies import Activation, At, Dependencies, Node
+from mmrs_core.behaviour.program import Program, SlotId
 from mmrs_core.behaviour.walk import Graph, reachable, reachable_moves, successors
 
 Over: TypeAlias = dict[str, int]
@@ -37,7 +37,9 @@ class HappensBefore:
         """Return whether a movement, or the wait after it, is over before a later move begins."""
         robot, move = earlier
         mask = self._over.get(later, {}).get(robot, 0)
-        return bool(mask >> (2 * int(move) + int(waiting)) & 1)
+        if robot == later[0]:
+            mask |= self._past(robot, later[1])
+        return bool(mask >> (2 * move + int(waiting)) & 1)
 
     def _at_begin(self, node: Node) -> Over:
         ways = []
@@ -88,3 +90,24 @@ def _all(mask: int, others: list[int]) -> int:
     for other in others:
         mask &= other
     return mask
+
+
+def passing_slots(dependencies: Dependencies, order: HappensBefore) -> frozenset[SlotId]:
+    """Return the awaited slots that may become inactive between an activation and a wait.
+
+    A reset does no harm if it comes before every activation, or after every wait.
+    """
+    return frozenset(
+        slot
+        for slot, resets in dependencies.resets.items()
+        if slot in dependencies.waits
+        and not all(
+            _before_all(reset, dependencies.activations_of(slot), order)
+            or all(order.is_over(wait, True, reset.at) for wait in dependencies.waits[slot])
+            for reset in resets
+        )
+    )
+
+
+def _before_all(reset: Activation, activations: list[Activation], order: HappensBefore) -> bool:
+    return all(order.is_over(reset.at, reset.moved, activation.at) for activation in activations)

@@ -18,6 +18,7 @@ from math import inf
 from mmrs_core.analysis.dependencies import At, Dependencies
 from mmrs_core.analysis.durations import Durations, durations_of
 from mmrs_core.analysis.motion import motions
+from mmrs_core.analysis.order import HappensBefore, passing_slots
 from mmrs_core.analysis.verdicts import once
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.contributions.checks import CheckInput
@@ -64,7 +65,7 @@ def _times(input: CheckInput) -> Times:
     durations = {robot.id: durations_of(input, robot, moving[robot.id]) for robot in input.program.robots}
     earliest, first = _Earliest(input.program, durations).run()
     dependencies = Dependencies(input.program, durations)
-    latest, last = _latest(dependencies, durations)
+    latest, last = _latest(dependencies, durations, _passing(input.program, dependencies))
     slots = {slot: (time, last.get(slot, inf)) for slot, time in first.items()}
     return Times(durations, dependencies, earliest, latest, slots)
 
@@ -126,8 +127,14 @@ class _Earliest:
             self._plan(now, "end", at)
 
 
+def _passing(program: Program, dependencies: Dependencies) -> frozenset[SlotId]:
+    if not dependencies.resets:
+        return frozenset()
+    return passing_slots(dependencies, HappensBefore(program, dependencies))
+
+
 def _latest(
-    dependencies: Dependencies, durations: Mapping[str, Durations]
+    dependencies: Dependencies, durations: Mapping[str, Durations], passing: frozenset[SlotId]
 ) -> tuple[dict[At, float], dict[SlotId, float]]:
     """Return the latest begins and activations; what is in a loop, or behind one, is missing."""
     begins: dict[At, float] = {}
@@ -135,7 +142,7 @@ def _latest(
     for node in dependencies.in_order():
         if dependencies.is_slot(node):
             slot = (node[0], str(node[1]))
-            slots[slot] = _latest_activation(dependencies, begins, slot)
+            slots[slot] = inf if slot in passing else _latest_activation(dependencies, begins, slot)
         else:
             at = (node[0], int(node[1]))
             begins[at] = _latest_begin(dependencies, durations, begins, slots, at)
@@ -148,11 +155,9 @@ def _latest_activation(dependencies: Dependencies, begins: Mapping[At, float], s
     Any activation that is certain bounds it; and some activation comes, or the run does not end.
     """
     activations = dependencies.activations_of(slot)
-    if slot in dependencies.resets or not activations:
-        return inf
     latest = [(begins.get(each.at, inf) + each.after, each.certain) for each in activations]
     certain = min((time for time, sure in latest if sure), default=inf)
-    return min(certain, max(time for time, _ in latest))
+    return min(certain, max((time for time, _ in latest), default=inf))
 
 
 def _latest_begin(

@@ -218,10 +218,23 @@ def test_the_quickest_of_several_activations_counts_for_the_earliest_and_a_certa
     assert times.slots["a", "go"] == (5.0, 20.0)
 
 
-def test_a_slot_that_is_made_inactive_again_has_no_latest_activation():
+def test_a_slot_that_may_be_missed_has_no_latest_activation():
     waiting = robot("a", [hold("h", 1.0)], waits={"h": ["go"]})
     other = robot("b", [hold("n", 2.0, after=(notify("a.go"), notify("a.go", active=False)))])
     assert times_of(given(waiting, other)).slots["a", "go"] == (2.0, inf)
+
+
+def test_a_slot_that_is_taken_back_when_it_was_used_is_bounded():
+    waiting = robot("a", [hold("h", 1.0), hold("i", after=(notify("b.done"),))], waits={"h": ["go"]})
+    moves = [hold("n", 2.0, after=(notify("a.go"),)), hold("o", 2.0, after=(notify("a.go", active=False),))]
+    other = robot("b", moves, waits={"n": ["done"]})
+    assert times_of(given(waiting, other)).slots["a", "go"] == (2.0, 2.0)
+
+
+def test_a_slot_that_is_taken_back_before_it_is_first_set_is_bounded():
+    waiting = robot("a", [hold("h", 1.0)], waits={"h": ["go"]})
+    moves = [hold("n", 2.0, after=(notify("a.go", active=False),)), hold("o", 2.0, after=(notify("a.go"),))]
+    assert times_of(given(waiting, robot("b", moves))).slots["a", "go"] == (4.0, 4.0)
 
 
 def test_a_move_that_no_run_comes_to_has_no_earliest_begin():
