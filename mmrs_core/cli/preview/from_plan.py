@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import accumulate, pairwise
+from itertools import pairwise
 from math import dist, inf
 
+from mmrs_core.cli.preview.crossings import corners
 from mmrs_core.cli.preview.figures import clock, length
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, task_pictures, zones_of
@@ -60,7 +61,7 @@ def _robot_picture(scene: Scene, plan: RobotPlan) -> RobotPicture:
         home=robot.home,
         legs=legs,
         bars=tuple(_bars(plan.steps)),
-        heights=tuple(heights_of(robot.home, legs)),
+        heights=tuple(_heights(robot.home, legs)),
         floor=kinematics.floor if kinematics else -inf,
         ceiling=kinematics.ceiling if kinematics else inf,
         summary=_summary(plan),
@@ -159,14 +160,10 @@ def _end_of(steps: tuple[Step, ...]) -> float:
     return steps[-1].end if steps else 0.0
 
 
-def heights_of(home: Position, legs: Iterable[Leg]) -> Iterator[tuple[float, float]]:
-    """Yield (time, up) at every corner of the way, each leg at an even pace."""
+def _heights(home: Position, legs: Iterable[Leg]) -> Iterator[tuple[float, float]]:
     yield 0.0, home[2]
     for leg in legs:
-        lengths = [0.0, *accumulate(dist(a, b) for a, b in pairwise(leg.points))]
-        whole = lengths[-1] or 1.0
-        for point, so_far in zip(leg.points, lengths, strict=True):
-            yield leg.begin + (leg.end - leg.begin) * so_far / whole, point[2]
+        yield from ((time, point[2]) for time, point in corners(leg))
 
 
 def _handovers(plan: Plan) -> Iterator[Handover]:

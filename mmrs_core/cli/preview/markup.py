@@ -34,6 +34,11 @@ def element(tag: str, attributes: Mapping[str, object] | None = None, *children:
     return f"<{start}>{inside}</{tag}>" if inside else f"<{start}/>"
 
 
+def title(words: str) -> str:
+    """Return the element whose words SVG viewers show when the pointer rests on its parent."""
+    return element("title", None, text(words))
+
+
 def number(value: float) -> str:
     """Return a coordinate with at most two decimals.
 

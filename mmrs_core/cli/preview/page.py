@@ -6,7 +6,8 @@ import json
 from importlib.resources import files
 
 from mmrs_core.cli.preview.figures import clock
-from mmrs_core.cli.preview.map_drawing import leg_tip, map_markup
+from mmrs_core.cli.preview.map_drawing import map_markup
+from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Picture, RobotPicture

@@ -1,43 +1,61 @@
-"""Draws each robot's height over time, as SVG."""
+"""Draws the height of each robot over time, with what it passes on the way, as SVG."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from dataclasses import dataclass
 from math import isfinite
 
-from mmrs_core.cli.preview.figures import length
+from mmrs_core.cli.preview.crossings import Crossing, crossings
+from mmrs_core.cli.preview.figures import heights, length
+from mmrs_core.cli.preview.labels import shortened
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture, RobotPicture
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH, TimeAxis
 
-_HEIGHT = 150.0
-_TOP = 14.0
+_ROW = 92.0
+_GAP = 14.0
+_TOP = 8.0
 _SMALLEST_RANGE = 4.0
+_NAMES = 40
+
+
+@dataclass(frozen=True, slots=True)
+class _Strip:
+    """One robot's chart: its upper edge in pixels, and the heights that it shows in metres."""
+
+    top: float
+    low: float
+    high: float
+
+    @property
+    def bottom(self) -> float:
+        return self.top + _ROW
+
+    def at(self, up: float) -> float:
+        """Return the pixel of a height, kept inside the chart."""
+        inside = min(max(up, self.low), self.high)
+        return self.bottom - _ROW * (inside - self.low) / (self.high - self.low)
 
 
 def profile_markup(picture: Picture) -> str:
-    """Return the height profiles of all robots in one chart as an ``svg`` element with its own style."""
+    """Return the height profiles, one beneath the other, as an ``svg`` element with its own style."""
     axis = TimeAxis(picture.makespan or 1.0)
     low, high = _range(picture)
-    bottom = _TOP + _HEIGHT
-
-    def y_of(up: float) -> float:
-        return bottom - _HEIGHT * (up - low) / (high - low)
-
-    children = (
-        element("title", None, "heights"),
-        element("style", None, style_sheet("charts.css")),
-        axis.markup(_TOP, bottom),
-        "".join(_level(up, y_of(up)) for up in _levels(low, high)),
-        _surface(picture, low, high, y_of(picture.surface or 0.0)),
-        "".join(_limits(index, robot, low, high, y_of) for index, robot in enumerate(picture.robots)),
-        "".join(_profile(index, robot, axis, y_of) for index, robot in enumerate(picture.robots)),
-    )
+    strips = [_Strip(_TOP + i * (_ROW + _GAP), low, high) for i in range(len(picture.robots))]
+    bottom = strips[-1].bottom if strips else _TOP
     height = bottom + 26
     attributes = {"xmlns": "http://www.w3.org/2000/svg", "class": "chart profile", "role": "img"}
     view = {"viewBox": f"0 0 {number(WIDTH)} {number(height)}", "width": WIDTH, "height": height}
-    return element("svg", {**attributes, **view}, children)
+    return element(
+        "svg",
+        {**attributes, **view},
+        element("title", None, "heights"),
+        element("style", None, style_sheet("charts.css")),
+        axis.markup(_TOP, bottom),
+        (_chart(i, picture, axis, strip) for i, strip in enumerate(strips)),
+    )
 
 
 def _range(picture: Picture) -> tuple[float, float]:
@@ -49,46 +67,68 @@ def _range(picture: Picture) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _levels(low: float, high: float) -> list[float]:
-    wanted = (high - low) / 4
-    step = next(step for step in _steps() if step >= wanted)
-    first = int(low // step) + 1
-    return [i * step for i in range(first, int(high // step) + 1)]
+def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
+    robot = picture.robots[index]
+    name = {"class": "robot-name", "x": LEFT + 6, "y": strip.top + 24, "fill": style_of(index).colour}
+    passed = crossings(robot, picture.zones)
+    return element(
+        "g",
+        {"data-robot": index},
+        (_level(up, strip) for up in _levels(strip)),
+        (_passed(crossing, robot, axis, strip) for crossing in passed),
+        _surface(picture, strip),
+        _limits(robot, strip),
+        _line(index, robot, axis, strip),
+        element("text", name, text(shortened(robot.name, _NAMES))),
+    )
 
 
-def _steps() -> list[float]:
-    return [digit * 10.0**power for power in range(-1, 6) for digit in (1, 2, 5)]
+def _levels(strip: _Strip) -> Iterator[float]:
+    wanted = (strip.high - strip.low) / 3
+    steps = (digit * 10.0**power for power in range(-1, 6) for digit in (1, 2, 5))
+    step = next(step for step in steps if step >= wanted)
+    return (i * step for i in range(int(strip.low // step) + 1, int(strip.high // step) + 1))
 
 
-def _level(up: float, y: float) -> str:
+def _level(up: float, strip: _Strip) -> str:
+    y = strip.at(up)
     line = element("line", {"x1": LEFT, "x2": WIDTH - RIGHT, "y1": y, "y2": y})
-    words = element("text", {"x": LEFT - 10, "y": y + 4, "text_anchor": "end"}, text(length(up)))
+    words = element("text", {"x": LEFT - 8, "y": y + 4, "text_anchor": "end"}, text(length(up)))
     return element("g", {"class": "level"}, line, words)
 
 
-def _surface(picture: Picture, low: float, high: float, y: float) -> str:
-    if picture.surface is None or not low < picture.surface < high:
+def _passed(crossing: Crossing, robot: RobotPicture, axis: TimeAxis, strip: _Strip) -> str:
+    zone = crossing.zone
+    left, right = axis.at(crossing.begin), axis.at(crossing.end)
+    upper, lower = strip.at(zone.high), strip.at(zone.low)
+    place = {"x": left, "y": upper, "width": max(right - left, 0.6), "height": lower - upper}
+    tip = f"{robot.name} passes {zone.name} ({heights(zone.low, zone.high)})"
+    look = {"class": f"passed {zone.use.value}", **place}
+    return element("rect", look, element("title", None, text(tip))) if lower > upper else ""
+
+
+def _surface(picture: Picture, strip: _Strip) -> str:
+    if picture.surface is None:
         return ""
+    y = strip.at(picture.surface)
     line = element("line", {"x1": LEFT, "x2": WIDTH - RIGHT, "y1": y, "y2": y})
     return element("g", {"class": "surface"}, line, element("title", None, "water surface"))
 
 
-def _limits(index: int, robot: RobotPicture, low: float, high: float, y_of: Callable[[float], float]) -> str:
-    lines = []
+def _limits(robot: RobotPicture, strip: _Strip) -> Iterator[str]:
     for up, what in ((robot.floor, "floor"), (robot.ceiling, "ceiling")):
-        if isfinite(up) and low < up < high:
-            line = {"x1": LEFT, "x2": WIDTH - RIGHT, "y1": y_of(up), "y2": y_of(up)}
-            title = element("title", None, text(f"{what} of {robot.name}: {length(up)}"))
-            lines.append(element("line", {"class": "limit", **line}, title))
-    return element("g", {"data-robot": index, "stroke": style_of(index).colour}, lines) if lines else ""
+        if isfinite(up) and strip.low < up < strip.high:
+            y = strip.at(up)
+            line = {"class": "limit", "x1": LEFT, "x2": WIDTH - RIGHT, "y1": y, "y2": y}
+            yield element("line", line, element("title", None, text(f"{what} of {robot.name}: {length(up)}")))
 
 
-def _profile(index: int, robot: RobotPicture, axis: TimeAxis, y_of: Callable[[float], float]) -> str:
+def _line(index: int, robot: RobotPicture, axis: TimeAxis, strip: _Strip) -> str:
     if len(robot.heights) < 2:
         return ""
     style = style_of(index)
-    ends = ((axis.at(time), y_of(up)) for time, up in robot.heights)
+    ends = ((axis.at(time), strip.at(up)) for time, up in robot.heights)
     way = "L".join(f"{number(x)} {number(y)}" for x, y in ends)
-    line = {"d": f"M{way}", "stroke": style.colour, "stroke_dasharray": style.dashes or None}
-    title = element("title", None, text(f"height of {robot.name}"))
-    return element("g", {"class": "height", "data-robot": index}, element("path", line, title))
+    dashes = {"stroke_dasharray": style.dashes or None}
+    line = {"class": "height", "d": f"M{way}", "stroke": style.colour}
+    return element("path", {**line, **dashes}, element("title", None, text(f"height of {robot.name}")))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import chain
 from math import floor, log10
 
+from mmrs_core.cli.preview.markup import number
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.scene import Point, Position
 
@@ -44,6 +45,15 @@ class Projection:
     def place(self, point: Point | Position) -> Point:
         """Return where a point lies: pixels right and down from the upper left corner."""
         return (point[0] - self.west) * self.scale, (self.north - point[1]) * self.scale
+
+    def line(self, points: Iterable[Point | Position]) -> str:
+        """Return a polyline as SVG writes it after a moveto."""
+        placed = (self.place(point) for point in points)
+        return "L".join(f"{number(x)} {number(y)}" for x, y in placed)
+
+    def closed(self, rings: Iterable[Iterable[Point]]) -> str:
+        """Return closed rings as the data of one SVG path."""
+        return " ".join(f"M{self.line(ring)}Z" for ring in rings)
 
     def bar_length(self) -> float:
         """Return a round number of metres that makes a handsome scale bar.

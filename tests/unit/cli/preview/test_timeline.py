@@ -74,5 +74,5 @@ def test_limits_outside_the_chart_are_left_out(picture):
 
 def test_the_water_surface_is_drawn_for_those_under_it(picture):
     wet = replace(picture, surface=1.0)
-    assert len(with_class(profile_markup(wet), "surface")) == 1
+    assert len(with_class(profile_markup(wet), "surface")) == len(picture.robots)
     assert with_class(profile_markup(picture), "surface") == []

@@ -1,0 +1,106 @@
+"""Draws what robots do on the map: their ways, the ground that they cover, where they act."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import atan2, degrees, dist
+
+from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.markup import element, number, title
+from mmrs_core.cli.preview.palette import Style, style_of
+from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture
+from mmrs_core.cli.preview.projection import Projection
+from mmrs_core.scene import Point, Position
+
+_ARROW_EVERY = 90.0
+_KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "recover": "landing"}
+
+
+def coverage(picture: Picture, projection: Projection) -> Iterator[str]:
+    """Yield the ground that each robot covers, as wide as its footprint."""
+    for index, robot in enumerate(picture.robots):
+        covered = [leg for leg in robot.legs if leg.width > 0 and len(leg.points) > 1]
+        parts = (_strip(leg, projection) for leg in covered)
+        look = {"class": "covered", "stroke": style_of(index).colour, "data-robot": index}
+        if covered:
+            yield element("g", look, parts)
+
+
+def _strip(leg: Leg, projection: Projection) -> str:
+    points = list(leg.points)
+    points[0] = _beyond(points[1], points[0], leg.reach)
+    points[-1] = _beyond(points[-2], points[-1], leg.reach)
+    return element("path", {"d": f"M{projection.line(points)}", "stroke_width": leg.width * projection.scale})
+
+
+def _beyond(before: Position, last: Position, reach: float) -> Position:
+    whole = dist(before[:2], last[:2]) or 1.0
+    part = reach / whole
+    return last[0] + part * (last[0] - before[0]), last[1] + part * (last[1] - before[1]), last[2]
+
+
+def robot_way(index: int, robot: RobotPicture, projection: Projection) -> str:
+    """Return the way of a robot, with heads that show which way it goes and dots where it acts."""
+    style = style_of(index)
+    legs = (_leg(i, leg, robot, style, projection) for i, leg in enumerate(robot.legs))
+    look = {"class": "robot", "data-robot": index, "stroke": style.colour, "color": style.colour}
+    return element("g", look, legs, _arrows(robot, projection), _actions(robot, projection))
+
+
+def _leg(index: int, leg: Leg, robot: RobotPicture, style: Style, projection: Projection) -> str:
+    if len({projection.place(point) for point in leg.points}) < 2:
+        return ""
+    attributes = {
+        "class": f"leg {leg.kind}",
+        "d": f"M{projection.line(leg.points)}",
+        "stroke_dasharray": style.dashes or None,
+        "data-leg": index,
+    }
+    return element("path", attributes, title(leg_tip(robot.name, leg)))
+
+
+def leg_tip(robot: str, leg: Leg) -> str:
+    """Return what a leg is, for people: who, what for, when, at what height."""
+    ups = [point[2] for point in leg.points]
+    level = length(ups[0]) if max(ups) - min(ups) < 0.05 else f"{length(ups[0])} to {length(ups[-1])}"
+    what = f"{_KINDS[leg.kind]} for {leg.task}" if leg.task else _KINDS[leg.kind]
+    parts = (what, f"{clock(leg.begin)} to {clock(leg.end)}", f"up {level}", leg.moves, leg.note)
+    return f"{robot}: " + ", ".join(part for part in parts if part)
+
+
+def _arrows(robot: RobotPicture, projection: Projection) -> str:
+    """Return small heads on long stretches that show which way the robot goes."""
+    heads: list[str] = []
+    since = _ARROW_EVERY / 2
+    for leg in robot.legs:
+        for start, end in pairwise(projection.place(point) for point in leg.points):
+            since += dist(start, end)
+            if since >= _ARROW_EVERY and dist(start, end) > 12:
+                heads.append(_head(start, end))
+                since = 0.0
+    return element("g", {"class": "arrows"}, heads) if heads else ""
+
+
+def _head(start: Point, end: Point) -> str:
+    x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+    angle = degrees(atan2(end[1] - start[1], end[0] - start[0]))
+    place = f"translate({number(x)} {number(y)}) rotate({number(angle)})"
+    return element("path", {"d": "M-4-4L5 0L-4 4Z", "transform": place})
+
+
+def _actions(robot: RobotPicture, projection: Projection) -> str:
+    placed = (projection.place(at) for leg in robot.legs for at in leg.actions)
+    dots = "".join(f"M{number(x)} {number(y)}h0" for x, y in placed)
+    if not dots:
+        return ""
+    rims = element("path", {"class": "actions", "d": dots})
+    return rims + element("path", {"class": "actions inner", "d": dots})
+
+
+def home(index: int, robot: RobotPicture, projection: Projection) -> str:
+    """Return the mark of a home."""
+    x, y = projection.place(robot.home)
+    shape = f"M{number(x - 7)} {number(y + 7)}v-8l7-6l7 6v8Z"
+    look = {"class": "home", "d": shape, "fill": style_of(index).colour, "data-robot": index}
+    return element("path", look, title(f"home of {robot.name} ({robot.type_name})"))
