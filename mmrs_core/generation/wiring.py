@@ -10,6 +10,7 @@ from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import Device, RobotType
 
 IMAGE_START_CAPTURE, DIGICAM_CONTROL, SET_SERVO, SET_RELAY, GRIPPER = 2000, 203, 183, 181, 211
+REPEAT_RELAY = 182
 LONGEST_VALUE_NAME = 10
 
 
@@ -89,7 +90,16 @@ def _servo(device: Device, action: Action, seconds: float) -> Wired | Unwired:
 
 
 def _relay(device: Device, action: Action, seconds: float) -> Wired | Unwired:
-    return _switched(device, action, seconds, "mavlink.relay", SET_RELAY, "state", {"on": 1.0, "off": 0.0})
+    words = {"on": 1.0, "off": 0.0}
+    found = _switched(device, action, seconds, "mavlink.relay", SET_RELAY, "state", words)
+    number = _number(device, "mavlink.relay")
+    if isinstance(found, Wired) or isinstance(number, Unwired) or _says_what(device, action, "mavlink.relay"):
+        return found
+    return Wired(REPEAT_RELAY, (number, 1.0, 2.0 * seconds), seconds)
+
+
+def _says_what(device: Device, action: Action, key: str) -> bool:
+    return "state" in dict(action.parameters) or f"{key}.{action.name}" in device.properties
 
 
 def _gripper(device: Device, action: Action, seconds: float) -> Wired | Unwired:

@@ -29,7 +29,6 @@ from .watch import Watch
 OK, FAILED, USAGE, LINK, INTERRUPTED = 0, 1, 2, 5, 130
 FIRST_PORT = 14_550
 PORT_STEP = 10
-HEARD_SECONDS = 30.0
 DRY_SPEEDUP = 500.0
 
 _print_lock = threading.Lock()
@@ -55,6 +54,7 @@ class Options:
     acceptance: float
     home_tolerance: float
     system: int
+    patience: float
 
 
 def main(
@@ -180,7 +180,7 @@ def _vehicle(
     stack.callback(link.close)
     link.guard = watch.check
     say(f"{robot.id!a}: waits for a vehicle at {options.links[robot.id]}")
-    if not link.wait(lambda: link.component, options.clock.patience(HEARD_SECONDS, HEARD_SECONDS)):
+    if not link.wait(lambda: link.component, options.patience * options.clock.speedup):
         raise Fault(LINK_LOST, f"no vehicle at {options.links[robot.id]}")
     vehicle = MavlinkVehicle(
         link,
@@ -218,6 +218,7 @@ def _parser(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--no-fence", action="store_true", help="do not upload the fence")
     add("--acceptance", type=float, default=0.5, help="metres from a place that count as there")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
+    add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
     add("--system", type=int, default=0, help="MAVLink system of the vehicle; 0: whichever speaks first")
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
@@ -234,6 +235,9 @@ def _options(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
         if not separator and len(robots) > 1:
             parser.error(f"--link {link}: which robot? say ROBOT={link}")
         links[robot or robots[0].id] = url
+    taken = [str(given.log / robot.log) for robot in robots if (given.log / robot.log).exists()]
+    if taken:
+        parser.error(f"{taken[0]}: there is a log already; choose another --log")
     speedup = given.speedup or (DRY_SPEEDUP if given.dry_run else 1.0)
     if speedup <= 0:
         parser.error("--speedup must be positive")
@@ -248,6 +252,7 @@ def _options(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
         given.acceptance,
         given.home_tolerance,
         given.system,
+        given.patience,
     )
 
 

@@ -43,13 +43,15 @@ def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
     Raises:
         Refused: the vehicle does not accept it, or does not answer.
     """
+    result: int | None = None
     for attempt in range(TRIES):
         result = _clear(link, kind) if not items else _transfer(link, items, kind)
         if result == mavlink.MAV_MISSION_ACCEPTED:
             return
         if attempt + 1 < TRIES:
             link.wait(lambda: None, 1.0)
-    raise Refused(f"{NAMES[kind]}: the vehicle answers '{_result(result)}' to the upload")
+    answer = "nothing" if result is None else f"'{_result(result)}'"
+    raise Refused(f"{NAMES[kind]}: the vehicle answers {answer} to the upload")
 
 
 def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
@@ -80,7 +82,7 @@ def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
             raise Refused(f"{NAMES[kind]}: item {seq} is {found} on the vehicle instead of {wanted}")
 
 
-def _transfer(link: Link, items: Sequence[Item], kind: int) -> int:
+def _transfer(link: Link, items: Sequence[Item], kind: int) -> int | None:
     count = mavlink.MAVLink_mission_count_message(link.system, link.component, len(items), kind)
     kinds = ("MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK")
     with link.inbox(*kinds) as inbox:
@@ -99,7 +101,7 @@ def _transfer(link: Link, items: Sequence[Item], kind: int) -> int:
             if not 0 <= message.seq < len(items):
                 return int(mavlink.MAV_MISSION_INVALID_SEQUENCE)
             last, tries = _message(link, message.seq, items[message.seq], kind), 0
-    raise Refused(f"{NAMES[kind]}: the vehicle does not answer the upload")
+    return None
 
 
 def _clear(link: Link, kind: int) -> int:

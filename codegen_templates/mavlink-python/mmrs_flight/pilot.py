@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import inf
 
 from .clock import Clock
@@ -204,11 +204,11 @@ class Pilot:
         self._desk.records.add(
             robot=self._robot.id,
             time=round(state.time, 3),
-            place=state.place,
+            place=asdict(state.place),
             move=self.move,
             what=what,
             name=name,
-            **{"content": dict(content)},
+            content=dict(content),
         )
 
     def _notify(self, action: Notify, detail: str) -> None:

@@ -12,7 +12,28 @@ Message = Any
 
 POSITIONAL_FRAMES = {0, 3, 5, 6, 10, 11}
 _POSITIONAL = {16, 17, 18, 19, 21, 22, 5001, 5002, 5003, 5004, 5100}
-_KNOWN = _POSITIONAL | {20, 93, 112, 115, 177, 178, 181, 183, 195, 197, 203, 206, 207, 211, 1000, 2000, 2001}
+_KNOWN = _POSITIONAL | {
+    20,
+    93,
+    112,
+    115,
+    177,
+    178,
+    181,
+    182,
+    183,
+    195,
+    197,
+    203,
+    206,
+    207,
+    211,
+    1000,
+    2000,
+    2001,
+    2500,
+    2501,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +94,10 @@ class MissionProtocol:
             self._request(0)
 
     def _item(self, message: Message) -> None:
-        if message.seq != len(self._incoming) or message.mission_type != self._kind or not self._expected:
+        if message.mission_type != self._kind:
+            return
+        if message.seq != len(self._incoming) or not self._expected:
+            self._repeat(message.seq)
             return
         params = (message.param1, message.param2, message.param3, message.param4)
         item = Item(message.frame, message.command, params, message.x, message.y, message.z)
@@ -87,6 +111,13 @@ class MissionProtocol:
             self._finish()
         else:
             self._request(len(self._incoming))
+
+    def _repeat(self, seq: int) -> None:
+        """Answer again what the ground station has missed, when it sends an item for the second time."""
+        if seq == len(self._incoming) - 1 and self._expected:
+            self._request(len(self._incoming))
+        elif seq == len(self._incoming) - 1:
+            self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, self._kind)
 
     def _finish(self) -> None:
         self._stores[self._kind] = self._incoming

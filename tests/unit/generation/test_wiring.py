@@ -40,6 +40,14 @@ def test_a_relay_is_switched(state, value):
     assert found == Wired(181, (0.0, value), 2.0)
 
 
+def test_a_relay_that_nothing_says_more_about_is_on_for_the_action():
+    assert wired("sample", **{"mavlink.relay": "0"}) == Wired(182, (0.0, 1.0, 4.0), 2.0)
+
+
+def test_a_relay_with_a_word_that_is_none_is_not_wired():
+    assert isinstance(wired("light", **{"mavlink.relay": "0", "mavlink.relay.light": "dim"}), Unwired)
+
+
 def test_a_gripper_understands_its_own_words():
     assert wired("grab", **{"mavlink.gripper": "1"}) == Wired(211, (1.0, 1.0), 2.0)
 

@@ -1,0 +1,86 @@
+"""Generated controllers as processes, and simulated vehicles for them."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.generation.earth import degrees_of
+from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.testing.programs import target_input
+from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
+
+PATIENCE = 120.0
+
+
+class Controllers:
+    """A folder of generated controllers, and what can be done with it."""
+
+    def __init__(self, folder: Path, program, types=None, **options) -> None:
+        self.folder = folder
+        self.program = program
+        self.logs = folder / "logs"
+        write(render(MAVLINK_PYTHON, target_input(program, types), **options), folder)
+
+    def start(self, script: str, *arguments: str) -> subprocess.Popen[str]:
+        command = [sys.executable, "-W", "error", str(self.folder / script), *arguments]
+        return subprocess.Popen(
+            command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def run(self, script: str, *arguments: str) -> tuple[int, str]:
+        """Run a script to its end; return its exit code and what it said."""
+        with self.start(script, *arguments) as process:
+            try:
+                _, said = process.communicate(timeout=PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise
+        return process.returncode, said
+
+    def replayed(self, *, partial: bool = False) -> ReplayResult:
+        return replay(self.program, read_logs([self.logs]), partial=partial)
+
+
+@pytest.fixture
+def controllers(tmp_path):
+    return lambda program, **options: Controllers(tmp_path / "controllers", program, **options)
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture
+def hangar():
+    """Return a function that switches on a vehicle at each robot's home, and gives the links to them."""
+    vehicles: list[SimulatedVehicle] = []
+
+    def open_hangar(program, speedup: float = 20.0, loss: float = 0.0, **settings):
+        links, found = ["--speedup", str(speedup)], {}
+        for robot in program.robots:
+            latitude, longitude = (42.37, 13.35)
+            if not program.frame.is_local:
+                ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
+            port = free_port()
+            given = Settings(latitude=latitude, longitude=longitude, **settings)
+            vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
+            vehicle.start()
+            vehicles.append(vehicle)
+            found[robot.id] = vehicle
+            links += ["--link", f"{robot.id}=udpin:127.0.0.1:{port}"]
+        return found, links
+
+    yield open_hangar
+    for vehicle in vehicles:
+        vehicle.stop()

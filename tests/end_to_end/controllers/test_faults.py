@@ -1,0 +1,207 @@
+from __future__ import annotations
+
+import signal
+import time
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.scene import Policy
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    go_to,
+    move,
+    notify,
+    photo,
+    program,
+    robot_program,
+    take_off,
+)
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+BRAKE = 17
+
+
+def one_drone(*policies: Policy, hold: float = 60.0, **robot):
+    moves = [
+        take_off("up", 10.0),
+        go_to("out", (0.0, 30.0, 12.0)),
+        replace(move("stay", "HoldPosition", duration=hold), after=(photo(),)),
+        LAND,
+    ]
+    return program(replace(robot_program("alpha", moves, **robot), policies=policies))
+
+
+def wait_for(test, seconds: float = 60.0) -> None:
+    until = time.monotonic() + seconds
+    while not test():
+        assert time.monotonic() < until, "waited in vain"
+        time.sleep(0.05)
+
+
+def at_work(vehicle):
+    return lambda: vehicle.autopilot.body.distance_to((30.0, 0.0, 12.0)) < 1.0
+
+
+def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar):
+    made = controllers(one_drone())
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(vehicles["alpha"]))
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "'alpha': stopped" in said
+    assert vehicles["alpha"].autopilot.mode == BRAKE
+    assert vehicles["alpha"].autopilot.body.pace < 0.3
+    assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
+
+
+def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(controllers, hangar):
+    made = controllers(one_drone())
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links, "--on-stop", "return") as process:
+        wait_for(at_work(vehicles["alpha"]))
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert not vehicles["alpha"].autopilot.armed
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+
+
+def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
+    made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(vehicles["alpha"]))
+        vehicles["alpha"].mute()
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 5, said
+    assert vehicles["alpha"].autopilot.parameters["FS_GCS_ENABLE"] == 5.0
+    assert made.replayed(partial=True).faults == {"alpha": "LINK_LOST"}
+
+
+def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
+    made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(vehicles["alpha"]))
+        vehicles["alpha"].mute()
+        time.sleep(0.5)
+        vehicles["alpha"].unmute()
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+
+
+def test_a_low_battery_brings_the_robot_home(controllers, hangar):
+    made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN"), hold=600.0))
+    vehicles, links = hangar(made.program, energy=100.0)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "BATTERY_LOW" in said
+    assert not vehicles["alpha"].autopilot.armed
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+
+
+def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
+    made = controllers(one_drone())
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(vehicles["alpha"]))
+        vehicles["alpha"].autopilot.set_mode(0)
+        _, said = process.communicate(timeout=90)
+    assert process.returncode == 1
+    assert "TAKEN_OVER" in said
+    assert vehicles["alpha"].autopilot.mode == 0
+
+
+def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
+    made = controllers(one_drone(Policy("DEVICE_SILENT", "LAND"), hold=1.0))
+    vehicles, links = hangar(made.program, silent=frozenset({2000}))
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "DEVICE_SILENT" in said
+    assert not vehicles["alpha"].autopilot.armed
+
+
+def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
+    made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
+    _, links = hangar(made.program, silent=frozenset({2000}))
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert "carries on" in said
+    assert made.replayed().complaints == ()
+
+
+def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
+    made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
+    vehicles, links = hangar(made.program, silent=frozenset({2000}))
+    code, said = made.run("fleet.py", *links)
+    assert code == 1, said
+    north, east, up = vehicles["alpha"].autopilot.body.position
+    assert -40.0 < east < -20.0
+    assert 0.0 < north < 20.0
+    assert up == 0.0
+
+
+def test_a_vehicle_far_from_home_does_not_start(controllers, hangar):
+    made = controllers(one_drone())
+    vehicles, links = hangar(made.program)
+    vehicles["alpha"].autopilot.body.position = (500.0, 0.0, 0.0)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "500 m from the home" in said
+    assert not vehicles["alpha"].autopilot.armed
+
+
+def test_a_vehicle_that_is_never_there_is_a_lost_link(controllers):
+    made = controllers(one_drone())
+    code, said = made.run("fleet.py", "--patience", "0.5", "--link", "alpha=udpin:127.0.0.1:0")
+    assert code == 5
+    assert "no vehicle at" in said
+
+
+def waiting_pair(*policies: Policy):
+    giver = robot_program("alpha", [take_off("up", 10.0), go_to("out", (0.0, 30.0, 10.0)), LAND])
+    taker = robot_program(
+        "beta",
+        [take_off("up", 10.0), LAND],
+        home=(50.0, 0.0, 0.0),
+        slots=("go",),
+        transitions={1: Transition(1, 2, waits=("go",))},
+    )
+    notified = replace(giver.moves[2], after=(notify(("beta", "go")),))
+    moves = (*giver.moves[:2], notified, *giver.moves[3:])
+    return program(replace(giver, moves=moves), replace(taker, policies=policies))
+
+
+def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
+    made = controllers(waiting_pair(Policy("PEER_LOST", "LAND", 5.0)))
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
+        vehicles["alpha"].autopilot.set_mode(0)
+        _, said = process.communicate(timeout=90)
+    assert process.returncode == 1
+    assert "'beta': PEER_LOST" in said
+    assert not vehicles["beta"].autopilot.armed
+    assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
+
+
+def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
+    made = controllers(waiting_pair(Policy("WAIT_TOO_LONG", "LAND", 2.0)))
+    vehicles, links = hangar(made.program)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "'beta': WAIT_TOO_LONG" in said
+    assert not vehicles["beta"].autopilot.armed
+
+
+@pytest.mark.parametrize("command", [22, 400, 176])
+def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
+    made = controllers(one_drone())
+    _, links = hangar(made.program, refuse=frozenset({command}))
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "REFUSED" in said

@@ -1,0 +1,155 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.scene import Device, DeviceAction, Frame
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    go_to,
+    move,
+    photo,
+    program,
+    quad,
+    robot_program,
+    take_off,
+    two_drones,
+)
+
+TAKE_OFF, WAYPOINT_MODE, PHOTO = 22, 3, 2000
+LAND = move("down", "Land", uri=MULTICOPTER)
+
+
+def commands(vehicle, number):
+    return [params for _, command, params in vehicle.autopilot.history if command == number]
+
+
+def test_a_dry_run_replays(controllers):
+    made = controllers(two_drones())
+    code, said = made.run("fleet.py", "--dry-run")
+    assert code == 0, said
+    assert made.replayed().outcome is Outcome.SUCCESS
+    assert made.replayed().complaints == ()
+
+
+def test_two_drones_fly_and_their_logs_replay(controllers, hangar):
+    made = controllers(two_drones())
+    vehicles, links = hangar(made.program)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    result = made.replayed()
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+    for vehicle in vehicles.values():
+        assert not vehicle.autopilot.armed
+        assert max(map(abs, vehicle.autopilot.body.position)) < 1.0
+
+
+def test_a_run_without_stops_is_flown_as_a_mission(controllers, hangar):
+    made = controllers(two_drones())
+    vehicles, links = hangar(made.program)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    alpha, beta = vehicles["alpha"], vehicles["beta"]
+    assert [item for _, item in alpha.autopilot.visited] == [1, 2, 3, 4, 5]
+    assert beta.autopilot.visited == []
+    assert len(commands(alpha, PHOTO)) == 1
+
+
+def test_fence_and_rally_points_are_uploaded(controllers, hangar):
+    made = controllers(two_drones())
+    vehicles, links = hangar(made.program)
+    made.run("fleet.py", *links)
+    stores = vehicles["alpha"].autopilot.stores
+    assert [item.command for item in stores[1]] == [5002] * 4
+    assert [item.command for item in stores[2]] == [5100]
+    assert vehicles["alpha"].autopilot.parameters["FENCE_ENABLE"] == 1.0
+
+
+def test_a_lossy_link_changes_nothing(controllers, hangar):
+    made = controllers(two_drones())
+    _, links = hangar(made.program, loss=0.15)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+
+
+def test_a_local_behaviour_is_stepped_in_local_coordinates(controllers, hangar):
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), go_to("a", (14.0, 26.0, 8.0)), go_to("b", (10.0, 20.0, 5.0)), LAND],
+        home=(10.0, 20.0, 0.0),
+        transitions={2: Transition(2, 3, fluid=True)},
+    )
+    made = controllers(program(robot, frame=Frame("EPSG:4326", None, None)))
+    vehicles, links = hangar(made.program)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.0
+
+
+def test_a_value_that_is_measured_is_recorded_with_its_place(controllers, hangar):
+    sensor = Device("gas", {"sample": DeviceAction("sample", 1.0)}, {"mavlink.value": "CO2"})
+    samples = replace(go_to("a", (0.0, 10.0, 10.0)), after=(photo("gas", "sample"),))
+    flown = program(robot_program("alpha", [take_off("up", 10.0), samples, LAND]))
+    made = controllers(flown, types=[replace(quad(), devices={"gas": sensor})])
+    _, links = hangar(flown, values={"CO2": lambda seconds: 412.5})
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    (record,) = map(json.loads, (made.logs / "alpha.records.ndjson").read_text("ascii").splitlines())
+    assert record["content"] == {"device": "gas", "result": 412.5}
+    assert record["place"]["latitude"] == pytest.approx(42.37009, abs=1e-5)
+
+
+def test_logs_are_never_overwritten(controllers):
+    made = controllers(two_drones())
+    assert made.run("fleet.py", "--dry-run")[0] == 0
+    code, said = made.run("fleet.py", "--dry-run")
+    assert code == 2
+    assert "alpha.jsonl" in said
+
+
+def test_a_choice_is_decided_by_the_users_own_conditions(controllers):
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), LAND],
+        transitions={1: Transition(1, 2, condition='it is "windy"', otherwise=3)},
+    )
+    made = controllers(program(robot))
+    code, said = made.run("fleet.py", "--dry-run")
+    assert code == 1
+    assert "nobody has said yet" in said
+    assert made.replayed(partial=True).faults == {"alpha": "CONDITION_FAILED"}
+
+    conditions = made.folder / "conditions.py"
+    decided = conditions.read_text("ascii").replace(": undecided,", ": lambda state: False,")
+    conditions.write_text(decided, "ascii")
+    code, said = made.run("fleet.py", "--dry-run", "--log", str(made.folder / "again"))
+    assert code == 0, said
+    assert "'choose'" not in said
+    assert '"detail": "false"' in (made.folder / "again/alpha.jsonl").read_text("ascii")
+
+
+def test_one_of_several_robots_does_not_start_alone(controllers):
+    made = controllers(two_drones())
+    code, said = made.run("robot_beta.py", "--dry-run")
+    assert code == 2
+    assert "waits for 'alpha'" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["--link", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
+        (["--link", "udpin:127.0.0.1:1"], "which robot"),
+        (["--speedup", "-1"], "must be positive"),
+    ],
+)
+def test_a_wrong_command_line_is_a_usage_error(controllers, arguments, complaint):
+    code, said = controllers(two_drones()).run("fleet.py", *arguments)
+    assert code == 2
+    assert complaint in said
