@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from mmrs_core.cli.preview.figures import quantity
 from mmrs_core.contributions.checks import Status, Verdict
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
@@ -14,7 +15,7 @@ def verdict_line(verdict: Verdict) -> str:
 
     A message names robot, move and area itself; without one, they are told here.
     """
-    margin = "" if verdict.margin is None else f"margin {verdict.margin:.3g} {verdict.unit}".rstrip()
+    margin = "" if verdict.margin is None else f"margin {quantity(verdict.margin, verdict.unit)}"
     told = [verdict.message] if verdict.message else [verdict.robot, verdict.move, verdict.area]
     return f"{verdict.property}: {', '.join(filter(None, (verdict.status.value, *told, margin)))}"
 
@@ -37,10 +38,11 @@ def _summary(found: Sequence[Verdict]) -> str:
     worst = min((each.status for each in found), key=_RANK.__getitem__)
     if worst is Status.NOT_CHECKED:
         reasons = dict.fromkeys(each.message for each in found if each.status is worst and each.message)
-        return f"{worst.value}: {next(iter(reasons), 'no reason given')}"
+        others = f", and {len(reasons) - 1} more" if len(reasons) > 1 else ""
+        return f"{worst.value}: {next(iter(reasons), 'no reason given')}{others}"
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
     if not margins:
         return str(worst.value)
     margin, least = min(margins, key=lambda pair: pair[0])
     who = f" ({least.robot}{f', near {least.area}' if least.area else ''})" if least.robot else ""
-    return f"{worst.value}, least margin {margin:.3g} {least.unit}".rstrip() + who
+    return f"{worst.value}, least margin {quantity(margin, least.unit)}{who}"

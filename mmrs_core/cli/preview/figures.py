@@ -8,6 +8,7 @@ _MINUTE = 60
 _HOUR = 3600
 _KILOMETRE = 1000.0
 _METRES_WITH_DECIMAL = 100.0
+_MANY_JOULES = 10_000.0
 
 
 def clock(seconds: float) -> str:
@@ -32,6 +33,18 @@ def length(metres: float) -> str:
     if abs(metres) >= _KILOMETRE:
         return f"{metres / _KILOMETRE:.2f} km"
     return f"{metres:.1f} m" if abs(metres) < _METRES_WITH_DECIMAL else f"{metres:.0f} m"
+
+
+def quantity(value: float, unit: str) -> str:
+    """Return a figure with its unit, without exponents.
+
+    >>> quantity(3.6912, "m"), quantity(104321.0, "J"), quantity(848.4, "s"), quantity(0.0, "")
+    ('3.69 m', '104 kJ', '848 s', '0')
+    """
+    if unit == "J" and abs(value) >= _MANY_JOULES:
+        return f"{value / 1000:.0f} kJ"
+    shown = f"{value:.0f}" if abs(value) >= _METRES_WITH_DECIMAL else f"{value:.3g}"
+    return f"{shown} {unit}".rstrip()
 
 
 def heights(low: float, high: float) -> str:

@@ -1,0 +1,58 @@
+"""What is said of plans, verdicts and runs is short and complete."""
+
+from mmrs_core.cli.plan_words import plan_lines, plan_summary
+from mmrs_core.cli.tables import table
+from mmrs_core.cli.verdict_words import verdict_line, verdict_table
+from mmrs_core.contributions.checks import Status, Verdict
+
+SAFE = Verdict("clearance", Status.SAFE, "Alba", 3.5, "m", "m1", "tower")
+SAFER = Verdict("clearance", Status.SAFE, "Brezza", 4.5, "m", "m2", "tower")
+BROKEN = Verdict(
+    "clearance", Status.VIOLATED, "Brezza", -0.5, "m", "m2", "barn", "Brezza: GoTo 'm2' comes too near"
+)
+UNKNOWN = Verdict("depth", Status.UNKNOWN, "Alba", message="Alba: water density is missing")
+
+
+def test_a_safe_property_is_one_line_with_its_least_margin():
+    assert list(verdict_table([SAFE, SAFER])) == ["  clearance  safe, least margin 3.5 m (Alba, near tower)"]
+
+
+def test_violations_and_unknowns_are_spelt_out():
+    lines = list(verdict_table([SAFE, BROKEN, UNKNOWN]))
+    assert lines == [
+        "  clearance  violated, least margin -0.5 m (Brezza, near barn)",
+        "    - clearance: violated, Brezza: GoTo 'm2' comes too near, margin -0.5 m",
+        "  depth      unknown",
+        "    - depth: unknown, Alba: water density is missing",
+    ]
+
+
+def test_a_verdict_without_message_names_robot_move_and_area():
+    assert verdict_line(SAFE) == "clearance: safe, Alba, m1, tower, margin 3.5 m"
+
+
+def test_reasons_not_to_check_are_counted():
+    reasons = [Verdict("wind", Status.NOT_CHECKED, name, message=f"{name}: no wind") for name in ("a", "b")]
+    assert list(verdict_table(reasons)) == ["  wind  not checked: a: no wind, and 1 more"]
+
+
+def test_a_plan_is_told_robot_by_robot(scene, plan):
+    lines = list(plan_lines(scene, plan))
+    assert lines[0] == "two drones: 3 tasks, 2 robots at work, done after 1:12"
+    assert lines[2].split() == ["Alba", "quad", "field", "170", "m", "0:50", "10.0", "Wh", "1"]
+    assert "not known" in lines[3]
+    assert lines[4] == "  note: terrain is taken as flat"
+
+
+def test_a_plan_is_told_as_values_too(scene, plan):
+    told = plan_summary(scene, plan)
+    assert told["robots"][0]["tasks"] == ("field",)
+    assert told["tasks"][1] == {"name": "fork", "begin": 31.0, "end": 31.0}
+
+
+def test_long_cells_are_cut():
+    assert list(table(("a",), [("x" * 50,)], widest=10)) == ["  a", "  xxxxxxxxx…"]
+
+
+def test_line_breaks_in_names_do_not_break_a_table():
+    assert list(table(("a",), [("x\ny",)])) == ["  a", "  x y"]
