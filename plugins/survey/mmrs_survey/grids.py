@@ -29,7 +29,7 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
     refuse_blocked(robot, scene, (entry,), "the initial position")
     action = text(part, "actionName")
     device = device_for(robot.type, action, text(part, "deviceId"))
-    spacing = spacing_of(part, device, altitude)
+    spacing, speed = spacing_of(part, device, altitude), number(part, "speed")
     work = work_over(
         scene,
         robot,
@@ -41,7 +41,8 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
         rule=RULE,
         action=action,
         device=device.id,
-        speed=number(part, "speed"),
+        speed=speed,
+        slow_down=None if speed is None else 1.0,
         start=(entry[0], entry[1]),
     )
     return replace(work, entry=entry)

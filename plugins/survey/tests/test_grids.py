@@ -60,9 +60,9 @@ def test_the_task_begins_at_its_initial_position_at_its_altitude(robot, scene, t
     assert photo_grid_work(grid(task, gridResolution=12.0), robot(), scene()).entry == (-5.0, -5.0, 20.0)
 
 
-def test_the_speed_of_the_task_limits_its_swaths(robot, scene, task):
+def test_the_speed_of_the_task_limits_the_cruise_speed_on_its_swaths(robot, scene, task):
     work = photo_grid_work(grid(task, gridResolution=12.0, speed=2.5), robot(), scene())
-    assert {stroke.speed for stroke in work.strokes} == {2.5}
+    assert {(stroke.speed, stroke.slow_down) for stroke in work.strokes} == {(2.5, 1.0)}
 
 
 def spacing(robot, task, properties, **more):
