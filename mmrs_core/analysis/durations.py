@@ -88,8 +88,15 @@ def durations_of(input: CheckInput, robot: RobotProgram, motion: Motion) -> Dura
         moving = UNKNOWN if index in gaps else _moving(input, robot, move, legs[index], kinematics)
         found[index] = _with_actions(move, moving, robot_type)
         if index not in gaps and found[index].whole.high == inf:
-            gaps[index] = Gap(index, "how long it takes is not known")
+            gaps[index] = Gap(index, _why_unbounded(move, robot_type))
     return Durations(found, tuple(gaps[index] for index in sorted(gaps)))
+
+
+def _why_unbounded(move: Move, robot_type: RobotType) -> str:
+    for action in (*move.before, *move.after):
+        if seconds_of(action, robot_type) is None:
+            return f"how long action '{action.name}' of device '{action.device}' takes is not known"
+    return "nothing bounds how long it takes"
 
 
 def _moving(

@@ -111,7 +111,7 @@ def unknown_moves(property: str, robot: RobotProgram, gaps: Iterable[Gap]) -> Ve
     missing = tuple(gaps)
     move = robot.moves[missing[0].move]
     others = len({gap.move for gap in missing} - {missing[0].move})
-    more = f", and {others} more moves are not known" if others else ""
+    more = f", and {others} more move{'s are' if others > 1 else ' is'} not known" if others else ""
     message = f"{robot.id}: {move.kind} '{move.id}': {missing[0].reason}{more}"
     return Verdict(property, Status.UNKNOWN, robot.id, move=move.id, message=message, place=move.place)
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
-from mmrs_core.analysis.synchronisation.network import Network, network_of
+from mmrs_core.analysis.synchronisation.network import Network, Node, network_of
 from mmrs_core.analysis.synchronisation.search import (
     LimitExceededError,
     Stuck,
@@ -27,11 +27,16 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
     if not network.awaited:
         yield Verdict(NAME, Status.SAFE, message="no robot waits for another")
         return
-    orphans = sorted(network.awaited - network.givers.keys())
-    for slot in orphans:
-        yield from _orphaned(program, network, slot)
-    if not orphans:
-        yield from _with_resets(program, network) if network.resets else _monotone(program, network)
+    orphaned = [
+        verdict
+        for slot in sorted(network.awaited - network.givers.keys())
+        for verdict in _orphaned(program, network, slot)
+    ]
+    yield from orphaned
+    named = {(verdict.robot, verdict.move) for verdict in orphaned}
+    for verdict in _with_resets(program, network) if network.resets else _monotone(program, network):
+        if not orphaned or (verdict.status is Status.VIOLATED and (verdict.robot, verdict.move) not in named):
+            yield verdict
 
 
 def _orphaned(program: Program, network: Network, slot: SlotId) -> Iterator[Verdict]:
@@ -79,13 +84,17 @@ def _certainly_stuck(
 
 def _trapped(program: Program, network: Network, trap: Trap) -> Iterator[Verdict]:
     choices = [
-        f"{net.robot} goes on with {_move(program, net.robot, net.nodes[after].move)}"
+        f"{net.robot} goes on with {_move(program, net.robot, _head(net.nodes[before], after))}"
         f" after {_move(program, net.robot, net.nodes[before].move)}"
         for net, way in zip(network.nets, trap.ways, strict=True)
         for before, after in pairwise(way)
         if len(net.nodes[before].ways) > 1
     ]
     yield from _stuck_verdicts(program, network, trap.stuck, f" if {', '.join(choices)}" if choices else "")
+
+
+def _head(node: Node, way: int) -> int:
+    return node.heads[node.ways.index(way)]
 
 
 def _with_resets(program: Program, network: Network) -> Iterator[Verdict]:

@@ -24,12 +24,14 @@ class Node:
         sets: groups of slots, in order; each group is set to its value by one notify.
         waits: what the transition waits for.
         ways: numbers of the nodes that may follow; empty for Stop and for a move that never ends.
+        heads: for each way, the move that it begins with, which may be passed over itself.
     """
 
     move: int
     sets: tuple[tuple[frozenset[SlotId], bool], ...] = ()
     waits: frozenset[SlotId] = frozenset()
     ways: tuple[int, ...] = ()
+    heads: tuple[int, ...] = ()
 
     @property
     def gives(self) -> frozenset[SlotId]:
@@ -97,12 +99,13 @@ def _net(robot: RobotProgram, reachable: frozenset[int], awaited: frozenset[Slot
     nodes: list[Node] = []
     for move in order:
         node = full[move]
-        nexts = dict.fromkeys(_next_kept(way, full, kept_moves) for way in node.ways)
+        nexts = {_next_kept(head, full, kept_moves): head for head in reversed(node.ways)}
         for way in nexts:
             if way not in number:
                 number[way] = len(order)
                 order.append(way)
-        nodes.append(Node(move, node.sets, node.waits, tuple(number[way] for way in nexts)))
+        ways = tuple(number[way] for way in nexts)
+        nodes.append(Node(move, node.sets, node.waits, ways, tuple(nexts.values())))
     return Net(robot.id, tuple(nodes), number.get(robot.stop))
 
 

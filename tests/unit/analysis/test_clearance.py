@@ -143,7 +143,7 @@ def test_an_object_without_a_place_is_unknown_and_says_so():
     verdict = past(lost, go("home", (0.0, 0.0, 0.0)), area=square(at=(0.0, 30.0)))
     assert (verdict.status, verdict.move) == (Status.UNKNOWN, "to buoy")
     assert verdict.message == (
-        "a: GoTo 'to buoy': where the object 'buoy' is, is not known, and 1 more moves are not known"
+        "a: GoTo 'to buoy': where the object 'buoy' is, is not known, and 1 more move is not known"
     )
 
 

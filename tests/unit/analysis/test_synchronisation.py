@@ -54,12 +54,19 @@ def test_a_slot_that_is_only_ever_made_inactive_is_never_activated():
     assert messages(a, b) == ["a: waits after HoldPosition 'h' for 'go', which nobody ever activates"]
 
 
+def test_who_waits_behind_an_orphaned_slot_is_named_too():
+    a = robot("a", [hold("h"), hold("i", after=(notify("b.go"),))], waits={"h": ["never"]})
+    b = robot("b", [hold("n")], waits={"n": ["go"]})
+    found = findings("synchronisation", given(a, b))
+    assert [(verdict.robot, verdict.move) for verdict in found] == [("a", "h"), ("b", "n")]
+
+
 def test_an_arm_that_does_not_notify_is_named():
     a = robot("a", [hold("h")], waits={"h": ["go"]})
     moves = [hold("fork"), hold("tell", after=(notify("a.go"),)), hold("idle")]
     b = robot("b", moves, choices={"fork": ("c", "tell", "idle")}, jumps={"tell": "stop"})
     assert messages(a, b) == [
-        "a: waits for ever after HoldPosition 'h' if b goes on with Stop 'stop' after HoldPosition 'fork':"
+        "a: waits for ever after HoldPosition 'h' if b goes on with HoldPosition 'idle' after HoldPosition 'fork':"
         " 'go' would be activated by b on HoldPosition 'tell'"
     ]
 
