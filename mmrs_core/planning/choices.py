@@ -1,0 +1,112 @@
+"""A choice carried out by one robot: every arm planned, the longest one counted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from mmrs_core.planning.jobs import Choice
+from mmrs_core.planning.materials import Material
+from mmrs_core.planning.runs import Run
+from mmrs_core.planning.sorties import Pilot, Ready, State
+from mmrs_core.scene import Branch, Position
+
+MaterialOf = Callable[[str], "Material | None"]
+"""The material of a task for the robot; None if it cannot do the task."""
+
+_NOTHING = Ready()
+
+
+def carry_out(
+    pilot: Pilot, choice: Choice, material_of: MaterialOf, state: State, ready: Ready, *, record: bool
+) -> State | None:
+    """Return the state after a choice: that of the longest arm; None if the robot cannot do every arm.
+
+    The robot goes to where the longest arm begins, waits, and there tests the conditions; all arms end
+    at one place.
+    """
+    begin = _begin(choice, material_of)
+    if begin is None:
+        return None
+    there = pilot.reach(state, (begin,), pilot.exit_seconds(begin), ready, choice.name)
+    return None if there is None else _branched(pilot, choice, material_of, there, record)
+
+
+def _begin(choice: Choice, material_of: MaterialOf) -> Position | None:
+    """Return where the first task of the longest arm begins; None if some task cannot be done."""
+    best: tuple[float, Position] | None = None
+    for _, items in choice.arms:
+        tasks = [task for item in items for task in _tasks(item)]
+        materials = [material_of(task) for task in tasks]
+        known = [material for material in materials if material is not None]
+        if len(known) < len(materials):
+            return None
+        seconds = sum(material.seconds(0, len(material) - 1) for material in known)
+        if known and (best is None or seconds > best[0]):
+            best = (seconds, known[0].via(0)[0])
+    return None if best is None else best[1]
+
+
+def _tasks(item: str | Choice) -> list[str]:
+    return list(item.tasks()) if isinstance(item, Choice) else [item]
+
+
+def _branched(
+    pilot: Pilot, choice: Choice, material_of: MaterialOf, state: State, record: bool
+) -> State | None:
+    ends = []
+    for _, items in choice.arms:
+        end = _arm(pilot, items, material_of, replace(state, trail=None), record)
+        if end is None:
+            return None
+        ends.append(end)
+    joined = [_joined(pilot, ends, place, choice.name) for place in dict.fromkeys(end.at for end in ends)]
+    found = [each for each in joined if each is not None]
+    if not found:
+        return None
+    best = min(found, key=lambda each: max(end.time for end in each))
+    return _merged(choice, state, best)
+
+
+def _arm(
+    pilot: Pilot, items: Sequence[str | Choice], material_of: MaterialOf, state: State, record: bool
+) -> State | None:
+    """Return the state after an arm's tasks and inner choices; None if the robot cannot do them."""
+    now: State | None = state
+    for item in items:
+        if now is None:
+            return None
+        if isinstance(item, Choice):
+            empty = not list(item.tasks())
+            now = now if empty else carry_out(pilot, item, material_of, now, _NOTHING, record=record)
+            continue
+        material = material_of(item)
+        if material is None:
+            return None
+        run = Run(pilot, material, now, 0, _NOTHING, record=record)
+        now = run.state(len(material) - 1) if run.can_do(len(material) - 1) else None
+    return now
+
+
+def _joined(pilot: Pilot, ends: Sequence[State], place: Position, name: str) -> list[State] | None:
+    """Return the arms' ends once all have come to one place; None if one cannot."""
+    there = [pilot.reach(end, (place,), pilot.exit_seconds(place), _NOTHING, name) for end in ends]
+    found = [end for end in there if end is not None]
+    return found if len(found) == len(ends) else None
+
+
+def _merged(choice: Choice, state: State, ends: Sequence[State]) -> State:
+    """Return a state that is on the safe side of every arm's end."""
+    arms = tuple((condition, end.steps()) for (condition, _), end in zip(choice.arms, ends, strict=True))
+    time = max(end.time for end in ends)
+    branch = Branch(state.time, time, choice.name, arms, ends[0].at)
+    return State(
+        time=time,
+        at=ends[0].at,
+        away=True,
+        used=max(end.used for end in ends),
+        length=max(end.length for end in ends),
+        busy=max(end.busy for end in ends),
+        sorties=max(end.sorties for end in ends),
+        trail=(state.trail, branch),
+    )

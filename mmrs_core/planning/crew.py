@@ -1,0 +1,144 @@
+"""The robots of a scene and what each of them can do, laid out for planning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.jobs import is_control
+from mmrs_core.planning.materials import Layout, Material, charge_faults, faults, lay_out, layout_of
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.strokes import uncertain_seconds
+from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
+from mmrs_core.scene import Scene, Task, Work
+
+Direction = bool
+"""Whether a material is laid out backwards."""
+
+
+class Crew:
+    """Pilots by robot and materials by task and robot, made once for a scene.
+
+    Attributes:
+        scene: expanded.
+        pilots: by name of robot, in the scene's order.
+        teams: by name of task: robots that may share it, by sort of work; robots of different sorts
+            (such as cameras with different footprints) cannot.
+        refusals: by (task, robot): why the robot cannot do the task.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        spaces, slack = Spaces(scene), _slack(scene)
+        self.pilots: Mapping[str, Pilot] = {
+            robot.name: Pilot(Travel(robot, spaces.of(robot), scene.transit_altitude), slack)
+            for robot in scene.robots
+        }
+        self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
+        self._layouts: dict[tuple[str, str], Layout] = {}
+        self._materials: dict[tuple[str, str, Direction], Material | None] = {}
+        self.teams: Mapping[str, tuple[tuple[str, ...], ...]] = {
+            task.name: self._teams(task) for task in scene.tasks if not is_control(task)
+        }
+
+    def _teams(self, task: Task) -> tuple[tuple[str, ...], ...]:
+        sorts: list[tuple[Work, list[str]]] = []
+        for name, pilot in self.pilots.items():
+            work = self._sound_work(task, pilot)
+            if work is None:
+                continue
+            team = next((team for other, team in sorts if other is work or other == work), None)
+            if team is None:
+                sorts.append((work, [name]))
+            else:
+                team.append(name)
+        return tuple(self._able(task.name, work, team) for work, team in sorts)
+
+    def _sound_work(self, task: Task, pilot: Pilot) -> Work | None:
+        """Return the robot's work of a task; None, with the reason kept, if it cannot do it."""
+        key = (task.name, pilot.robot.name)
+        work = self.scene.works.get(key)
+        if work is None:
+            self.refusals.setdefault(key, "has no work for it")
+            return None
+        found = list(faults(work, pilot))
+        if found:
+            self.refusals[key] = "; ".join(found)
+            return None
+        return work
+
+    def _able(self, task: str, work: Work, team: Sequence[str]) -> tuple[str, ...]:
+        """Lay the work out for each robot of a team; return those that find a way through it."""
+        layout = layout_of(work, self.pilots[team[0]], len(team))
+        able = []
+        for name in team:
+            self._layouts[task, name] = layout
+            try:
+                self._materials[task, name, False] = lay_out(task, work, layout, self.pilots[name])
+                able.append(name)
+            except UnreachableError as error:
+                self.refusals[task, name] = str(error)
+        return tuple(able)
+
+    def forwards(self, task: str, robot: str) -> Material | None:
+        """Return the material of a task for a robot; None if it cannot do the task."""
+        return self._materials.get((task, robot, False))
+
+    def backwards(self, task: str, robot: str) -> Material | None:
+        """Return the material in the other direction; None if it has only one."""
+        key = (task, robot, True)
+        if key not in self._materials:
+            layout = self._layouts[task, robot]
+            made = None
+            if layout.can_turn:
+                work = self.scene.works[task, robot]
+                try:
+                    made = lay_out(task, work, layout, self.pilots[robot], backwards=True)
+                except UnreachableError:
+                    made = None
+            self._materials[key] = made
+        return self._materials[key]
+
+    def able(self, task: str) -> tuple[str, ...]:
+        """Return all robots that can do a task, in the scene's order."""
+        found = {name for team in self.teams[task] for name in team}
+        return tuple(name for name in self.pilots if name in found)
+
+    def shortfalls(self) -> Iterator[str]:
+        """Yield what makes tasks impossible whatever the plan: nobody able, or too few."""
+        for task in self.scene.tasks:
+            if is_control(task):
+                continue
+            largest = max((len(team) for team in self.teams[task.name] if team), default=0)
+            if not largest:
+                yield f"task '{task.name}' can be done by no robot ({self.why_not(task.name)})"
+            elif task.wanted is not None and task.wanted > largest:
+                others = self.why_not(task.name)
+                rest = f" ({others})" if others else ""
+                yield (
+                    f"task '{task.name}' wants {task.wanted} robots, {largest} can share it:"
+                    f" {task.wanted - largest} short{rest}"
+                )
+
+    def why_not(self, task: str) -> str:
+        """Return why robots cannot do a task, robot by robot."""
+        return "; ".join(
+            f"{name}: {self.refusals[task, name]}" for name in self.pilots if (task, name) in self.refusals
+        )
+
+    def short_of_charge(self, task: str) -> Iterator[str]:
+        """Yield, robot by robot, what of a task does not fit into a sortie."""
+        for name in self.able(task):
+            material = self.forwards(task, name)
+            for fault in charge_faults(material, self.pilots[name]) if material is not None else ():
+                yield f"{name}: {fault}"
+
+
+def _slack(scene: Scene) -> float:
+    """Return by how many seconds the whole mission may be quicker than estimated."""
+    kinematics = {robot.name: kinematics_of(robot) for robot in scene.robots}
+    by_task: dict[str, float] = {}
+    for (task, robot), work in scene.works.items():
+        seconds = sum(uncertain_seconds(stroke, kinematics[robot]) for stroke in work.strokes)
+        by_task[task] = max(by_task.get(task, 0.0), seconds)
+    return sum(by_task.values())

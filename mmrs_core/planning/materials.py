@@ -1,0 +1,220 @@
+"""The work of a task laid out for one robot: small portions in a row, with the seconds between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.strokes import (
+    can_turn,
+    commanded_speed,
+    joined,
+    length_of,
+    missing_action,
+    parts_of,
+    serve_seconds,
+    turned,
+)
+from mmrs_core.scene import Position, Stroke, Work
+
+_PORTIONS_PER_ROBOT = 12
+"""Portions that a robot's share is made of, if all capable robots share alike: how finely it is balanced."""
+
+_PORTIONS_PER_CHARGE = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A work as portions that go to one robot each, in one direction.
+
+    Attributes:
+        task: name of its task.
+        rule: name of the rule that made it.
+        portions: strokes of each portion; robots take runs of portions.
+        begins, ends: seconds at which each portion begins and ends when one robot does them all.
+        entry: where whoever does the first portion goes first; None: nowhere.
+        whole: whether one robot must do all of it in one sortie.
+    """
+
+    task: str
+    rule: str
+    portions: tuple[tuple[Stroke, ...], ...]
+    begins: tuple[float, ...]
+    ends: tuple[float, ...]
+    entry: Position | None
+    whole: bool
+
+    def __len__(self) -> int:
+        return len(self.portions)
+
+    def first(self, index: int) -> Position:
+        """Return where a portion begins."""
+        return self.portions[index][0].points[0]
+
+    def last(self, index: int) -> Position:
+        """Return where a portion ends."""
+        return self.portions[index][-1].points[-1]
+
+    def seconds(self, begin: int, end: int) -> float:
+        """Return the seconds from the beginning of one portion to the end of another, hops included."""
+        return self.ends[end] - self.begins[begin]
+
+    def via(self, index: int) -> tuple[Position, ...]:
+        """Return the places that whoever begins with a portion goes to."""
+        if index == 0 and self.entry is not None and self.entry != self.first(0):
+            return (self.entry, self.first(0))
+        return (self.first(index),)
+
+    def strokes(self, begin: int, end: int) -> tuple[Stroke, ...]:
+        """Return the strokes of a run of portions, parts of one stroke put together again."""
+        return joined(stroke for portion in self.portions[begin : end + 1] for stroke in portion)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How works of one sort are divided: the same for all robots that may share them.
+
+    Attributes:
+        portions: strokes of each portion.
+        can_turn: whether the whole may be done backwards, stroke by stroke.
+    """
+
+    portions: tuple[tuple[Stroke, ...], ...]
+    can_turn: bool
+
+
+def layout_of(work: Work, pilot: Pilot, robots: int) -> Layout:
+    """Divide a work into portions, fine enough to balance so many robots and to fit into sorties.
+
+    Args:
+        work: to be divided; an indivisible one is a single portion.
+        pilot: of one robot that can do it.
+        robots: how many may share it.
+    """
+    if not work.divisible:
+        return Layout((work.strokes,), can_turn=False)
+    parts = [part for stroke in work.strokes for part in parts_of(stroke)]
+    seconds = [serve_seconds(part, pilot.robot, pilot.kinematics) for part in parts]
+    target = min(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), pilot.limit / _PORTIONS_PER_CHARGE)
+    turns = not work.ordered and work.entry is None and all(can_turn(stroke) for stroke in work.strokes)
+    return Layout(tuple(_gathered(parts, seconds, target)), turns)
+
+
+def _gathered(
+    parts: Sequence[Stroke], seconds: Sequence[float], target: float
+) -> Iterator[tuple[Stroke, ...]]:
+    """Yield runs of parts that take about so long each."""
+    run: list[Stroke] = []
+    spent = 0.0
+    for part, each in zip(parts, seconds, strict=True):
+        if run and spent + each / 2 > target:
+            yield tuple(run)
+            run, spent = [], 0.0
+        run.append(part)
+        spent += each
+    if run:
+        yield tuple(run)
+
+
+def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: bool = False) -> Material:
+    """Return the material of a work for one robot.
+
+    Raises:
+        UnreachableError: a stroke is too near to an area, or no way leads from one to the next.
+    """
+    portions = layout.portions
+    if backwards:
+        portions = tuple(tuple(turned(part) for part in reversed(portion)) for portion in reversed(portions))
+    begins, ends, now = [], [], 0.0
+    here: Position | None = None
+    for portion in portions:
+        for i, stroke in enumerate(portion):
+            if here is not None and here != stroke.points[0]:
+                now += pilot.travel.hop(here, stroke.points[0]).seconds
+            if i == 0:
+                begins.append(now)
+            now += serve_seconds(stroke, pilot.robot, pilot.kinematics)
+            here = stroke.points[-1]
+        ends.append(now)
+    entry = _entry(work, pilot)
+    return Material(task, work.rule, portions, tuple(begins), tuple(ends), entry, not work.divisible)
+
+
+def _entry(work: Work, pilot: Pilot) -> Position | None:
+    """Return the entry at a height at which the robot may travel."""
+    if work.entry is None:
+        return None
+    east, north, up = work.entry
+    return (east, north, max(pilot.kinematics.floor, min(up, pilot.kinematics.ceiling)))
+
+
+def faults(work: Work, pilot: Pilot) -> Iterator[str]:
+    """Yield why a robot cannot do a work, whatever the plan: heights, clearance, actions, speed, charge."""
+    if not work.strokes:
+        yield "there is nothing to be done"
+        return
+    yield from _height_faults(work.strokes, pilot)
+    for stroke in work.strokes:
+        near = pilot.travel.space.blockers(stroke.points)
+        if near:
+            yield f"its way is within the clearance of {near}"
+            break
+    lacking = {
+        missing_action(pilot.robot.type, action) for stroke in work.strokes for action in stroke.actions
+    }
+    yield from sorted(reason for reason in lacking if reason is not None)
+    yield from _speed_faults(work.strokes, pilot)
+
+
+def _height_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:
+    heights = [point[2] for stroke in strokes for point in stroke.points]
+    lowest, highest = pilot.kinematics.floor, pilot.kinematics.ceiling
+    if max(heights) > highest + 1e-6:
+        short = max(heights) - highest
+        yield f"it may go up to {highest:g} m, {max(heights):g} m are needed: {short:.1f} m short"
+    if min(heights) < lowest - 1e-6:
+        short = lowest - min(heights)
+        yield f"it may go down to {lowest:g} m, {min(heights):g} m are needed: {short:.1f} m short"
+
+
+def _speed_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:
+    allowed = min((stroke.speed for stroke in strokes if stroke.speed is not None), default=None)
+    if allowed is not None and allowed < pilot.kinematics.slowest:
+        slowest = pilot.kinematics.slowest
+        yield f"it cannot go slower than {slowest:g} m/s, at most {allowed:g} m/s are allowed"
+    still = min(commanded_speed(stroke, pilot.kinematics) for stroke in strokes)
+    if still <= 0.0 and any(length_of(stroke.points) > 0.0 for stroke in strokes):
+        yield "its speed there is zero"
+
+
+def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
+    """Yield why a robot cannot do some portion even in a sortie of its own, and by how much it is short."""
+    worst, needed = 0, 0.0
+    for i in range(len(material)):
+        try:
+            seconds = _sortie_seconds(material, pilot, i)
+        except UnreachableError as error:
+            yield str(error)
+            return
+        if seconds > needed:
+            worst, needed = i, seconds
+    short = needed - pilot.limit
+    if short > 1e-9:
+        east, north, _ = material.first(worst)
+        what = "it" if material.whole else f"the piece at ({east:.0f}, {north:.0f})"
+        yield (
+            f"{what} takes {needed:.0f} s there and back, of one charge {pilot.limit:.0f} s may be used:"
+            f" {short:.0f} s short"
+        )
+
+
+def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:
+    """Return the seconds of a sortie for one portion."""
+    places = material.via(index)
+    out = pilot.travel.leave(places[0]).seconds
+    out += sum(pilot.travel.go(one, two).seconds for one, two in pairwise(places))
+    back = pilot.way_out(material.last(index)).seconds
+    return out + material.seconds(index, index) + back

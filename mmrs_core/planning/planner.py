@@ -1,0 +1,84 @@
+"""Who does what, when, and by which way: the plan of an expanded scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.assembly import assemble
+from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.jobs import Job, jobs_of
+from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
+from mmrs_core.planning.search import broken_times, find_decisions
+from mmrs_core.planning.separation import separated
+from mmrs_core.scene import Plan, Scene
+
+
+def plan(scene: Scene, *, seed: int = 0) -> Plan:
+    """Return a plan in which the last robot is back as early as could be found.
+
+    Every task is done exactly once, by robots that can do it, in the order of the dependencies; no
+    sortie takes more than a charge less the reserve allows, waits included; every leg keeps its
+    clearance. The same scene and seed give the same plan.
+
+    Args:
+        scene: expanded: kinematics and works are known.
+        seed: of the local search.
+
+    Raises:
+        InfeasibleError: no plan was found; its reasons say what is short, and by how much.
+    """
+    jobs = jobs_of(scene)
+    crew = Crew(scene)
+    _refuse(list(crew.shortfalls()), "no plan")
+    decisions, found = find_decisions(crew, jobs, seed)
+    if isinstance(found, Shortfall):
+        _refuse(_reasons(crew, jobs, found), "no plan")
+        raise InfeasibleError(f"task '{found.job}': no robots are left that could do it in time")
+    late = broken_times(crew, found.spans)
+    _refuse([reason for reason, _ in late], "no plan keeps all times")
+    return separated(scene, decisions, lambda decided: _planned(crew, jobs, decided))
+
+
+def _planned(crew: Crew, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
+    """Return the plan of decisions; None if they lead to none, or times are broken."""
+    found = schedule(crew, jobs, decisions, record=True)
+    if isinstance(found, Shortfall) or broken_times(crew, found.spans):
+        return None
+    return assemble(crew, jobs, found)
+
+
+def _refuse(reasons: Sequence[str], what: str) -> None:
+    if reasons:
+        more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
+        raise InfeasibleError(f"{what}: {reasons[0]}{more}", reasons)
+
+
+def _reasons(crew: Crew, jobs: Sequence[Job], found: Shortfall) -> list[str]:
+    """Return what is short for the job that could not be done, and for all others that are alike."""
+    reasons = []
+    for job in jobs:
+        for task in job.tasks():
+            able, short = crew.able(task), list(crew.short_of_charge(task))
+            if len({reason.split(":")[0] for reason in short}) == len(able):
+                reasons.append(f"task '{task}' is too long for every robot ({'; '.join(short)})")
+    job = next(job for job in jobs if job.name == found.job)
+    return reasons or [_general(crew, job)]
+
+
+def _general(crew: Crew, job: Job) -> str:
+    if job.choice is not None:
+        return f"fork '{job.name}': no robot can do all of its ways (all are one robot's work)"
+    task = crew.scene.task(job.name)
+    whole = min(
+        each.seconds(0, len(each) - 1)
+        for robot in crew.able(task.name)
+        if (each := crew.forwards(task.name, robot)) is not None
+    )
+    charges = "; ".join(
+        f"{name}: {crew.pilots[name].limit:.0f} s a charge"
+        + (", cannot recharge" if crew.pilots[name].kinematics.recharge is None else "")
+        for name in crew.able(task.name)
+    )
+    wanted = f" by exactly {task.wanted} robots" if task.wanted is not None else ""
+    return f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted} within ({charges})"

@@ -1,0 +1,222 @@
+"""From decisions to times: jobs one after the other, each shared out as well as can be by then."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from math import inf
+
+from mmrs_core.planning.choices import carry_out
+from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.runs import Run
+from mmrs_core.planning.sharing import Candidate, Sharing, share_out
+from mmrs_core.planning.sorties import Ready, State
+from mmrs_core.scene import Task
+
+_SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
+
+
+@dataclass(frozen=True, slots=True)
+class Decisions:
+    """What a search may vary.
+
+    Attributes:
+        order: names of jobs; of those that may begin, the first in this order is scheduled next.
+        teams: by job: how many robots share it, or which ones; missing: as many as help most.
+        delays: by robot: seconds after the mission's start before which it does not leave home.
+    """
+
+    order: tuple[str, ...]
+    teams: Mapping[str, int | tuple[str, ...]] = field(default_factory=dict)
+    delays: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """When what is done.
+
+    Attributes:
+        states: by robot, after its last share.
+        spans: by job, (begin, end) in seconds.
+        ends: by job and robot that has a share: when that share ends.
+        backs: by robot that has something to do: when it is back.
+    """
+
+    states: Mapping[str, State]
+    spans: Mapping[str, tuple[float, float]]
+    ends: Mapping[str, Mapping[str, float]]
+    backs: Mapping[str, float]
+
+    @property
+    def makespan(self) -> float:
+        """Seconds until the last robot is back."""
+        return max(self.backs.values(), default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Shortfall:
+    """A job that no robots could be found for."""
+
+    job: str
+
+
+def signal_name(job: str, robot: str) -> str:
+    """Return the name of the signal that a robot's share of a job has ended."""
+    return f"{job} ended by {robot}"
+
+
+def schedule(
+    crew: Crew, jobs: Sequence[Job], decisions: Decisions, *, record: bool = False
+) -> Schedule | Shortfall:
+    """Return the schedule that follows from decisions.
+
+    Args:
+        crew: of the scene.
+        jobs: of the scene.
+        decisions: order, teams, delays.
+        record: whether the states carry all steps.
+    """
+    return _Scheduling(crew, decisions, record).run(jobs)
+
+
+class _Scheduling:
+    def __init__(self, crew: Crew, decisions: Decisions, record: bool) -> None:
+        self._crew, self._decisions, self._record = crew, decisions, record
+        self._tasks = {task.name: task for task in crew.scene.tasks}
+        self._states = {
+            name: pilot.start(decisions.delays.get(name, 0.0)) for name, pilot in crew.pilots.items()
+        }
+        self._ends: dict[str, Mapping[str, float]] = {}
+        self._spans: dict[str, tuple[float, float]] = {}
+        self._busy: set[str] = set()
+
+    def run(self, jobs: Sequence[Job]) -> Schedule | Shortfall:
+        place = {name: i for i, name in enumerate(self._decisions.order)}
+        waiting = sorted(jobs, key=lambda job: place[job.name])
+        while waiting:
+            job = next(job for job in waiting if all(name in self._ends for name in job.after))
+            waiting.remove(job)
+            if not self._do(job):
+                return Shortfall(job.name)
+        pilots = self._crew.pilots
+        backs = {
+            name: state.time + (pilots[name].exit_seconds(state.at) if state.away else 0.0)
+            for name, state in self._states.items()
+            if name in self._busy
+        }
+        return Schedule(self._states, self._spans, self._ends, backs)
+
+    def _do(self, job: Job) -> bool:
+        if not job.tasks():
+            self._ends[job.name] = {
+                name: end for before in job.after for name, end in self._ends[before].items()
+            }
+            return True
+        if job.choice is not None:
+            return self._choose(job)
+        sharing = self._best_sharing(job)
+        if sharing is None:
+            return False
+        ends = {}
+        for share in sharing.shares:
+            name = share.candidate.pilot.robot.name
+            self._states[name] = share.run.state(share.end)
+            ends[name] = share.run.ended(share.end)
+        begin = min(share.run.started() for share in sharing.shares)
+        self._note(job, ends, begin)
+        return True
+
+    def _note(self, job: Job, ends: Mapping[str, float], begin: float) -> None:
+        self._ends[job.name] = ends
+        self._spans[job.name] = (begin, max(ends.values()))
+        self._busy |= ends.keys()
+
+    def _ready(self, job: Job, robot: str, earliest: float | None) -> Ready:
+        """Return what a robot's share of a job waits for: every other robot's share of those before."""
+        others = {
+            signal_name(before, name): end
+            for before in job.after
+            for name, end in self._ends[before].items()
+            if name != robot
+        }
+        return Ready(max(others.values(), default=0.0), tuple(others), earliest)
+
+    def _choose(self, job: Job) -> bool:
+        """Give a choice to the robot that is back first after its longest arm."""
+        choice = job.choice
+        if choice is None:
+            return False
+        best: tuple[float, str, State] | None = None
+        for name in self._allowed(job):
+            pilot, state = self._crew.pilots[name], self._states[name]
+            ready = self._ready(job, name, self._earliest(job))
+            materials = partial(self._crew.forwards, robot=name)
+            end = carry_out(pilot, choice, materials, state, ready, record=self._record)
+            back = inf if end is None else end.time + pilot.exit_seconds(end.at)
+            if end is not None and back < inf and (best is None or back < best[0] - 1e-9):
+                best = (back, name, end)
+        if best is None:
+            return False
+        _, name, end = best
+        begin = end.trail[1].begin if end.trail is not None else end.time
+        self._states[name] = end
+        self._note(job, {name: end.time}, begin)
+        return True
+
+    def _earliest(self, job: Job) -> float | None:
+        times = [self._tasks[name].earliest for name in job.tasks()]
+        return max((time for time in times if time is not None), default=None)
+
+    def _allowed(self, job: Job) -> Sequence[str]:
+        team = self._decisions.teams.get(job.name)
+        return team if isinstance(team, tuple) else tuple(self._crew.pilots)
+
+    def _best_sharing(self, job: Job) -> Sharing | None:
+        best: Sharing | None = None
+        task = self._tasks[job.name]
+        for team in self._crew.teams[job.name]:
+            candidates = self._candidates(job, task, team)
+            for some, everyone in self._choices_of(task, candidates):
+                found = share_out(some, everyone=everyone, record=self._record)
+                if found is not None and (best is None or found.back < best.back - 1e-6):
+                    best = found
+        return best
+
+    def _candidates(self, job: Job, task: Task, team: Sequence[str]) -> list[Candidate]:
+        """Return the robots of a team, those first that are first back from the first portion."""
+        found = []
+        for name in team:
+            forwards = self._crew.forwards(job.name, name)
+            if forwards is None:
+                continue
+            pilot, state = self._crew.pilots[name], self._states[name]
+            ready = self._ready(job, name, task.earliest)
+            run = Run(pilot, forwards, state, 0, ready, record=False)
+            each = Candidate(pilot, state, ready, forwards, self._crew.backwards(job.name, name))
+            found.append((run.back(0), each))
+        return [each for _, each in sorted(found, key=lambda pair: pair[0])]
+
+    def _choices_of(
+        self, task: Task, candidates: Sequence[Candidate]
+    ) -> Iterator[tuple[Sequence[Candidate], bool]]:
+        """Yield the teams to be tried, and whether each robot in them must have a share."""
+        decided = self._decisions.teams.get(task.name)
+        if isinstance(decided, tuple):
+            chosen = [each for each in candidates if each.pilot.robot.name in decided]
+            if chosen and (task.wanted is None or len(chosen) == task.wanted):
+                yield chosen, task.wanted is not None
+            return
+        if task.wanted is not None:
+            if task.wanted <= len(candidates):
+                yield candidates[: task.wanted], True
+            return
+        if candidates and candidates[0].forwards.whole:
+            yield from (([each], False) for each in candidates)
+            return
+        if decided is not None and decided < len(candidates):
+            yield candidates[:decided], False
+            return
+        sizes = {size for size in _SOME_SIZES if size < len(candidates)} | {len(candidates)}
+        yield from ((candidates[:size], False) for size in sorted(sizes) if size)

@@ -1,0 +1,147 @@
+"""Looks for decisions that let the last robot be back early: steps of a seeded local search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import inf
+from random import Random
+from typing import TypeAlias
+
+from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.jobs import Job
+from mmrs_core.planning.schedule import Decisions, Schedule, Shortfall, schedule
+
+Cost: TypeAlias = tuple[float, float, float]
+
+_STEPS = 40
+"""Schedules that are tried; a count, not a time, so that the same seed gives the same plan."""
+
+_PATIENCE = 15
+"""Steps without a gain after which the search ends."""
+
+
+def find_decisions(crew: Crew, jobs: Sequence[Job], seed: int) -> tuple[Decisions, Schedule | Shortfall]:
+    """Return the best decisions found, with their schedule; a shortfall if none led to a schedule.
+
+    Args:
+        crew: of the scene.
+        jobs: in an order in which none comes before one that it waits for.
+        seed: of the search.
+    """
+    order = _first_order(crew, jobs)
+    starts = [
+        Decisions(order),
+        Decisions(order, {job.name: 1 for job in jobs}),
+        *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(crew, jobs)),
+    ]
+    tried = [(each, schedule(crew, jobs, each)) for each in starts]
+    best, found = min(tried, key=lambda pair: cost_of(crew, pair[1]))
+    random, idle = Random(seed), 0
+    for _ in range(_STEPS if len(jobs) > 1 else 0):
+        other = _varied(crew, jobs, best, random)
+        result = schedule(crew, jobs, other)
+        if cost_of(crew, result) < _slightly_less(cost_of(crew, found)):
+            best, found, idle = other, result, 0
+        else:
+            idle += 1
+        if idle >= _PATIENCE:
+            break
+    return best, found
+
+
+def _only_ones(crew: Crew, jobs: Sequence[Job]) -> list[str]:
+    """Return robots that could do all jobs, for the plan in which one robot does everything."""
+    tasks = [task for job in jobs for task in job.tasks()]
+    wanted = {task.name: task.wanted for task in crew.scene.tasks}
+    if any((wanted[task] or 1) > 1 for task in tasks):
+        return []
+    return [name for name in crew.pilots if all(name in crew.able(task) for task in tasks)][:1]
+
+
+def cost_of(crew: Crew, found: Schedule | Shortfall) -> Cost:
+    """Return (seconds by which times are broken, makespan, sum of all robots' times); less is better."""
+    if isinstance(found, Shortfall):
+        return (inf, inf, inf)
+    broken = sum(late for _, late in broken_times(crew, found.spans))
+    return (broken, found.makespan, sum(found.backs.values()))
+
+
+def broken_times(crew: Crew, spans: Mapping[str, tuple[float, float]]) -> list[tuple[str, float]]:
+    """Return (what is broken, by how many seconds) for deadlines and longest durations of tasks."""
+    broken = []
+    for task in crew.scene.tasks:
+        begin, end = spans.get(task.name, (0.0, 0.0))
+        if task.deadline is not None and end > task.deadline + 1e-6:
+            late = end - task.deadline
+            words = (
+                f"ends {end:.0f} s after the start, its deadline is {task.deadline:.0f} s: {late:.0f} s late"
+            )
+            broken.append((f"task '{task.name}' {words}", late))
+        if task.longest is not None and end - begin > task.longest + 1e-6:
+            over = end - begin - task.longest
+            words = f"takes {end - begin:.0f} s, {task.longest:.0f} s are allowed: {over:.0f} s too long"
+            broken.append((f"task '{task.name}' {words}", over))
+    return broken
+
+
+def _slightly_less(cost: Cost) -> Cost:
+    return (cost[0] - 1e-9, cost[1], cost[2]) if cost[0] > 0 else (0.0, cost[1] - 1e-6, cost[2])
+
+
+def _first_order(crew: Crew, jobs: Sequence[Job]) -> tuple[str, ...]:
+    """Return the jobs by priority, then by how long what comes after them is, longest first."""
+    tails = _tails(crew, jobs)
+    priority = {task.name: task.priority for task in crew.scene.tasks}
+    ranked = {job.name: max((priority[name] for name in job.tasks()), default=0) for job in jobs}
+    names = [job.name for job in jobs]
+    return tuple(sorted(names, key=lambda name: (-ranked[name], -tails[name], names.index(name))))
+
+
+def _tails(crew: Crew, jobs: Sequence[Job]) -> Mapping[str, float]:
+    """Return, by job, the seconds of work of the longest chain that begins with it."""
+    tails = {job.name: _seconds(crew, job) for job in jobs}
+    own = dict(tails)
+    for job in reversed(jobs):
+        for before in job.after:
+            tails[before] = max(tails[before], own[before] + tails[job.name])
+    return tails
+
+
+def _seconds(crew: Crew, job: Job) -> float:
+    """Return the seconds of work of a job for the robots that are slowest at it."""
+    total = 0.0
+    for task in job.tasks():
+        materials = [crew.forwards(task, robot) for robot in crew.able(task)[:3]]
+        total += max((each.seconds(0, len(each) - 1) for each in materials if each is not None), default=0.0)
+    return total
+
+
+def _varied(crew: Crew, jobs: Sequence[Job], decisions: Decisions, random: Random) -> Decisions:
+    """Return decisions that differ in one place: who does a job, how many do, or when it comes."""
+    job = random.choice(list(jobs))
+    if random.random() < 0.35 and len(jobs) > 2:
+        return replace(decisions, order=_swapped(crew, decisions.order, random))
+    tasks = job.tasks()
+    able = [name for name in crew.pilots if all(name in crew.able(task) for task in tasks)] if tasks else []
+    if not able:
+        return decisions
+    teams = dict(decisions.teams)
+    if random.random() < 0.3 and job.name in teams:
+        del teams[job.name]
+    else:
+        wanted = None if job.choice is not None else crew.scene.task(job.name).wanted
+        size = wanted or min(len(able), random.choice((1, 1, 2, 2, 3, random.randint(1, len(able)))))
+        teams[job.name] = tuple(sorted(random.sample(able, min(size, len(able)))))
+    return replace(decisions, teams=teams)
+
+
+def _swapped(crew: Crew, order: tuple[str, ...], random: Random) -> tuple[str, ...]:
+    """Return the order with two jobs swapped, if neither has priority over the other."""
+    priority = {task.name: task.priority for task in crew.scene.tasks}
+    one, two = sorted(random.sample(range(len(order)), 2))
+    if priority.get(order[one], 0) != priority.get(order[two], 0):
+        return order
+    swapped = list(order)
+    swapped[one], swapped[two] = swapped[two], swapped[one]
+    return tuple(swapped)

@@ -1,0 +1,305 @@
+"""A robot's way through its plan: a state that grows step by step, within what its batteries allow.
+
+Time on one charge counts as the verifier counts it: for a robot that launches, from launch to recovery,
+waits aloft included; for all others from the mission's start or the last recharge on. Energy is mean
+power times time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import TypeAlias
+
+from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.strokes import commanded_speed, length_of, serve_seconds
+from mmrs_core.planning.travel import Travel, Way
+from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Step, Stroke, Transit
+
+Trail: TypeAlias = "tuple[Trail, Step] | None"
+
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where a robot is in its plan.
+
+    Attributes:
+        time: seconds after the mission's start.
+        at: where it is.
+        away: whether it has left home since it was last there to stay.
+        used: seconds on this charge.
+        length: metres travelled. busy: seconds away from home. sorties: times it left home.
+        trail: its steps so far, last one first.
+    """
+
+    time: float
+    at: Position
+    away: bool = False
+    used: float = 0.0
+    length: float = 0.0
+    busy: float = 0.0
+    sorties: int = 0
+    trail: Trail = None
+
+    def steps(self) -> tuple[Step, ...]:
+        """Return the steps so far, in order."""
+        return tuple(reversed(list(_backwards(self.trail))))
+
+
+def _backwards(trail: Trail) -> Iterator[Step]:
+    while trail is not None:
+        trail, step = trail
+        yield step
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """What must have happened before a share of work may begin.
+
+    Attributes:
+        time: estimated, seconds; when the signals will have been given.
+        signals: that it waits for.
+        earliest: seconds before which it may not begin by the clock; None: none.
+    """
+
+    time: float = 0.0
+    signals: tuple[str, ...] = ()
+    earliest: float | None = None
+
+    @property
+    def open(self) -> float:
+        """When the share may begin, seconds."""
+        return max(self.time, self.earliest or 0.0)
+
+
+class Pilot:
+    """Moves one robot's state on; every way of doing something is a short function of the state."""
+
+    def __init__(self, travel: Travel, slack: float = 0.0) -> None:
+        """Make it.
+
+        Args:
+            travel: ways of the robot.
+            slack: seconds by which others may be later, and the robot earlier, than estimated: so much
+                longer may a wait for others be.
+        """
+        self.travel, self._slack = travel, slack
+        self.robot, self.kinematics = travel.robot, travel.kinematics
+        power = self.kinematics.power
+        by_energy = self.kinematics.energy / power if power > 0 else inf
+        self.limit = min(self.kinematics.endurance, by_energy)
+
+    def start(self, delay: float = 0.0) -> State:
+        """Return the state in which the mission begins, after a delay at home."""
+        state = State(0.0, self.robot.home)
+        return self._wait(state, Ready(earliest=delay), "") if delay > 0 else state
+
+    def exit_seconds(self, position: Position) -> float:
+        """Return the seconds that ending the sortie from a place takes; inf where it cannot be ended."""
+        try:
+            return self.way_out(position).seconds
+        except UnreachableError:
+            return inf
+
+    def way_out(self, position: Position) -> Way:
+        """Return the way on which a sortie is ended from a place: home, or down where that is allowed.
+
+        Raises:
+            UnreachableError: there is neither.
+        """
+        if self.robot.return_home:
+            return self.travel.go_home(position)
+        try:
+            return self.travel.come_down(position)
+        except UnreachableError:
+            return self.travel.go_home(position)
+
+    def affords(self, state: State, seconds: float, end: Position) -> bool:
+        """Return whether so many seconds that end at a place leave enough to end the sortie there."""
+        return state.used + seconds + self.exit_seconds(end) <= self.limit + _SAME
+
+    def reach(
+        self, state: State, via: Sequence[Position], need: float, ready: Ready, task: str
+    ) -> State | None:
+        """Return the state in which the robot begins work, as early as can be; None if it cannot.
+
+        It goes there and waits, or first goes home for full batteries where it would have too little
+        left, or would wait so long that this is no later.
+
+        Args:
+            state: where it is.
+            via: places to go to, the last one being where the work begins.
+            need: seconds it must then have left, the end of the sortie included.
+            ready: what the work waits for.
+            task: that it is for.
+        """
+        now = self._with_enough(self._reach_now(state, via, ready, task), need)
+        if now is not None and now.time - state.time < (self.kinematics.recharge or inf):
+            return now
+        rested = self.rested(state, task)
+        later = None if rested is None else self._reach_now(rested, via, ready, task)
+        found = [each for each in (now, self._with_enough(later, need)) if each is not None]
+        return min(found, key=lambda each: (each.time, each.used), default=None)
+
+    def _with_enough(self, state: State | None, need: float) -> State | None:
+        return state if state is not None and state.used + need <= self.limit + _SAME else None
+
+    def rested(self, state: State, task: str) -> State | None:
+        """Return the state at home with full batteries; None if the robot is fresh or cannot."""
+        if self.kinematics.recharge is None or state.used == 0.0:
+            return None
+        try:
+            home = self.home(state, task)
+        except UnreachableError:
+            return None
+        return self._recharged(home, task) if home.used <= self.limit + _SAME else None
+
+    def _reach_now(self, state: State, via: Sequence[Position], ready: Ready, task: str) -> State | None:
+        try:
+            if not state.away:
+                return self._from_home(state, via, ready, task)
+            return self._wait(self._along(state, via, task), ready, task)
+        except UnreachableError:
+            return None
+
+    def _from_home(self, state: State, via: Sequence[Position], ready: Ready, task: str) -> State:
+        """Wait at home for signals and clock, then go; wait for the rest of the clock where work begins."""
+        there = self._along(self._wait(state, replace(ready, earliest=None), task), via, task)
+        if ready.earliest is None or there.time >= ready.earliest:
+            return there
+        travel = there.time - max(state.time, ready.time)
+        later = max(0.0, ready.earliest - travel)
+        start = self._wait(state, replace(ready, earliest=later), task)
+        return self._wait(self._along(start, via, task), Ready(earliest=ready.earliest), task)
+
+    def _wait(self, state: State, ready: Ready, task: str) -> State:
+        clock = ready.earliest if ready.earliest is not None and ready.earliest > state.time else None
+        if not ready.signals and clock is None:
+            return state
+        end = max(state.time, ready.open)
+        step = Await(state.time, end, task, ready.signals, clock)
+        waited = end - state.time
+        longest = max(waited, ready.time + self._slack - state.time) if ready.signals else waited
+        counts = state.away or not self.kinematics.launches
+        return replace(
+            state,
+            time=end,
+            used=state.used + (longest if counts else 0.0),
+            busy=state.busy + (waited if state.away else 0.0),
+            trail=(state.trail, step),
+        )
+
+    def _along(self, state: State, via: Sequence[Position], task: str) -> State:
+        for goal in via:
+            if not state.away:
+                state = self._leave(state, goal, task)
+            elif state.at != goal:
+                state = self._follow(state, self.travel.go(state.at, goal), task)
+        return state
+
+    def _leave(self, state: State, goal: Position, task: str) -> State:
+        way = self.travel.leave(goal)
+        trail, time = state.trail, state.time
+        if way.height is not None:
+            climb = way.height - self.robot.home[2]
+            up = time + self.kinematics.launch + self.travel.space.rates.upright(climb)
+            trail = (trail, Launch(time, up, task, self.robot.home, way.height))
+            time = up
+        end = state.time + way.seconds
+        if len(way.route) > 1 and way.route[0] != way.route[-1]:
+            trail = (trail, Transit(time, end, task, way.route))
+        return replace(
+            state,
+            time=end,
+            at=goal,
+            away=True,
+            used=state.used + way.seconds,
+            length=state.length + way.length,
+            busy=state.busy + way.seconds,
+            sorties=state.sorties + 1,
+            trail=trail,
+        )
+
+    def _follow(self, state: State, way: Way, task: str) -> State:
+        end = state.time + way.seconds
+        return replace(
+            state,
+            time=end,
+            at=way.route[-1],
+            used=state.used + way.seconds,
+            length=state.length + way.length,
+            busy=state.busy + way.seconds,
+            trail=(state.trail, Transit(state.time, end, task, way.route)),
+        )
+
+    def hop(self, state: State, goal: Position, task: str) -> State:
+        """Return the state after the quickest way to the next stroke of a task."""
+        return state if state.at == goal else self._follow(state, self.travel.hop(state.at, goal), task)
+
+    def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:
+        """Return the state after a stroke, whose first point the robot is at."""
+        seconds = serve_seconds(stroke, self.robot, self.kinematics)
+        speed = commanded_speed(stroke, self.kinematics)
+        end = state.time + seconds
+        step = Serve(state.time, end, task, stroke, speed, rule, first, last)
+        return replace(
+            self.skip(state, seconds, length_of(stroke.points), stroke.points[-1]), trail=(state.trail, step)
+        )
+
+    def skip(self, state: State, seconds: float, length: float, at: Position) -> State:
+        """Return the state so many seconds and metres later, without steps."""
+        return replace(
+            state,
+            time=state.time + seconds,
+            at=at,
+            used=state.used + seconds,
+            length=state.length + length,
+            busy=state.busy + seconds,
+        )
+
+    def home(self, state: State, task: str = "") -> State:
+        """Return the state at home, after recovery.
+
+        Raises:
+            UnreachableError: there is no way home.
+        """
+        return self._ended(state, self.travel.go_home(state.at), task) if state.away else state
+
+    def finish(self, state: State) -> State:
+        """Return the state at the end of the plan: at home, or on the ground where the robot may stay.
+
+        Raises:
+            UnreachableError: there is no way home.
+        """
+        return self._ended(state, self.way_out(state.at), "") if state.away else state
+
+    def _ended(self, state: State, way: Way, task: str) -> State:
+        end, trail = state.time + way.seconds, state.trail
+        down = 0.0
+        last = way.route[-1]
+        at = last
+        if self.kinematics.launches and way.height is not None:
+            ground = self.robot.home[2] if len(way.route) > 1 else way.height
+            down = self.travel.space.rates.upright(ground - last[2]) + self.kinematics.recovery
+            at = (last[0], last[1], ground)
+        if len(way.route) > 1 and way.route[0] != last:
+            trail = (trail, Transit(state.time, end - down, task, way.route))
+        if self.kinematics.launches:
+            trail = (trail, Recover(end - down, end, task, last, at[2]))
+        return replace(
+            state,
+            time=end,
+            at=at,
+            away=False,
+            used=state.used + way.seconds,
+            length=state.length + way.length,
+            busy=state.busy + way.seconds,
+            trail=trail,
+        )
+
+    def _recharged(self, state: State, task: str) -> State:
+        end = state.time + (self.kinematics.recharge or 0.0)
+        return replace(state, time=end, used=0.0, trail=(state.trail, Recharge(state.time, end, task)))

@@ -1,0 +1,210 @@
+"""The ways of one robot: from home, between places, and back home, with the seconds they take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, inf
+
+from mmrs_core.errors import InternalError, UnreachableError
+from mmrs_core.planning.layers import Rates
+from mmrs_core.planning.paths import Space
+from mmrs_core.planning.strokes import length_of
+from mmrs_core.scene import Kinematics, Position, Robot, Scene
+
+_NEAR_HOME = 2.0
+"""Metres around a home within which the ground has the home's height; elsewhere it has the origin's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way that a robot goes.
+
+    Attributes:
+        route: straight legs, one position or more.
+        seconds: of the whole way, launch or recovery included.
+        length: metres, likewise.
+        height: to which it launches before, or from which it comes down after; None: neither.
+    """
+
+    route: tuple[Position, ...]
+    seconds: float
+    length: float
+    height: float | None = None
+
+
+class Spaces:
+    """The spaces of a scene's robots; robots of one clearance, band and speed share theirs."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._areas = tuple(scene.kept_from())
+        self._spaces: dict[tuple[float, float, float, Rates], Space] = {}
+
+    def of(self, robot: Robot) -> Space:
+        """Return the space of a robot whose kinematics are known."""
+        kinematics = kinematics_of(robot)
+        rates = Rates(kinematics.cruise, kinematics.climb, kinematics.descent)
+        key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates)
+        if key not in self._spaces:
+            self._spaces[key] = Space(self._areas, *key[:3], rates=rates)
+        return self._spaces[key]
+
+
+def kinematics_of(robot: Robot) -> Kinematics:
+    """Return the kinematics of a robot of an expanded scene."""
+    if robot.kinematics is None:
+        raise InternalError(f"robot '{robot.name}' has no kinematics: its scene was not expanded")
+    return robot.kinematics
+
+
+class Travel:
+    """Ways of one robot; remembered, as plans ask for the same ones again and again."""
+
+    def __init__(self, robot: Robot, space: Space, transit_altitude: float | None) -> None:
+        """Make it for a robot.
+
+        Args:
+            robot: with its kinematics.
+            space: its space.
+            transit_altitude: height at which it goes between home and tasks, where it may and can.
+        """
+        self.robot, self.space = robot, space
+        self.kinematics = kinematics_of(robot)
+        aloft = transit_altitude if self.kinematics.launches else None
+        self._altitude = None if aloft is None else self._within(aloft)
+        self._leaving: dict[Position, Way | str] = {}
+        self._returning: dict[Position, Way | str] = {}
+        self._between: dict[tuple[Position, Position], Way | str] = {}
+
+    def _within(self, height: float) -> float:
+        lowest = max(self.kinematics.floor, self.robot.home[2])
+        return max(lowest, min(height, self.kinematics.ceiling))
+
+    def leave(self, goal: Position) -> Way:
+        """Return the way from home to a place.
+
+        Raises:
+            UnreachableError: there is none.
+        """
+        if goal not in self._leaving:
+            self._leaving[goal] = self._outward(goal)
+        return _found(self._leaving[goal])
+
+    def go_home(self, start: Position) -> Way:
+        """Return the way from a place to home, down to the ground for robots that launch.
+
+        Raises:
+            UnreachableError: there is none.
+        """
+        if start not in self._returning:
+            self._returning[start] = self._inward(start)
+        return _found(self._returning[start])
+
+    def go(self, start: Position, goal: Position) -> Way:
+        """Return the way between two places.
+
+        Raises:
+            UnreachableError: there is none.
+        """
+        if (start, goal) not in self._between:
+            self._between[start, goal] = self._across(start, goal)
+        return _found(self._between[start, goal])
+
+    def hop(self, start: Position, goal: Position) -> Way:
+        """Return the quickest way between two strokes of one task.
+
+        Raises:
+            UnreachableError: there is none.
+        """
+        return self._way(self.space.route(start, goal))
+
+    def come_down(self, start: Position) -> Way:
+        """Return the way down to the ground where the robot is; for robots that need not return.
+
+        Raises:
+            UnreachableError: something is below.
+        """
+        if not self.kinematics.launches:
+            return Way((start,), 0.0, 0.0)
+        home = self.robot.home
+        near = hypot(start[0] - home[0], start[1] - home[1]) <= _NEAR_HOME
+        ground = home[2] if near else 0.0
+        column = (start, (start[0], start[1], ground))
+        below = self.space.blockers(column)
+        if below:
+            raise UnreachableError(f"the ground below ({start[0]:.1f}, {start[1]:.1f}) is close to {below}")
+        seconds = self.space.seconds(column) + self.kinematics.recovery
+        return Way((start,), seconds, length_of(column), ground)
+
+    def _way(self, route: tuple[Position, ...]) -> Way:
+        return Way(route, self.space.seconds(route), length_of(route))
+
+    def _outward(self, goal: Position) -> Way | str:
+        if not self.kinematics.launches:
+            return self._routed(self.robot.home, goal)
+        best: Way | str = ""
+        for height in self._launch_heights(goal):
+            above, reason = self._above_home(height)
+            way = reason or self._routed(above, goal, level=height)
+            if isinstance(way, str):
+                best = best or way
+                continue
+            climb = height - self.robot.home[2]
+            seconds = self.kinematics.launch + self.space.rates.upright(climb) + way.seconds
+            return Way(way.route, seconds, way.length + climb, height)
+        return best
+
+    def _inward(self, start: Position) -> Way | str:
+        if not self.kinematics.launches:
+            return self._routed(start, self.robot.home)
+        best: Way | str = ""
+        for height in self._launch_heights(start):
+            above, reason = self._above_home(height)
+            way = reason or self._routed(start, above, level=height)
+            if isinstance(way, str):
+                best = best or way
+                continue
+            drop = height - self.robot.home[2]
+            seconds = way.seconds + self.space.rates.upright(-drop) + self.kinematics.recovery
+            return Way(way.route, seconds, way.length + drop, height)
+        return best
+
+    def _launch_heights(self, other: Position) -> list[float]:
+        """Return heights above home worth a try, the preferred one first."""
+        first = self._within(other[2]) if self._altitude is None else self._altitude
+        rest = [self._within(height) for height in (other[2], other[2] / 2, other[2] / 4, -inf, inf)]
+        return list(dict.fromkeys(height for height in (first, *rest) if height < inf))
+
+    def _above_home(self, height: float) -> tuple[Position, str]:
+        """Return the place above home, and what blocks the way up to it."""
+        home = self.robot.home
+        above = (home[0], home[1], height)
+        near = self.space.blockers((home, above))
+        return above, f"home of robot '{self.robot.name}' is within the clearance of {near}" if near else ""
+
+    def _across(self, start: Position, goal: Position) -> Way | str:
+        return self._routed(start, goal, level=self._altitude)
+
+    def _routed(self, start: Position, goal: Position, level: float | None = None) -> Way | str:
+        """Return the way at a level where that is clear, else the quickest; or why there is none."""
+        try:
+            if level is not None and self._altitude is not None and start[:2] != goal[:2]:
+                raised = self._raised(start, goal, level)
+                if raised is not None:
+                    return self._way(raised)
+            return self._way(self.space.route(start, goal))
+        except UnreachableError as error:
+            return str(error)
+
+    def _raised(self, start: Position, goal: Position, level: float) -> tuple[Position, ...] | None:
+        """Return a route up to a level, along it, and down to the goal; None where something is above."""
+        up, over = (start[0], start[1], level), (goal[0], goal[1], level)
+        if not (self.space.is_clear((start, up)) and self.space.is_clear((over, goal))):
+            return None
+        route = (start, *self.space.route(up, over), goal)
+        return tuple(each for i, each in enumerate(route) if i == 0 or each != route[i - 1])
+
+
+def _found(way: Way | str) -> Way:
+    if isinstance(way, str):
+        raise UnreachableError(way)
+    return way
