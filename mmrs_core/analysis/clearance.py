@@ -2,7 +2,8 @@
 
 Every leg of every move counts, launching and landing included, and so does where a robot begins and
 ends. What must be kept is the area's safety distance, half the robot's diagonal and the position
-error, in all three dimensions. Emergency areas forbid nothing.
+error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid the robot is
+taken to pass the corner itself: what it cuts off is part of the position error.
 """
 
 from __future__ import annotations

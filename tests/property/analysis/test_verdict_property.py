@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from checking import findings, given, square
+from checking import findings, given, rover, square
 from hypothesis import given as for_all
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -96,7 +96,19 @@ def test_leaving_out_one_notify_strands_all_that_wait_behind_it(chain, data):
     mutant = [*chain[:cut], replace(chain[cut], moves=moves), *chain[cut + 1 :]]
     assert findings("synchronisation", given(*chain))[0].status is Status.SAFE
     found = findings("synchronisation", given(*mutant))
-    assert [(verdict.status, verdict.robot) for verdict in found] == [(Status.VIOLATED, f"r{cut + 1}")]
+    assert {verdict.status for verdict in found} == {Status.VIOLATED}
+    assert [verdict.robot for verdict in found] == behind(chain, cut + 1)
+
+
+def behind(chain, first):
+    """Return who is stuck if that robot is: those after it, up to one that has told before it waits."""
+    stuck = []
+    for each in chain[first:]:
+        stuck.append(each.id)
+        last = len(each.moves) - 2
+        if each.transitions[last].waits:
+            break
+    return stuck
 
 
 @settings(max_examples=60, deadline=None)
@@ -110,3 +122,38 @@ def test_a_notify_turned_round_strands_the_robot_that_it_was_for(chain, data):
     mutant = [*chain[:cut], replace(chain[cut], moves=moves), *chain[cut + 1 :]]
     found = findings("synchronisation", given(*mutant))
     assert (Status.VIOLATED, f"r{cut + 1}") in [(verdict.status, verdict.robot) for verdict in found]
+
+
+@st.composite
+def fleets(draw):
+    """Draw robots that each go to some places in a field of their own, 1000 m from the next."""
+    made = []
+    for i in range(draw(st.integers(1, 4))):
+        places = draw(st.lists(POINTS, min_size=1, max_size=5))
+        moves = [go(f"m{j}", (e + 1000.0 * i, n, up)) for j, (e, n, up) in enumerate(places)]
+        made.append(robot(f"r{i}", moves, home=(1000.0 * i, 0.0, 0.0)))
+    return made
+
+
+@settings(max_examples=60, deadline=None)
+@for_all(fleets(), st.data())
+def test_an_area_put_around_a_waypoint_is_violated_by_that_robot_alone(fleet, data):
+    culprit = data.draw(st.sampled_from(fleet))
+    move = data.draw(st.sampled_from([move for move in culprit.moves if move.target]))
+    e, n, up = move.target.position
+    area = square("trap", at=(e, n), half=2.0, low=up - 1.0, high=up + 1.0)
+    found = findings("clearance", given(*fleet, areas=(area,)))
+    violated = [verdict for verdict in found if verdict.status is Status.VIOLATED]
+    assert [(verdict.robot, verdict.area) for verdict in violated] == [(culprit.id, "trap")]
+    assert violated[0].margin == pytest.approx(-0.5)
+    assert {verdict.robot for verdict in found} == {each.id for each in fleet}
+
+
+@settings(max_examples=60, deadline=None)
+@for_all(fleets(), st.floats(0.01, 0.99))
+def test_a_lifetime_shorter_than_a_robot_needs_is_violated_by_the_robots_that_need_more(fleet, part):
+    needed = [800.0 - verdict.margin for verdict in findings("endurance", given(*fleet))]
+    enough = part * max(needed) / 0.8
+    found = findings("endurance", given(*fleet, type=rover(lifetime=enough)))
+    short = {verdict.robot for verdict in found if verdict.status is Status.VIOLATED}
+    assert short == {each.id for each, use in zip(fleet, needed, strict=True) if use > 0.8 * enough + 1e-3}

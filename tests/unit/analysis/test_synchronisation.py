@@ -66,8 +66,8 @@ def test_an_arm_that_does_not_notify_is_named():
     moves = [hold("fork"), hold("tell", after=(notify("a.go"),)), hold("idle")]
     b = robot("b", moves, choices={"fork": ("c", "tell", "idle")}, jumps={"tell": "stop"})
     assert messages(a, b) == [
-        "a: waits for ever after HoldPosition 'h' if b goes on with HoldPosition 'idle' after HoldPosition 'fork':"
-        " 'go' would be activated by b on HoldPosition 'tell'"
+        "a: waits for ever after HoldPosition 'h' if b goes on with HoldPosition 'idle' after"
+        " HoldPosition 'fork': 'go' would be activated by b on HoldPosition 'tell'"
     ]
 
 
