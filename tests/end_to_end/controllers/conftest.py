@@ -55,7 +55,13 @@ def controllers(tmp_path):
     return lambda program, **options: Controllers(tmp_path / "controllers", program, **options)
 
 
-def free_port() -> int:
+@pytest.fixture
+def free_port():
+    """Return a function that finds a UDP port that nobody uses."""
+    return _free_port
+
+
+def _free_port() -> int:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
@@ -72,7 +78,7 @@ def hangar():
             latitude, longitude = (42.37, 13.35)
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
-            port = free_port()
+            port = _free_port()
             given = Settings(latitude=latitude, longitude=longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
             vehicle.start()

@@ -1,0 +1,117 @@
+"""The upload and command path, and the plans, against a peer that is not ours: MAVSDK."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.generation.qgc.target import QGC_PLAN
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.resources import shipped
+from mmrs_core.testing.programs import target_input, two_drones
+
+PEERS = Path(__file__).parents[2] / "peers"
+
+
+@pytest.fixture
+def flight(monkeypatch):
+    """Return the runtime of generated controllers as a package."""
+    monkeypatch.syspath_prepend(str(shipped("codegen_templates") / "mavlink-python"))
+    import mmrs_flight.clock
+    import mmrs_flight.commands
+    import mmrs_flight.link
+    import mmrs_flight.missions
+    import mmrs_flight.ports
+    import mmrs_flight.uploads
+
+    yield mmrs_flight
+    for name in [name for name in sys.modules if name.partition(".")[0] == "mmrs_flight"]:
+        del sys.modules[name]
+
+
+class Peer:
+    """A program around MAVSDK, which logs to the same output as it talks to."""
+
+    def __init__(self, script: str, *arguments: str) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, str(PEERS / script), *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.communicate()
+
+    def next(self):
+        for line in self.process.stdout:
+            if line.startswith("peer "):
+                return json.loads(line.removeprefix("peer "))
+        raise AssertionError("the peer has ended")
+
+
+@pytest.fixture
+def link(flight, free_port):
+    port = free_port()
+    made = flight.link.Link(flight.ports.open_port(f"udpin:127.0.0.1:{port}"), flight.clock.Clock())
+    yield made, str(port)
+    made.close()
+
+
+def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(flight, link):
+    made, port = link
+    robot = flight.Robot(
+        id="alpha",
+        log="alpha.jsonl",
+        vehicle="copter",
+        home=flight.Geographic(42.37, 13.35, 0.0),
+        start="a",
+        steps=tuple(
+            flight.Step(move, flight.GoTo(flight.Geographic(latitude, 13.35, 20.0), speed=5.0))
+            for move, latitude in (("a", 42.3701), ("b", 42.3702), ("c", 42.3703))
+        ),
+        runs=(flight.Run(("a", "b", "c"), (1.0, 0.0, 1.0)),),
+    )
+    items, _ = flight.uploads.mission_of(robot)
+    with Peer("mavsdk_autopilot.py", port) as peer:
+        assert made.wait(lambda: made.component, 30.0), "MAVSDK is not heard"
+        assert peer.next()["what"] == "ready"
+        flight.missions.upload(made, items)
+        found = peer.next()
+        assert [item[0] for item in found["items"]] == [16, 178, 16, 16, 16, 17]
+        assert found["items"][2] == [16, 3, 423701000, 133500000, 20.0, 1.0, 0.0]
+        flight.missions.verify(made, items)
+        flight.commands.command(made, 400, 1)
+        assert peer.next() == {"what": "arm", "arm": True}
+
+
+def test_mavsdk_reads_the_plans(tmp_path, hangar, free_port):
+    program = two_drones()
+    write(render(QGC_PLAN, target_input(program), allow_lossy=True), tmp_path)
+    plans = sorted(tmp_path.glob("*.plan"))
+    _, links = hangar(program, speedup=1.0)
+    port = links[3].rpartition(":")[2]
+    with Peer("mavsdk_import.py", port, *map(str, plans)) as peer:
+        for path in plans:
+            plan, found = json.loads(path.read_text("utf-8")), peer.next()
+            home, *items = [item[:5] for item in found["mission"]]
+            latitude, longitude, height = plan["mission"]["plannedHomePosition"]
+            assert home == [16, 5, round(latitude * 1e7), round(longitude * 1e7), height]
+            assert items == [expected(item) for item in plan["mission"]["items"]]
+            assert [item[0] for item in found["fence"]] == [5002] * 4
+            assert [item[0] for item in found["rally"]] == [5100]
+
+
+def expected(item):
+    latitude, longitude, height = item["params"][4:]
+    return [item["command"], item["frame"], round(latitude * 1e7), round(longitude * 1e7), height]

@@ -1,0 +1,250 @@
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.scene import Device, DeviceAction, Frame, Policy
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    feedback,
+    go_to,
+    move,
+    notify,
+    photo,
+    program,
+    quad,
+    robot_program,
+    take_off,
+    target_input,
+    two_drones,
+)
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+HOSTILE = [
+    '"; import os; os.mkdir("canary"); "',
+    "a\nimport os\nos.mkdir('canary')\n#",
+    "*/",
+    "${x}",
+    "{{ 7*7 }}{% raw %}",
+    "\\u000aimport os",
+    "\u202eabc",
+    "class",
+    "json",
+    "fleet",
+    "'''",
+    '"""\nimport os\nos.mkdir("canary")\n"""',
+    "\x00\x1b[31m",
+    "x" * 10_000,
+]
+names = st.text(min_size=1, max_size=30)
+
+
+def generated(made, **options):
+    files = render(MAVLINK_PYTHON, target_input(made, options.pop("types", None)), **options)
+    return {file.path: file.content for file in files}
+
+
+def refused(*moves, types=None, **robot):
+    with pytest.raises(UnsupportedError) as error:
+        generated(program(robot_program("alpha", moves, **robot)), types=types)
+    return error.value.elements
+
+
+def named(robots, tasks="t", moves="m", slots="s", conditions="c", texts="x"):
+    """Return a behaviour with these names everywhere that models may hold names."""
+    first = robot_program(
+        robots[0],
+        [
+            replace(take_off("up", 5.0), id=f"{moves}1", task=tasks, rule=tasks),
+            replace(
+                go_to(f"{moves}2", (0.0, 9.0, 5.0), task=tasks),
+                before=(feedback(texts, (texts, texts)), photo()),
+                after=(notify((robots[1], slots)),),
+            ),
+            replace(LAND, id=f"{moves}3"),
+        ],
+        transitions={1: Transition(1, 2, condition=conditions, otherwise=3)},
+    )
+    second = robot_program(
+        robots[1],
+        [replace(take_off("up", 5.0), id=f"{moves}1"), replace(LAND, id=f"{moves}2")],
+        home=(50.0, 0.0, 0.0),
+        slots=(slots,),
+        transitions={1: Transition(1, 2, waits=(slots,))},
+    )
+    return program(first, second, name=tasks)
+
+
+def shape(source: bytes) -> str:
+    """Return the syntax of a module without its texts and module names."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            node.value = ""
+    return ast.dump(tree)
+
+
+def test_every_generated_python_file_compiles():
+    for path, content in generated(two_drones()).items():
+        if path.endswith(".py"):
+            compile(content, path, "exec")
+
+
+@pytest.mark.parametrize("hostile", HOSTILE, ids=lambda text: ascii(text)[:20])
+def test_a_hostile_name_changes_nothing_but_texts(hostile):
+    benign = generated(named(("alpha", "beta")))
+    files = generated(named((hostile, hostile + "2"), hostile, hostile, hostile, hostile, hostile))
+    robots = sorted(path for path in files if path.startswith("robot_"))
+    plain = sorted(path for path in benign if path.startswith("robot_"))
+    shapes = {shape(files[path]) for path in robots}
+    assert shapes == {shape(benign[path]) for path in plain}
+    assert shape(files["conditions.py"]) == shape(benign["conditions.py"])
+    assert len(ast.parse(files["fleet.py"]).body) == len(ast.parse(benign["fleet.py"]).body)
+
+
+@given(names)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_no_name_changes_anything_but_texts(text):
+    benign = generated(named(("alpha", "beta")))
+    files = generated(named((text, text + "!"), text, text, text, text, text))
+    robots = [content for path, content in files.items() if path.startswith("robot_")]
+    assert {shape(content) for content in robots} == {
+        shape(content) for path, content in benign.items() if path.startswith("robot_")
+    }
+
+
+@given(names)
+@settings(max_examples=400, deadline=None)
+@pytest.mark.thorough
+def test_no_name_changes_anything_but_texts_thoroughly(text):
+    test_no_name_changes_anything_but_texts.hypothesis.inner_test(text)
+
+
+def test_hostile_names_run_without_effect(tmp_path):
+    hostile = HOSTILE[0]
+    made = named((hostile, HOSTILE[1]), HOSTILE[12], hostile, HOSTILE[1], hostile, HOSTILE[4])
+    write(render(MAVLINK_PYTHON, target_input(made)), tmp_path)
+    conditions = (tmp_path / "conditions.py").read_text("ascii").replace(": undecided,", ": lambda s: True,")
+    (tmp_path / "conditions.py").write_text(conditions, "ascii")
+    found = subprocess.run(
+        [sys.executable, "-W", "error", "fleet.py", "--dry-run"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert found.returncode == 0, found.stderr
+    assert not (tmp_path / "canary").exists()
+    assert "\x1b" not in found.stderr
+
+
+def test_two_robots_whose_names_look_alike_get_two_files():
+    files = generated(named(("a b", "a_b")))
+    assert len([path for path in files if path.startswith("robot_")]) == 2
+
+
+def test_every_step_carries_its_move_and_task():
+    source = generated(two_drones())["robot_alpha.py"].decode()
+    assert "# task photos, by rule by_hand" in source
+    assert "Step('a1'" in source.replace('"', "'")
+
+
+def test_the_manifest_traces_every_step_to_move_and_task():
+    manifest = json.loads(generated(two_drones())["mavlink-python.manifest.json"])
+    steps = [t for t in manifest["trace"] if t["robot"] == "alpha"]
+    assert [t["move"] for t in steps] == ["start", "up", "a1", "a2", "a3", "a4", "back", "down", "stop"]
+    assert {t["task"] for t in steps} == {"", "photos"}
+
+
+def test_conditions_are_the_users_file_and_only_there_if_there_are_choices():
+    assert "conditions.py" not in generated(two_drones())
+    files = render(MAVLINK_PYTHON, target_input(named(("a", "b"))))
+    assert [file.path for file in files if file.once] == ["conditions.py"]
+
+
+def test_policies_are_the_waits_then_the_robots_then_the_types():
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), LAND],
+        slots=("go",),
+        transitions={1: Transition(1, 2, waits=("go",), policies=(Policy("WAIT_TOO_LONG", "LAND", 9.0),))},
+    )
+    made = program(replace(robot, policies=(Policy("LINK_LOST", "HOLD"),)))
+    given = target_input(made)
+    files = render(MAVLINK_PYTHON, replace(given, policies=(Policy("LINK_LOST", "LAND"),)))
+    source = files[0].content.decode().replace('"', "'")
+    assert "policies=(Policy('LINK_LOST', 'HOLD', 10.0),)," in source
+    assert "policies=(Policy('WAIT_TOO_LONG', 'LAND', 9.0),)" in source
+
+
+def test_an_unknown_kind_of_move_is_refused_even_if_it_extends_a_known_one():
+    spiral = replace(go_to("a", (0.0, 9.0, 5.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
+    assert refused(take_off("up", 5.0), spiral, LAND) == (
+        "robot 'alpha', move 'a': Spiral is not known to this target",
+    )
+
+
+def test_an_unknown_action_is_refused():
+    strange = replace(photo(), metaclasses=(("urn:x:1.0", "Sing"), (BEHAVIOUR, "Action")))
+    (fault,) = refused(take_off("up", 5.0), replace(LAND, before=(strange,)))
+    assert fault == "robot 'alpha', move 'down': action Sing is not known to this target"
+
+
+def test_an_object_is_refused():
+    goes = replace(go_to("a", (0.0, 9.0, 5.0)), target=Target(None, "a buoy", None))
+    (fault,) = refused(take_off("up", 5.0), goes, LAND)
+    assert "goes to an object" in fault
+
+
+def test_a_device_without_wiring_is_refused():
+    bare = replace(quad(), devices={"camera": Device("camera", {}, {})})
+    (fault,) = refused(take_off("up", 5.0), replace(LAND, before=(photo(),)), types=[bare])
+    assert "no property that says how it is wired" in fault
+
+
+def test_a_robot_without_a_home_is_refused():
+    assert refused(take_off("up", 5.0), LAND, home=None) == (
+        "robot 'alpha': its home is not known, and heights count from there",
+    )
+
+
+def test_a_speed_that_nobody_knows_is_refused():
+    (fault,) = refused(take_off("up", 5.0), go_to("a", (0.0, 9.0, 5.0), speed=None), LAND, types=[])
+    assert "its speed is not known" in fault
+
+
+def test_what_is_lost_is_a_step_without_effect():
+    spiral = replace(go_to("a", (0.0, 9.0, 5.0)), metaclasses=(("urn:x:1.0", "Spiral"),))
+    made = program(robot_program("alpha", [take_off("up", 5.0), spiral, LAND]))
+    source = generated(made, allow_lossy=True)["robot_alpha.py"].decode()
+    assert "Skip(" in source
+
+
+def test_a_device_on_the_robots_side_turns_the_robot():
+    looks = go_to("a", (0.0, 9.0, 5.0), heading=Heading(Target((5.0, 5.0, 0.0)), "side", 90.0))
+    side = Device("side", {"look": DeviceAction("look", 1.0)}, {"mount.yaw": "270"})
+    made = program(robot_program("alpha", [take_off("up", 5.0), looks, LAND]))
+    source = generated(made, types=[replace(quad(), devices={"side": side})])["robot_alpha.py"].decode()
+    assert "angle=90.0, mount=270.0" in source
+
+
+def test_a_local_behaviour_has_local_places_relative_to_home():
+    robot = robot_program(
+        "a", [take_off("up", 5.0), go_to("b", (13.0, 24.0, 6.0)), LAND], home=(10.0, 20.0, 1.0)
+    )
+    files = generated(program(robot, frame=Frame("EPSG:4326", None, None)))
+    assert b"GoTo(Local(4.0, 3.0, 5.0), speed=5.0)" in files["robot_a.py"]
+    assert b"fence=()" in files["robot_a.py"]
