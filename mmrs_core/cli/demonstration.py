@@ -20,6 +20,7 @@ from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
 from mmrs_core.runtime.run import Run
 
+_MOST_REASONS = 3
 TARGETS = ("mavlink-python", "qgc-plan")
 
 
@@ -40,6 +41,10 @@ class Demonstration:
     left_out: Mapping[str, tuple[str, ...]]
 
     @property
+    def _generated(self) -> frozenset[str]:
+        return frozenset(path.name for _, path, _ in self.files if path.parent.name == "controllers")
+
+    @property
     def succeeded(self) -> bool:
         """Return whether the run came to its end and its logs replay."""
         return succeeded(self.run) and self.replayed.accepted
@@ -49,9 +54,13 @@ class Demonstration:
         yield from plan_lines(self.journey.scene, self.journey.plan)
         yield "checked before anything was written:"
         yield from verdict_table(self.journey.verdicts)
-        outcome, *_ = run_lines(self.run)
+        outcome, *details = run_lines(self.run)
         judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
         yield f"simulated: {outcome}; {judged}"
+        if not succeeded(self.run):
+            yield from details
+        for target in sorted(set(self.left_out) - self._generated):
+            yield f"not generated for {target}: {'; '.join(self.left_out[target][:_MOST_REASONS])}"
         yield f"in {self.folder}:"
         for what, path, count in self.files:
             more = f" ({counted(count, 'file')})" if count > 1 else ""
@@ -85,6 +94,8 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
     left_out: dict[str, tuple[str, ...]] = {}
     for target in TARGETS:
         rendered, left_out[target] = _rendered(journey, target)
+        if not rendered:
+            continue
         written = write(rendered, folder / "controllers" / target)
         lossy = (
             f", without {counted(len(left_out[target]), 'thing')} it cannot express"
@@ -102,7 +113,7 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
 
 
 def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:
-    """Return the files of a target, and what had to be left out."""
+    """Return the files of a target, and what had to be left out; no files where nothing is left."""
     contributions = journey.workshop.contributions
 
     def rendered(lossy: bool) -> tuple[GeneratedFile, ...]:
@@ -115,4 +126,8 @@ def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...],
     try:
         return rendered(False), ()
     except UnsupportedError as error:
-        return rendered(True), error.elements
+        losses = error.elements or (str(error),)
+    try:
+        return rendered(True), losses
+    except UnsupportedError:
+        return (), losses

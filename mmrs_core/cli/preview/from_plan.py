@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import pairwise
-from math import dist, inf
+from math import inf
 
 from mmrs_core.cli.preview.crossings import corners
 from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.footprints import along, footprints
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, task_pictures, zones_of
 from mmrs_core.scene import (
@@ -25,7 +25,6 @@ from mmrs_core.scene import (
     Serve,
     Signal,
     Step,
-    Stroke,
     Transit,
 )
 
@@ -106,9 +105,8 @@ def _work_leg(scene: Scene, robot: str, step: Serve) -> Leg:
         step.begin,
         step.end,
         step.task,
-        width=coverage.width if coverage else 0.0,
-        reach=coverage.length / 2 if coverage else 0.0,
-        actions=tuple(along(stroke, action.at) for action in stroke.actions),
+        covered=tuple(footprints(stroke, coverage)) if coverage else (),
+        actions=tuple(along(stroke.points, action.at)[0] for action in stroke.actions),
         note=", ".join(filter(None, notes)),
     )
 
@@ -116,22 +114,6 @@ def _work_leg(scene: Scene, robot: str, step: Serve) -> Leg:
 def _under(leg: Leg, condition: str | None) -> Leg:
     note = f"if {condition}" if condition else "otherwise"
     return replace(leg, note=", ".join(filter(None, (note, leg.note))))
-
-
-def along(stroke: Stroke, at: float) -> Position:
-    """Return the position at an arc length of a stroke, its ends for lengths beyond them."""
-    left = max(at, 0.0)
-    for start, end in pairwise(stroke.points):
-        leg = dist(start, end)
-        if left <= leg and leg > 0:
-            part = left / leg
-            return (
-                start[0] + part * (end[0] - start[0]),
-                start[1] + part * (end[1] - start[1]),
-                start[2] + part * (end[2] - start[2]),
-            )
-        left -= leg
-    return stroke.points[-1]
 
 
 def _bars(steps: Iterable[Step]) -> Iterator[Bar]:

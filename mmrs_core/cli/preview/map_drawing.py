@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from shapely.geometry import Polygon
+
+from mmrs_core.cli.preview.crossings import crossings
 from mmrs_core.cli.preview.legend import legend_height, legend_markup
 from mmrs_core.cli.preview.map_furniture import furniture, grid, patterns
 from mmrs_core.cli.preview.map_places import kept_shape, task_shape, zone_shape
@@ -40,7 +43,7 @@ def _layers(picture: Picture, projection: Projection) -> Iterator[str]:
     yield _layer("tasks", (task_shape(task, projection) for task in picture.tasks))
     yield _layer("coverage", coverage(picture, projection))
     yield _layer("clearance", (kept_shape(zone, projection) for zone in picture.zones))
-    yield _layer("areas", (zone_shape(zone, projection) for zone in _barriers(picture)))
+    yield _layer("areas", _barriers(picture, projection))
     yield _layer("ways", (robot_way(i, robot, projection) for i, robot in robots))
     yield _layer("homes", (home(i, robot, projection) for i, robot in robots))
     yield _layer("labels", (words(picture, projection),))
@@ -55,5 +58,9 @@ def _with_use(picture: Picture, use: AreaUse) -> Iterator[Zone]:
     return (zone for zone in picture.zones if zone.use is use)
 
 
-def _barriers(picture: Picture) -> Iterator[Zone]:
-    return (zone for zone in picture.zones if zone.use is not AreaUse.EMERGENCY)
+def _barriers(picture: Picture, projection: Projection) -> Iterator[str]:
+    """Yield forbidden areas and obstacles, small ones over large ones."""
+    barriers = (zone for zone in picture.zones if zone.use is not AreaUse.EMERGENCY)
+    for zone in sorted(barriers, key=lambda zone: -Polygon(zone.shell).area):
+        beneath = any(True for robot in picture.robots for _ in crossings(robot, [zone]))
+        yield zone_shape(zone, projection, passed=beneath)

@@ -15,10 +15,11 @@ _USES = {
 }
 
 
-def zone_shape(zone: Zone, projection: Projection) -> str:
-    """Return an area as drawn."""
+def zone_shape(zone: Zone, projection: Projection, *, passed: bool = False) -> str:
+    """Return an area as drawn; one that robots pass over or under is drawn lightly."""
     tip = f"{zone.name}: {_USES[zone.use]}, {heights(zone.low, zone.high)}"
-    attributes = {"class": f"zone {zone.use.value}", "d": projection.closed((zone.shell,))}
+    kind = f"zone {zone.use.value}" + (" passed" if passed else "")
+    attributes = {"class": kind, "d": projection.closed((zone.shell,))}
     return element("path", attributes, title(tip))
 
 

@@ -11,33 +11,19 @@ from mmrs_core.cli.preview.markup import element, number, title
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.projection import Projection
-from mmrs_core.scene import Point, Position
+from mmrs_core.scene import Point
 
 _ARROW_EVERY = 90.0
 _KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "recover": "landing"}
 
 
 def coverage(picture: Picture, projection: Projection) -> Iterator[str]:
-    """Yield the ground that each robot covers, as wide as its footprint."""
+    """Yield the ground that each robot covers, each as one shape."""
     for index, robot in enumerate(picture.robots):
-        covered = [leg for leg in robot.legs if leg.width > 0 and len(leg.points) > 1]
-        parts = (_strip(leg, projection) for leg in covered)
-        look = {"class": "covered", "stroke": style_of(index).colour, "data-robot": index}
-        if covered:
-            yield element("g", look, parts)
-
-
-def _strip(leg: Leg, projection: Projection) -> str:
-    points = list(leg.points)
-    points[0] = _beyond(points[1], points[0], leg.reach)
-    points[-1] = _beyond(points[-2], points[-1], leg.reach)
-    return element("path", {"d": f"M{projection.line(points)}", "stroke_width": leg.width * projection.scale})
-
-
-def _beyond(before: Position, last: Position, reach: float) -> Position:
-    whole = dist(before[:2], last[:2]) or 1.0
-    part = reach / whole
-    return last[0] + part * (last[0] - before[0]), last[1] + part * (last[1] - before[1]), last[2]
+        rings = [ring for leg in robot.legs for ring in leg.covered]
+        look = {"class": "covered", "fill": style_of(index).colour, "data-robot": index}
+        if rings:
+            yield element("path", {**look, "d": projection.closed(rings)})
 
 
 def robot_way(index: int, robot: RobotPicture, projection: Projection) -> str:

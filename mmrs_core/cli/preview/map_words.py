@@ -14,11 +14,16 @@ from mmrs_core.cli.preview.picture import Picture, TaskPicture, Zone
 from mmrs_core.cli.preview.projection import Projection
 from mmrs_core.scene import AreaUse, Point
 
+_HOME = 9.0
+"""Half the width of the mark of a home, pixels."""
+
 
 def words(picture: Picture, projection: Projection) -> str:
     """Return the names of robots, tasks and areas, none over another."""
     labels = Labels(projection.width)
     shown = shapely.box(projection.west, projection.south, projection.east, projection.north)
+    for robot in picture.robots:
+        labels.keep_off(projection.place(robot.home), _HOME)
     for index, robot in enumerate(picture.robots):
         x, y = projection.place(robot.home)
         labels.put(robot.name, (x, y + 22), "name", colour=style_of(index).colour)

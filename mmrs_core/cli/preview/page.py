@@ -17,6 +17,7 @@ from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
 from mmrs_core.cli.preview.timeline import timeline_markup
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+_TALLEST = 860
 _LAYERS = (
     ("coverage", "ground covered"),
     ("clearance", "clearance"),
@@ -76,7 +77,8 @@ def _lead(picture: Picture) -> str:
 
 def _frame(picture: Picture) -> str:
     shown = projection_of(picture)
-    shape = f"aspect-ratio: {shown.width:.0f} / {shown.height:.0f}"
+    ratio = shown.width / shown.height
+    shape = f"aspect-ratio: {ratio:.4f}; max-width: {_TALLEST * ratio:.0f}px"
     return element("div", {"class": "frame", "style": shape}, map_markup(picture))
 
 

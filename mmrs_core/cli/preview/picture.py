@@ -15,8 +15,7 @@ class Leg:
     Attributes:
         kind: ``launch``, ``transit``, ``work`` or ``recover``.
         points: (east, north, up), at least one.
-        width: of the ground that it covers, metres; 0: none.
-        reach: metres that the covered ground goes on beyond both ends.
+        covered: the ground that it covers, as rings that all turn the same way.
         actions: where device actions are done.
         note: more to say about it, one line; may be empty.
         moves: which moves of the behaviour it is; empty where that is not known.
@@ -27,8 +26,7 @@ class Leg:
     begin: float
     end: float
     task: str = ""
-    width: float = 0.0
-    reach: float = 0.0
+    covered: tuple[Ring, ...] = ()
     actions: tuple[Position, ...] = ()
     note: str = ""
     moves: str = ""

@@ -15,8 +15,8 @@ from mmrs_core.cli.preview.picture import Picture, RobotPicture
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH, TimeAxis
 
 _ROW = 92.0
-_GAP = 14.0
-_TOP = 8.0
+_GAP = 26.0
+_TOP = 20.0
 _SMALLEST_RANGE = 4.0
 _NAMES = 40
 
@@ -69,7 +69,7 @@ def _range(picture: Picture) -> tuple[float, float]:
 
 def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
     robot = picture.robots[index]
-    name = {"class": "robot-name", "x": LEFT + 6, "y": strip.top + 24, "fill": style_of(index).colour}
+    name = {"class": "robot-name", "x": LEFT, "y": strip.top - 5, "fill": style_of(index).colour}
     passed = crossings(robot, picture.zones)
     return element(
         "g",
@@ -84,7 +84,7 @@ def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
 
 
 def _levels(strip: _Strip) -> Iterator[float]:
-    wanted = (strip.high - strip.low) / 3
+    wanted = (strip.high - strip.low) / 4
     steps = (digit * 10.0**power for power in range(-1, 6) for digit in (1, 2, 5))
     step = next(step for step in steps if step >= wanted)
     return (i * step for i in range(int(strip.low // step) + 1, int(strip.high // step) + 1))

@@ -1,9 +1,14 @@
 """The map is well-formed, complete, and safe whatever the names are."""
 
+from dataclasses import replace
+
 from lxml import etree
 
+from mmrs_core.cli.preview.labels import Labels, width_of
 from mmrs_core.cli.preview.map_drawing import map_markup
-from mmrs_core.cli.preview.picture import Picture
+from mmrs_core.cli.preview.picture import Leg, Picture, Zone
+from mmrs_core.cli.preview.projection import projection_of
+from mmrs_core.scene import AreaUse
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = "</title><script>alert('x')</script>]]>&\"\x07\u202e"
@@ -43,16 +48,13 @@ def test_obstacles_tell_their_heights(picture):
     assert "tower (0.0 m to 35.0 m)" in words
 
 
-def test_covered_ground_is_as_wide_as_its_footprint(picture):
-    root = parsed(picture)
-    strip = with_class(root, "covered")[0][0]
-    pixels_a_metre = 1000 / (_extent(picture)[0])
-    assert abs(float(strip.get("stroke-width")) - 20 * pixels_a_metre) < 0.5
+def test_covered_ground_is_one_shape_for_each_robot_that_covers(picture):
+    covered = with_class(parsed(picture), "covered")
+    assert [shape.get("data-robot") for shape in covered] == ["0"]
+    assert covered[0].get("d").count("M") == 2
 
 
 def _extent(picture):
-    from mmrs_core.cli.preview.projection import projection_of
-
     shown = projection_of(picture)
     return shown.east - shown.west, shown.north - shown.south
 
@@ -85,25 +87,28 @@ def test_a_map_without_anything_is_still_a_map():
 
 
 def test_far_away_areas_do_not_shrink_the_map(picture):
-    from dataclasses import replace
-
-    from mmrs_core.cli.preview.picture import Zone
-    from mmrs_core.scene import AreaUse
-
     far = Zone("country", AreaUse.FORBIDDEN, ((-9e5, -9e5), (9e5, -9e5), (9e5, 9e5), (-9e5, 9e5)))
     before, after = _extent(picture), _extent(replace(picture, zones=(*picture.zones, far)))
     assert max(after) < 3 * max(before)
 
 
 def test_words_do_not_cover_each_other():
-    from mmrs_core.cli.preview.labels import Labels
-
     labels = Labels(400.0)
     for _ in range(4):
         labels.put("a name", (200.0, 200.0), "name")
-    ys = [float(e.get("y")) for e in etree.fromstring(f"<g>{labels.markup()}</g>")]
-    assert len(set(ys)) == 4
-    assert min(abs(a - b) for a in ys for b in ys if a != b) >= 12
+    at = [(float(e.get("x")), float(e.get("y"))) for e in etree.fromstring(f"<g>{labels.markup()}</g>")]
+    wide = width_of("a name")
+    pairs = [(a, b) for i, a in enumerate(at) for b in at[i + 1 :]]
+    assert all(abs(a[0] - b[0]) >= wide or abs(a[1] - b[1]) >= 12 for a, b in pairs)
+
+
+def test_an_obstacle_that_robots_pass_over_is_drawn_lightly(picture):
+    root = parsed(picture)
+    assert [zone.findtext(f"{SVG}title")[:5] for zone in with_class(root, "passed")] == []
+    over = Leg("transit", ((50.0, 25.0, 50.0), (80.0, 25.0, 50.0)), 0.0, 3.0)
+    robots = (replace(picture.robots[0], legs=(over,)),)
+    light = with_class(parsed(replace(picture, robots=robots)), "passed")
+    assert [zone.findtext(f"{SVG}title")[:5] for zone in light] == ["tower"]
 
 
 def test_nothing_in_the_map_comes_from_elsewhere(picture):
