@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
+from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Source, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature
+
+MOST_FAULTS = 10_000
 
 _STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>\d{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
 _KEY = re.compile(r"(?P<name>\w+)='(?P<value>[^']*)'")
@@ -46,7 +49,17 @@ class Draft:
         hint: str = "",
         severity: Severity = Severity.ERROR,
     ) -> None:
-        """Note a fault at a line, in an element if it is known."""
+        """Note a fault at a line, in an element if it is known.
+
+        Raises:
+            UnreadableError: if there are more than anybody would read: then it is no model at all.
+        """
+        if len(self.diagnostics) >= MOST_FAULTS:
+            first = self.diagnostics[0]
+            message = (
+                f"{self.source.file}:{line}: more than {MOST_FAULTS} faults; the first is: {first.message}"
+            )
+            raise UnreadableError(message)
         path = path_of(element) if element is not None else ""
         self.diagnostics.append(
             Diagnostic(code, severity, message, Place(self.source.file, line, path), hint)

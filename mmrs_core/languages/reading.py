@@ -25,6 +25,7 @@ class Reading:
         self._registry = registry
         self._root = root.resolve() if root is not None else None
         self._drafts: dict[Path, Draft] = {}
+        self._refused: dict[Path, str] = {}
         self._unresolved: list[Draft] = []
 
     def open(self, path: Path) -> Draft:
@@ -34,8 +35,14 @@ class Reading:
             UnreadableError: if it is missing, not well-formed, has a DOCTYPE, is too large or too deep.
         """
         real = path.resolve()
+        if real in self._refused:
+            raise UnreadableError(self._refused[real])
         if real not in self._drafts:
-            self._drafts[real] = self.parse(read_bytes(path), Source(str(path), real))
+            try:
+                self._drafts[real] = self.parse(read_bytes(path), Source(str(path), real))
+            except UnreadableError as refusal:
+                self._refused[real] = str(refusal)  # a thousand references must not read it a thousand times
+                raise
         return self._drafts[real]
 
     def parse(self, data: bytes, source: Source) -> Draft:

@@ -6,11 +6,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.addresses import Addresses
 from mmrs_core.languages.datatypes import shown
 from mmrs_core.languages.documents import Draft, Pending
-from mmrs_core.languages.element import Element, Unknown, label_of
+from mmrs_core.languages.element import Element, Unknown, descendants, label_of
 from mmrs_core.languages.hrefs import linked_file
 from mmrs_core.languages.links import raw, store
+from mmrs_core.languages.metaclass import Feature
+
+_HELPED_FAULTS = 20
+"""Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""
 
 Opener = Callable[[Path], Draft]
 
@@ -53,19 +58,26 @@ def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Pa
         where = opened
     target = where.find(fragment or "/")
     if target is None:
-        kind = reference.feature.type.name
         _fault(
             "XMI006",
             f"{reference.feature.name}: {shown(uri)} leads to no element",
             reference,
             draft,
-            _hint(kind, uri),
+            _hint(uri, reference.feature, draft),
         )
     return target
 
 
-def _hint(kind: str, uri: str) -> str:
-    return "" if "/" in uri else f"write the path of the {kind}, such as //@{kind.lower()}s.0, or its id"
+def _hint(uri: str, feature: Feature, draft: Draft) -> str:
+    """Return the path of what was probably meant: people write names where XMI wants paths."""
+    if "/" in uri or len(draft.diagnostics) >= _HELPED_FAULTS:
+        return ""
+    for root in draft.roots:
+        for element in (root, *descendants(root)):
+            if feature.type.accepts(element) and label_of(element) == uri:
+                path = Addresses(draft.roots, None).fragment(element)
+                return f"write {path}, the path of the {type(element).__name__} {uri!r}"
+    return "write the path of an element, such as //@tasks.0"
 
 
 def _opened(

@@ -44,6 +44,7 @@ class XmiReader:
         self._wrapped = False
         self._kept: tuple[Unknown, int] | None = None
         self._nil = False
+        self._hints: dict[tuple[Metaclass, str], str] = {}
 
     def start(self, tag: str, attributes: list[str]) -> None:
         """Take the start of an XML element."""
@@ -282,7 +283,9 @@ class XmiReader:
     def _no_feature(self, element: Element, metaclass: Metaclass, name: str) -> None:
         label = label_of(element)
         message = f"{name}: no feature of {metaclass.name}{label and f' {label!r}'}"
-        self._fault("XMI004", message, element, nearest(name, metaclass.by_name))
+        if (metaclass, name) not in self._hints:
+            self._hints[metaclass, name] = nearest(name, metaclass.by_name)
+        self._fault("XMI004", message, element, self._hints[metaclass, name])
 
     def _ignore(self, what: str) -> None:
         self._ignored = 1

@@ -106,3 +106,10 @@ def test_hostile_names_are_only_names(core):
     name = "'; import os; os.system('x') # {{7*7}} %s &lt;b> ../../x"
     model = read_text(ROOT + f' name="{name}"/>'.encode(), "m.xmi", core)
     assert model.roots[0].name == name.replace("&lt;", "<")
+
+
+def test_more_faults_than_anybody_would_read_end_the_reading(core):
+    with pytest.raises(
+        UnreadableError, match=r"^wide:1: more than 10000 faults; the first is: x: no feature"
+    ):
+        read_text(ROOT + b">" + b"<x/>" * 20_000 + b"</m:Mission>", "wide", core)

@@ -87,6 +87,14 @@ def test_a_reference_that_leads_nowhere_is_a_fault_and_stays_unset(read_zoo, tex
     assert model.roots[0].name == "z"
 
 
+def test_a_name_where_a_path_belongs_gets_the_path_as_a_hint(read_zoo):
+    fault = read_zoo(LIONS, 'star="b"').diagnostics[0]
+    assert fault.hint == "write //@animals.1, the path of the Lion 'b'"
+    assert (
+        read_zoo(LIONS, 'star="z"').diagnostics[0].hint == "write the path of an element, such as //@tasks.0"
+    )
+
+
 def test_one_broken_reference_does_not_hide_the_others(read_zoo):
     model = read_zoo(LIONS, 'favourites="//@animals.0 //@animals.7 //@animals.1 //@animals.8"')
     assert codes(model) == ["XMI006", "XMI006"]
@@ -241,6 +249,17 @@ def test_a_wider_root_lets_references_go_up(folder, zoo, tmp_path):
 def test_a_missing_file_is_a_fault_at_the_reference(folder, zoo):
     model = read_model(folder("one.xmi", '\n<star href="gone.xmi#/"/>'), zoo)
     assert [(fault.code, fault.place.line) for fault in model.diagnostics] == [("XMI016", 2)]
+
+
+def test_an_unreadable_file_is_read_once_however_many_references_lead_there(folder, zoo, monkeypatch):
+    from mmrs_core.languages import reading
+
+    opened = []
+    monkeypatch.setattr(reading, "read_bytes", lambda path: opened.append(path) or path.read_bytes())
+    path = folder("one.xmi", '<favourites href="sub/bad.xmi#/"/>' * 5)
+    (path.parent / "sub" / "bad.xmi").write_text("junk")
+    assert codes(read_model(path, zoo)) == ["XMI016"] * 5
+    assert len(opened) == 2
 
 
 def test_a_text_that_is_no_file_cannot_refer_to_files(read_zoo):
