@@ -19,17 +19,21 @@ LANGUAGES = (
 )
 
 
-def used_by(roots):
-    """Return the metaclasses, and the ones that they inherit from, of all elements below the roots."""
-    elements = (element for root in roots for element in (root, *descendants(root)))
-    return {name for element in elements for name in metaclass_of(element).ancestry}
+def used_by(roots, abstract):
+    """Return the metaclasses of all elements of the roots, and the abstract ones that these specialise."""
+    elements = [element for root in roots for element in (root, *descendants(root))]
+    direct = {metaclass_of(element).key for element in elements}
+    inherited = {name for element in elements for name in metaclass_of(element).ancestry}
+    return direct | (inherited & abstract)
 
 
 @pytest.fixture(scope="module")
-def uses(taken, read, folder_of):
+def uses(taken, read, folder_of, metaclasses):
     """Return the metaclasses that each example uses, in its files and in what is derived from them."""
-    found = {name: used_by([*read(folder_of(name)), taken(name).behaviour]) for name in MISSIONS}
-    return {**found, "handwritten": used_by(read(folder_of("handwritten")))}
+    abstract = {metaclass.key for metaclass in metaclasses if metaclass.abstract}
+    roots = {name: [*read(folder_of(name)), taken(name).behaviour] for name in MISSIONS}
+    roots["handwritten"] = read(folder_of("handwritten"))
+    return {name: used_by(found, abstract) for name, found in roots.items()}
 
 
 @pytest.fixture(scope="module")

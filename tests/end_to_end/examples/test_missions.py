@@ -12,7 +12,7 @@ from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import Serve, Step
 
-JUSTIFIED_UNKNOWNS = {"Objects in the pool": {"clearance"}}
+JUSTIFIED_UNKNOWNS = {"Objects in the pool": {"range"}}
 
 
 def test_it_is_valid_without_a_warning(example):
@@ -97,7 +97,9 @@ def test_every_robot_is_home_at_the_end(example, run_of):
 
 def test_controllers_for_mavlink_compile(example, contributions):
     # Objects are found by the vehicle itself, which no MAVLink vehicle can: such steps are lossy.
-    lossy = example.scene.name in JUSTIFIED_UNKNOWNS
+    lossy = any(
+        move.target and move.target.description for robot in example.program.robots for move in robot.moves
+    )
     files = pipeline.render(
         example.program, example.place, "mavlink-python", contributions, allow_lossy=lossy
     )
