@@ -26,7 +26,7 @@ Floats: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
 
 HEIGHT_MARGIN = 1e-9
-"""Metres by which heights at the very edge of a band count as outside it."""
+"""Metres of rounding: so much within a band of heights, or a distance, still counts as at its edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +71,15 @@ class Obstacles:
     def __len__(self) -> int:
         return len(self.grown)
 
-    def blocking(self, legs: Floats) -> Flags:
+    def blocking(self, legs: Floats, *, spare: float = EPSILON / 2) -> Flags:
         """Return (n, areas): which areas each of n straight legs (n, 2, 3) is too near to.
 
         A leg is too near where its part between an area's heights meets the grown shape, unless the
         exact distance sideways is enough after all: growing gives a little away.
+
+        Args:
+            legs: (n, 2, 3).
+            spare: metres to keep on top of clearances, for what is lost when coordinates are rounded.
         """
         found = np.zeros((len(legs), len(self)), dtype=np.bool_)
         leg, area = self._meetings(legs[:, :, :2])
@@ -89,7 +93,7 @@ class Obstacles:
         shorter = (first > 0.0) | (last < 1.0)
         hit = np.ones(len(leg), dtype=np.bool_)
         hit[shorter] = shapely.intersects(self._blocked[area[shorter]], shapely.linestrings(parts[shorter]))
-        hit[hit] = self._too_near(parts[hit], area[hit])
+        hit[hit] = self._too_near(parts[hit], area[hit], spare)
         found[leg[hit], area[hit]] = True
         return found
 
@@ -108,7 +112,7 @@ class Obstacles:
         line, area = self._meetings(lines)
         hit = np.ones(len(line), dtype=np.bool_)
         rim = self._in_rim(lines[line], area)
-        hit[rim] = self._too_near(lines[line[rim]], area[rim])
+        hit[rim] = self._too_near(lines[line[rim]], area[rim], EPSILON / 2)
         found[line[hit], area[hit]] = True
         return found
 
@@ -127,13 +131,21 @@ class Obstacles:
         rim |= shapely.intersects_xy(shapes, lines[:, 1, 0], lines[:, 1, 1])
         return rim
 
-    def _too_near(self, lines: Floats, area: NDArray[np.intp]) -> Flags:
-        """Return, for pairs that meet, whether the exact distance sideways is too small."""
+    def _too_near(self, lines: Floats, area: NDArray[np.intp], spare: float) -> Flags:
+        """Return, for pairs that meet, whether the exact distance sideways is too small.
+
+        A line may not come nearer than the clearance and a spare distance; one that has an end nearer
+        than that, no nearer than its end.
+        """
         near = np.zeros(len(lines), dtype=np.bool_)
-        legs = np.concatenate([lines, np.zeros((len(lines), 2, 1))], axis=2)
+        flat = np.concatenate([lines, np.zeros((len(lines), 2, 1))], axis=2)
         for each in np.unique(area).tolist():
             mine, grown = area == each, self.grown[each]
-            near[mine] = prism_distance(legs[mine], grown.area.shell, -inf, inf) < grown.clearance
+            legs, shell = flat[mine], grown.area.shell
+            ends = np.concatenate([legs[:, [0, 0]], legs[:, [1, 1]]])
+            at_ends = prism_distance(ends, shell, -inf, inf).reshape(2, -1).min(axis=0)
+            needed = np.clip(at_ends, grown.clearance, grown.clearance + spare)
+            near[mine] = prism_distance(legs, shell, -inf, inf) < needed - HEIGHT_MARGIN
         return near
 
     def _between_heights(self, legs: Floats, area: NDArray[np.intp]) -> tuple[Floats, Floats]:
