@@ -11,14 +11,14 @@ SILENT = {"begin", "end", "act"}
 
 
 @st.composite
-def behaviours(draw, choices=True, loops=False, resets=False, single=False):
+def behaviours(draw, choices=True, loops=False, resets=False, single=False, most=2):
     """Draw a behaviour of two to four robots with up to five slots.
 
-    With `single`, each slot is activated in one place only.
+    With `single`, each slot is activated in one place only. A notify sets `most` slots at most.
     """
     names = [f"r{number}" for number in range(draw(st.integers(2, 4)))]
     slots = [f"{draw(st.sampled_from(names))}.s{number}" for number in range(draw(st.integers(1, 5)))]
-    made = [draw(_robots(name, slots, choices, loops, resets)) for name in names]
+    made = [draw(_robots(name, slots, choices, loops, resets, most)) for name in names]
     return program(*(_once(made) if single else made))
 
 
@@ -39,11 +39,11 @@ def _once(robots):
 
 
 @st.composite
-def _robots(draw, name, slots, choices, loops, resets):
+def _robots(draw, name, slots, choices, loops, resets, most):
     moves = [f"m{number}" for number in range(draw(st.integers(1, 5)))]
     own = [slot.partition(".")[2] for slot in slots if slot.startswith(f"{name}.")]
     made = [
-        hold(move, before=_actions(draw, slots, resets), after=_actions(draw, slots, resets))
+        hold(move, before=_actions(draw, slots, resets, most), after=_actions(draw, slots, resets, most))
         for move in moves
     ]
     waits, ways = {}, {}
@@ -57,11 +57,11 @@ def _robots(draw, name, slots, choices, loops, resets):
     return robot(name, made, waits=waits, choices=ways, slots=own)
 
 
-def _actions(draw, slots, resets):
+def _actions(draw, slots, resets, most):
     kind = draw(st.integers(0, 5))
     if kind > 2:
         return ()
-    chosen = draw(st.lists(st.sampled_from(slots), min_size=1, max_size=2, unique=True))
+    chosen = draw(st.lists(st.sampled_from(slots), min_size=1, max_size=most, unique=True))
     return (notify(*chosen, active=not (resets and kind == 0)),)
 
 

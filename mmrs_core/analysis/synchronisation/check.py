@@ -34,7 +34,7 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
     ]
     yield from orphaned
     named = {(verdict.robot, verdict.move) for verdict in orphaned}
-    for verdict in _with_resets(program, network) if network.resets else _monotone(program, network):
+    for verdict in _with_resets(program, network) if network.volatile else _monotone(program, network):
         if not orphaned or (verdict.status is Status.VIOLATED and (verdict.robot, verdict.move) not in named):
             yield verdict
 

@@ -1,13 +1,17 @@
-"""All orders of events, one by one, for behaviours that make slots inactive again.
+"""All orders of events that matter, for behaviours that make slots inactive again.
 
 A notify to several slots reaches them one after the other, in any order, because that is what happens
 on a network; this contains the case in which it reaches all at once.
+
+A step that touches only slots that are never made inactive stays possible until it is taken and
+disturbs no other, so that it may be taken at once (persistent sets; Godefroid 1996): what remains is
+the order of the steps that touch the others. Deadlocks are all kept.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -58,17 +62,32 @@ def find_stuck(network: Network, *, limit: int = LIMIT) -> tuple[Stuck, ...] | N
 
 def _steps(network: Network, state: State) -> Iterator[State]:
     spots, active = state
-    for number, spot in enumerate(spots):
-        net = network.nets[number]
-        for after, now in _moves(net, spot, active):
+    for number in _enough(network, state):
+        for after, now in _moves(network, network.nets[number], spots[number], active):
             yield (*spots[:number], after, *spots[number + 1 :]), now
 
 
-def _moves(net: Net, spot: Spot, active: frozenset[SlotId]) -> Iterator[tuple[Spot, frozenset[SlotId]]]:
+def _enough(network: Network, state: State) -> Iterable[int]:
+    """Return the robots whose steps need to be looked at: one whose step commutes, or else all."""
+    spots, active = state
+    for number, spot in enumerate(spots):
+        node = network.nets[number].nodes[spot.node]
+        if spot.left:
+            commutes = not spot.left <= network.volatile
+        else:
+            commutes = bool(node.ways) and node.waits <= active and node.waits.isdisjoint(network.volatile)
+        if commutes:
+            return (number,)
+    return range(len(spots))
+
+
+def _moves(
+    network: Network, net: Net, spot: Spot, active: frozenset[SlotId]
+) -> Iterator[tuple[Spot, frozenset[SlotId]]]:
     node = net.nodes[spot.node]
     if spot.left:
         value = node.sets[spot.group][1]
-        for slot in sorted(spot.left):
+        for slot in sorted(spot.left - network.volatile)[:1] or sorted(spot.left):
             yield _without(net, spot, slot), active | {slot} if value else active - {slot}
     elif node.waits <= active:
         for way in node.ways:

@@ -59,13 +59,13 @@ class Network:
 
     Attributes:
         awaited: slots that some transition waits for: no others matter.
-        resets: whether a slot that matters is ever made inactive.
+        volatile: slots among them that are ever made inactive.
         givers: where each slot is activated: pairs of a net's number and a node's.
     """
 
     nets: tuple[Net, ...]
     awaited: frozenset[SlotId]
-    resets: bool
+    volatile: frozenset[SlotId]
     givers: Mapping[SlotId, tuple[tuple[int, int], ...]]
 
 
@@ -80,13 +80,20 @@ def network_of(program: Program) -> Network:
         for slot in robot.transitions[move].waits
     )
     nets = tuple(_net(robot, reachable[robot.id], awaited) for robot in program.robots)
-    resets = any(not active for net in nets for node in net.nodes for _, active in node.sets)
+    volatile = frozenset(
+        slot
+        for net in nets
+        for node in net.nodes
+        for slots, active in node.sets
+        if not active
+        for slot in slots
+    )
     givers: dict[SlotId, list[tuple[int, int]]] = defaultdict(list)
     for i, net in enumerate(nets):
         for j, node in enumerate(net.nodes):
             for slot in node.gives:
                 givers[slot].append((i, j))
-    return Network(nets, awaited, resets, {slot: tuple(where) for slot, where in givers.items()})
+    return Network(nets, awaited, volatile, {slot: tuple(where) for slot, where in givers.items()})
 
 
 def _net(robot: RobotProgram, reachable: frozenset[int], awaited: frozenset[SlotId]) -> Net:

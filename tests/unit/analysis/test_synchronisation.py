@@ -144,6 +144,15 @@ def test_too_many_orders_of_events_are_no_answer():
         find_stuck(network_of(program(*resetting(late=True))), limit=2)
 
 
+def test_what_does_not_touch_slots_that_are_taken_back_costs_no_states():
+    pair = resetting(late=True)
+    others = [
+        robot(f"c{i}", [hold("h", after=(notify(f"c{(i + 1) % 20}.go"),))], waits={"h": ["go"]})
+        for i in range(20)
+    ]
+    assert find_stuck(network_of(program(*pair, *others)), limit=200) is None
+
+
 def test_slots_set_by_one_notify_need_not_change_at_once():
     a = robot("a", [hold("h"), hold("i", before=(notify("b.x", "b.y", active=False),))], waits={"h": ["go"]})
     b = robot(
