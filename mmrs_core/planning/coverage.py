@@ -30,7 +30,7 @@ _SMALLEST = 1e-6
 _POCKETS = 5e-4
 """Share of a target that walled-in pockets may have to be left alone."""
 
-_CUTS = 8
+_CUTS = 16
 """Places at most at which one stroke may be split."""
 
 

@@ -21,17 +21,31 @@ class Crew:
 
     Attributes:
         scene: expanded.
+        fine: whether works are divided as finely as can be.
+        stacked: whether robots have transit altitudes of their own.
         pilots: by name of robot, in the scene's order.
         teams: by name of task: robots that may share it, by sort of work; robots of different sorts
             (such as cameras with different footprints) cannot.
         refusals: by (task, robot): why the robot cannot do the task.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
+    def __init__(
+        self, scene: Scene, *, fine: bool = False, altitudes: Mapping[str, float] | None = None
+    ) -> None:
+        """Lay everything out.
+
+        Args:
+            scene: expanded.
+            fine: whether works are divided as finely as can be, for missions that barely fit.
+            altitudes: of transit, by robot; None: the scene's for all.
+        """
+        self.scene, self.fine, self.stacked = scene, fine, altitudes is not None
         spaces, slack = Spaces(scene), _slack(scene)
+        aloft = altitudes or {}
         self.pilots: Mapping[str, Pilot] = {
-            robot.name: Pilot(Travel(robot, spaces.of(robot), scene.transit_altitude), slack)
+            robot.name: Pilot(
+                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude)), slack
+            )
             for robot in scene.robots
         }
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
@@ -69,7 +83,7 @@ class Crew:
 
     def _able(self, task: str, work: Work, team: Sequence[str]) -> tuple[str, ...]:
         """Lay the work out for each robot of a team; return those that find a way through it."""
-        layout = layout_of(work, self.pilots[team[0]], len(team))
+        layout = layout_of(work, self.pilots[team[0]], len(team), fine=self.fine)
         able = []
         for name in team:
             self._layouts[task, name] = layout

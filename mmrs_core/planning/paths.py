@@ -9,6 +9,7 @@ from math import dist, inf
 import numpy as np
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.geometry.clearance import EPSILON
 from mmrs_core.geometry.segments import legs_of
 from mmrs_core.planning.layers import Layers, Rates
 from mmrs_core.planning.obstacles import Flags, Obstacles
@@ -57,15 +58,16 @@ class Space:
         self._routes: dict[tuple[Position, Position], tuple[Position, ...] | str] = {}
 
     def is_clear(self, polyline: Sequence[Position]) -> bool:
-        """Return whether a polyline (one point or more) keeps its distance from every area."""
-        return not self._blockers(polyline).any()
+        """Return whether a polyline (one point or more) keeps its distance; touching counts as clear."""
+        return not self._blockers(polyline, spare=0.0).any()
 
     def blockers(self, polyline: Sequence[Position]) -> str:
         """Return the names of the areas that a polyline is too near to, quoted; empty if it is clear."""
-        return self._obstacles.names(self._blockers(polyline))
+        return self._obstacles.names(self._blockers(polyline, spare=0.0))
 
-    def _blockers(self, polyline: Sequence[Position]) -> Flags:
-        flags: Flags = np.logical_or.reduce(self._obstacles.blocking(legs_of(polyline)), axis=0)
+    def _blockers(self, polyline: Sequence[Position], *, spare: float = EPSILON / 2) -> Flags:
+        found = self._obstacles.blocking(legs_of(polyline), spare=spare)
+        flags: Flags = np.logical_or.reduce(found, axis=0)
         return flags
 
     def seconds(self, route: Sequence[Position]) -> float:

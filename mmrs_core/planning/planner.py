@@ -10,7 +10,7 @@ from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions
-from mmrs_core.planning.separation import separated
+from mmrs_core.planning.separation import separated, stacked_altitudes
 from mmrs_core.scene import Plan, Scene
 
 
@@ -31,13 +31,31 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     jobs = jobs_of(scene)
     crew = Crew(scene)
     _refuse(list(crew.shortfalls()), "no plan")
+    try:
+        return _plan_with(crew, jobs, seed)
+    except _TooCoarseError:
+        return _plan_with(Crew(scene, fine=True), jobs, seed)
+
+
+class _TooCoarseError(Exception):
+    """Nobody is left to do some job, perhaps only because its portions are too large."""
+
+
+def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
     decisions, found = find_decisions(crew, jobs, seed)
     if isinstance(found, Shortfall):
+        if not crew.fine:
+            raise _TooCoarseError
         _refuse(_reasons(crew, jobs, found), "no plan")
-        raise InfeasibleError(f"task '{found.job}': no robots are left that could do it in time")
-    late = broken_times(crew, found.spans)
-    _refuse([reason for reason, _ in late], "no plan keeps all times")
-    return separated(scene, decisions, lambda decided: _planned(crew, jobs, decided))
+    else:
+        _refuse([reason for reason, _ in broken_times(crew, found.spans)], "no plan keeps all times")
+    try:
+        return separated(crew.scene, decisions, lambda decided: _planned(crew, jobs, decided))
+    except InfeasibleError:
+        altitudes = stacked_altitudes(crew.scene)
+        if crew.stacked or not altitudes:
+            raise
+    return _plan_with(Crew(crew.scene, fine=crew.fine, altitudes=altitudes), jobs, seed)
 
 
 def _planned(crew: Crew, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:
@@ -49,6 +67,7 @@ def _planned(crew: Crew, jobs: Sequence[Job], decisions: Decisions) -> Plan | No
 
 
 def _refuse(reasons: Sequence[str], what: str) -> None:
+    """Raise an InfeasibleError with all reasons, if there are any."""
     if reasons:
         more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
         raise InfeasibleError(f"{what}: {reasons[0]}{more}", reasons)

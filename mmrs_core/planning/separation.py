@@ -2,49 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise
-from math import dist
-from typing import TypeAlias
+from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.segments import closest_approach
 from mmrs_core.planning.schedule import Decisions
-from mmrs_core.scene import (
-    Branch,
-    Launch,
-    Plan,
-    Position,
-    Recharge,
-    Recover,
-    Robot,
-    Scene,
-    Serve,
-    Step,
-    Transit,
-)
-
-Floats: TypeAlias = NDArray[np.float64]
+from mmrs_core.planning.timeline import Track, track_of
+from mmrs_core.scene import Plan, Scene
 
 _ROUNDS = 60
 _LONGEST_DELAY = 3600.0
-
-
-@dataclass(frozen=True, slots=True)
-class Track:
-    """Where a robot is while it is away from home, as pieces that it moves along steadily.
-
-    Attributes:
-        times: (n, 2) seconds at which each piece begins and ends.
-        places: (n, 2, 3) where it is then.
-    """
-
-    times: Floats
-    places: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +47,16 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
     least = scene.minimum_separation
     if least is None or least <= 0:
         return found
+    before: Encounter | None = None
     for _ in range(_ROUNDS):
         encounter = first_encounter(scene, found, least)
         if encounter is None:
             return found
-        decisions = _delayed(scene, decisions, encounter, least)
+        decisions = _delayed(scene, decisions, encounter, least, before)
         later = planned(decisions)
         if later is None or max(decisions.delays.values()) > _LONGEST_DELAY:
             break
-        found = later
+        found, before = later, encounter
     raise InfeasibleError(_words(first_encounter(scene, found, least), least))
 
 
@@ -98,19 +70,28 @@ def _words(encounter: Encounter | None, least: float) -> str:
     )
 
 
-def _delayed(scene: Scene, decisions: Decisions, encounter: Encounter, least: float) -> Decisions:
-    """Delay the robot that comes later in the team, by the time in which it goes twice the distance."""
-    kinematics = scene.robot(encounter.second).kinematics
+def _delayed(
+    scene: Scene, decisions: Decisions, encounter: Encounter, least: float, before: Encounter | None
+) -> Decisions:
+    """Delay one of the robots by the time in which it goes twice the distance.
+
+    It is the one that comes later in the team, unless delaying that one changed nothing: then it waits
+    for the other anyway.
+    """
+    again = before is not None and (before.first, before.second) == (encounter.first, encounter.second)
+    stays = before is not None and again and abs(before.time - encounter.time) < 0.5
+    name = encounter.first if stays else encounter.second
+    kinematics = scene.robot(name).kinematics
     speed = kinematics.cruise if kinematics is not None else 1.0
     delays = dict(decisions.delays)
-    delays[encounter.second] = delays.get(encounter.second, 0.0) + max(1.0, 2.0 * least / speed)
+    delays[name] = delays.get(name, 0.0) + max(1.0, 2.0 * least / speed)
     return replace(decisions, delays=delays)
 
 
 def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
     """Return the earliest encounter nearer than `least` metres; None if there is none."""
     robots = {robot.name: robot for robot in scene.robots}
-    tracks = {each.robot: track(each.steps, robots[each.robot]) for each in plan.robots if each.steps}
+    tracks = {each.robot: track_of(each.steps, robots[each.robot]) for each in plan.robots if each.steps}
     found = [
         Encounter(one, two, *nearest)
         for one, two in combinations(tracks, 2)
@@ -127,8 +108,8 @@ def _nearest(one: Track, two: Track, least: float) -> tuple[float, float] | None
     if not len(i):
         return None
     start, stop = begin[i, j], end[i, j]
-    first = np.stack([_where(one, i, start), _where(one, i, stop)], axis=1)
-    second = np.stack([_where(two, j, start), _where(two, j, stop)], axis=1)
+    first = np.stack([one.at(i, start), one.at(i, stop)], axis=1)
+    second = np.stack([two.at(j, start), two.at(j, stop)], axis=1)
     distance, when = closest_approach(first, second, start, stop)
     near = np.flatnonzero(distance < least - 1e-6)
     if not len(near):
@@ -137,62 +118,22 @@ def _nearest(one: Track, two: Track, least: float) -> tuple[float, float] | None
     return float(when[earliest]), float(distance[earliest])
 
 
-def _where(track: Track, piece: NDArray[np.intp], time: Floats) -> Floats:
-    begin, end = track.times[piece, 0], track.times[piece, 1]
-    share = ((time - begin) / np.where(end > begin, end - begin, 1.0))[:, None]
-    place: Floats = track.places[piece, 0] + share * (track.places[piece, 1] - track.places[piece, 0])
-    return place
+def stacked_altitudes(scene: Scene) -> dict[str, float]:
+    """Return transit altitudes for robots that launch, one above the other by the minimum separation.
 
-
-def track(steps: Sequence[Step], robot: Robot) -> Track:
-    """Return where a robot is from each time it leaves home until it is back; the longest arm counts."""
-    pieces = [piece for piece in _pieces(steps, robot.home) if piece[1] > piece[0]]
-    return Track(
-        np.array([piece[:2] for piece in pieces], dtype=np.float64).reshape(-1, 2),
-        np.array([piece[2:] for piece in pieces], dtype=np.float64).reshape(-1, 2, 3),
-    )
-
-
-_Piece: TypeAlias = tuple[float, float, Position, Position]
-
-
-def _pieces(steps: Sequence[Step], here: Position) -> Iterator[_Piece]:
-    away = False
-    for step in steps:
-        if isinstance(step, Branch):
-            longest = max((arm for _, arm in step.arms), key=lambda arm: arm[-1].end if arm else 0.0)
-            yield from _pieces(longest, here)
-            if longest and longest[-1].end < step.end:
-                yield (longest[-1].end, step.end, step.exit, step.exit)
-            here = step.exit
-            continue
-        line = _line(step, here)
-        away = not isinstance(step, Recharge) and (away or len(line) > 1 or isinstance(step, Launch))
-        if away:
-            yield from _along(line, step.begin, step.end)
-        here = line[-1]
-        if isinstance(step, Recover):
-            away = False
-
-
-def _line(step: Step, here: Position) -> tuple[Position, ...]:
-    if isinstance(step, Launch):
-        return (step.at, (step.at[0], step.at[1], step.up))
-    if isinstance(step, Recover):
-        return (step.at, (step.at[0], step.at[1], step.up))
-    if isinstance(step, Transit):
-        return step.route
-    return step.stroke.points if isinstance(step, Serve) else (here,)
-
-
-def _along(line: Sequence[Position], begin: float, end: float) -> Iterator[_Piece]:
-    """Yield the pieces of a line that is followed steadily; stops on the way are spread over it."""
-    whole = sum(dist(one, two) for one, two in pairwise(line))
-    if whole <= 0.0:
-        yield (begin, end, line[-1], line[-1])
-        return
-    now = begin
-    for one, two in pairwise(line):
-        later = now + (end - begin) * dist(one, two) / whole
-        yield (now, later, one, two)
-        now = later
+    The lowest is the scene's own, or the height of the highest stroke. Empty where robots need not keep
+    apart, or the lowest ceiling leaves no room for a second.
+    """
+    least = scene.minimum_separation or 0.0
+    robots = [robot for robot in scene.robots if robot.kinematics is not None and robot.kinematics.launches]
+    heights = [
+        point[2] for work in scene.works.values() for stroke in work.strokes for point in stroke.points
+    ]
+    if least <= 0.0 or len(robots) < 2 or not heights:
+        return {}
+    lowest = max(heights) if scene.transit_altitude is None else scene.transit_altitude
+    ceiling = min(robot.kinematics.ceiling for robot in robots if robot.kinematics is not None)
+    levels = max(1, int((ceiling - lowest) / (least + 0.1)) + 1) if ceiling < 1e6 else len(robots)
+    if levels < 2:
+        return {}
+    return {robot.name: lowest + (i % levels) * (least + 0.1) for i, robot in enumerate(robots)}

@@ -119,18 +119,28 @@ class _Filling:
 
     def _fill(self, limit: float) -> Sharing | None:
         shares: list[Share] = []
+        waiting = list(range(len(self._order)))
         begin = 0
-        for place, candidate in enumerate(self._order):
-            if begin == self._count:
-                break
-            left_for_others = len(self._order) - 1 - place if self._everyone else 0
+        while begin < self._count:
+            share = self._next_share(waiting, begin, limit)
+            if share is None:
+                return None
+            shares.append(share)
+            begin = share.end + 1
+        if self._everyone and waiting:
+            return None
+        return Sharing(tuple(shares), max(share.back for share in shares))
+
+    def _next_share(self, waiting: list[int], begin: int, limit: float) -> Share | None:
+        """Return the share of the first waiting robot that can begin there; it waits no longer."""
+        left_for_others = len(waiting) - 1 if self._everyone else 0
+        for place in waiting:
             run = self._run(place, begin)
             end = min(run.until(limit), self._count - 1 - left_for_others)
             if end >= begin:
-                shares.append(Share(candidate, run, end))
-                begin = end + 1
-        complete = begin == self._count and (not self._everyone or len(shares) == len(self._order))
-        return Sharing(tuple(shares), max(share.back for share in shares)) if complete else None
+                waiting.remove(place)
+                return Share(self._order[place], run, end)
+        return None
 
     def _run(self, place: int, begin: int) -> Run:
         if (place, begin) not in self._runs:
