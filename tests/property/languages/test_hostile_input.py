@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -48,9 +49,7 @@ def outcome(text, registry):
         return None, str(refusal)
 
 
-@settings(deadline=None, max_examples=300)
-@given(data=st.data())
-def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registry, data):
+def a_damaged_model_never_breaks_us(registry, data):
     text = bytearray(data.draw(st.sampled_from(EXAMPLES)).read_bytes()[:4000])
     for _ in range(data.draw(st.integers(1, 4))):
         start = data.draw(st.integers(0, len(text)))
@@ -60,6 +59,19 @@ def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registr
     for fault in (*model.diagnostics, *check_conformance(model, registry)) if model else ():
         assert fault.place.file == "damaged.xmi"
         assert fault.place.line > 0
+
+
+@settings(deadline=None, max_examples=300)
+@given(data=st.data())
+def test_a_damaged_model_is_unreadable_or_has_faults_but_never_breaks_us(registry, data):
+    a_damaged_model_never_breaks_us(registry, data)
+
+
+@pytest.mark.thorough
+@settings(deadline=None, max_examples=5000)
+@given(data=st.data())
+def test_many_damaged_models_never_break_us(registry, data):
+    a_damaged_model_never_breaks_us(registry, data)
 
 
 @settings(deadline=None, max_examples=200)
