@@ -162,7 +162,7 @@ def _handovers(plan: Plan) -> Iterator[Handover]:
                 for receiver in step.receivers:
                     waiting = released.get((receiver, step.signal))
                     if waiting is not None:
-                        yield Handover(robot.robot, step.end, receiver, waiting.end, step.task)
+                        yield Handover(robot.robot, step.end, receiver, waiting.begin, waiting.end, step.task)
 
 
 def _flat(steps: Iterable[Step]) -> Iterator[Step]:

@@ -137,7 +137,7 @@ def _handovers(program: Program, by_robot: Mapping[str, Sequence[StepRecord]]) -
             action = _action(moves[record.move], record.detail)
             for slot in action.sets if action.active else ():
                 yield from (
-                    Handover(robot.id, record.time, owner, time, moves[record.move].task)
+                    Handover(robot.id, record.time, owner, begin, time, moves[record.move].task)
                     for owner, name, begin, time in waits
                     if (owner, name) == slot and owner != robot.id and begin <= record.time <= time
                 )

@@ -30,11 +30,14 @@ def with_moves(picture: Picture, program: Program) -> Picture:
 
 
 def _named(picture: RobotPicture, program: RobotProgram) -> RobotPicture:
-    moves = [move for move in program.moves if move.rule not in _ASIDE]
+    ends = (program.start, program.stop)
+    moves = [move for i, move in enumerate(program.moves) if i not in ends and move.rule not in _ASIDE]
     legs: list[Leg] = []
     for leg in picture.legs:
-        own = list(_of_leg(leg, moves))
-        del moves[: len(own)]
+        first = next((i for i, move in enumerate(moves) if _fits(move, leg)), len(moves))
+        own = list(_of_leg(leg, moves[first:]))
+        if own:
+            del moves[: first + len(own)]
         legs.append(replace(leg, moves=_words(own)))
     return replace(picture, legs=tuple(legs))
 
@@ -43,14 +46,15 @@ def _of_leg(leg: Leg, moves: list[Move]) -> Iterator[Move]:
     arrived = False
     for move in moves:
         position = move.target.position if move.target is not None else None
-        if _kind(move) != leg.kind or move.task != leg.task or (arrived and position is not None):
+        if not _fits(move, leg) or (arrived and position is not None):
             return
         yield move
         arrived = arrived or (position is not None and dist(position, leg.points[-1]) < _SAME_PLACE)
 
 
-def _kind(move: Move) -> str:
-    return move.rule if move.rule in _TRAVEL else "work"
+def _fits(move: Move, leg: Leg) -> bool:
+    kind = move.rule if move.rule in _TRAVEL else "work"
+    return kind == leg.kind and move.task == leg.task
 
 
 def _words(moves: list[Move]) -> str:

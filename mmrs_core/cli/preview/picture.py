@@ -105,11 +105,17 @@ class TaskPicture:
 
 @dataclass(frozen=True, slots=True)
 class Handover:
-    """One robot telling another that it may go on; times in seconds."""
+    """One robot telling another that it may go on; times in seconds.
+
+    Attributes:
+        since, released: from when to when the receiver waits; equal if it never has to.
+        note: which task has ended; may be empty.
+    """
 
     sender: str
     sent: float
     receiver: str
+    since: float
     released: float
     note: str = ""
 

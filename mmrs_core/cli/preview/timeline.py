@@ -18,6 +18,7 @@ _TASK_BAR = 12.0
 _GAP = 16.0
 _TOP = 8.0
 _NAMES = 20
+_BULGE = 26.0
 _WHATS = {
     "launch": "takes off",
     "transit": "travels",
@@ -97,9 +98,12 @@ def bar_tip(robot: str, bar: Bar) -> str:
 
 
 def stretches(robot: RobotPicture) -> Iterator[tuple[str, float, float]]:
-    """Yield (task, begin, end) of each stretch of time that a robot works on one task."""
+    """Yield (task, begin, end) of each stretch that a robot works on one task without a longer stop."""
     task, begin, end = "", 0.0, 0.0
     for bar in robot.bars:
+        if bar.kind in ("recharge", "wait") and task:
+            yield task, begin, end
+            task = ""
         if bar.kind != "work":
             continue
         if bar.task == task:
@@ -123,22 +127,18 @@ def task_words(robot: RobotPicture, axis: TimeAxis, middle: float) -> Iterator[s
 
 
 def _arrow(handover: Handover, axis: TimeAxis, rows: dict[str, float]) -> str:
-    x1, x2 = axis.at(handover.sent), axis.at(handover.released)
+    x = axis.at(handover.sent)
     y1, y2 = rows[handover.sender], rows[handover.receiver]
     way = 1 if y2 > y1 else -1
     start, end = y1 + way * _BAR / 2, y2 - way * _BAR / 2
-    bend = (end - start) * 0.5
-    curve = (
-        f"M{number(x1)} {number(start)}C{number(x1)} {number(start + bend)} "
-        f"{number(x2)} {number(end - bend)} {number(x2)} {number(end)}"
-    )
+    bulge = 0.0 if abs(y2 - y1) <= _ROW else _BULGE
+    middle = f"{number(x + bulge)} {number((start + end) / 2)}"
+    curve = f"M{number(x)} {number(start)}Q{middle} {number(x)} {number(end)}"
     words = f"{handover.sender} tells {handover.receiver} at {clock(handover.sent)}"
     tip = f"{words}: {handover.note} has ended" if handover.note else words
-    return element(
-        "path",
-        {"class": "handover", "d": curve, "marker-end": "url(#arrow)"},
-        element("title", None, text(tip)),
-    )
+    kind = "handover" if handover.released > handover.since else "handover early"
+    arrow = {"class": kind, "d": curve, "marker-end": "url(#arrow)"}
+    return element("path", arrow, element("title", None, text(tip)))
 
 
 def _defs() -> str:

@@ -110,8 +110,8 @@ def test_time_is_told_by_what_it_was_spent_on(shown):
 
 
 def test_a_notify_that_ended_a_wait_is_a_handover(shown):
-    assert [(h.sender, h.sent, h.receiver, h.released, h.note) for h in shown.handovers] == [
-        ("a", 8.0, "b", 8.0, "photo")
+    assert [(h.sender, h.sent, h.receiver, h.since, h.released, h.note) for h in shown.handovers] == [
+        ("a", 8.0, "b", 0.0, 8.0, "photo")
     ]
 
 

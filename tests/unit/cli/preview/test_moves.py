@@ -20,7 +20,7 @@ def named(picture, *moves):
 
 
 COMPLETE = (
-    move("start", ""),
+    move("start", "launch"),
     move("up", "launch", "field"),
     move("over", "transit", "field", (10.0, 5.0, 20.0)),
     move("first", "grid", "field", (10.0, 30.0, 20.0)),

@@ -7,7 +7,7 @@ from lxml import etree
 from mmrs_core.cli.preview.picture import Bar
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.time_axis import TimeAxis
-from mmrs_core.cli.preview.timeline import timeline_markup
+from mmrs_core.cli.preview.timeline import stretches, timeline_markup
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -31,6 +31,13 @@ def test_an_arrow_leads_from_the_teller_to_the_waiter(picture):
     ]
 
 
+def test_an_arrow_is_dashed_where_nobody_has_to_wait_for_it(picture):
+    early = replace(picture.handovers[0], since=40.0, released=40.0)
+    arrows = with_class(timeline_markup(replace(picture, handovers=(early,))), "handover")
+    assert [arrow.get("class") for arrow in arrows] == ["handover early"]
+    assert with_class(timeline_markup(picture), "early") == []
+
+
 def test_a_task_without_duration_is_a_mark(picture):
     marks = with_class(timeline_markup(picture), "task-mark")
     assert [mark.findtext(f"{SVG}title") for mark in marks] == ["fork: Fork, 0:31 to 0:31"]
@@ -44,6 +51,23 @@ def test_names_stand_on_bars_only_where_they_fit(picture):
     )
     assert [e.text for e in wide] == ["field", "road"]
     assert with_class(timeline_markup(replace(picture, robots=robots)), "bar-words") == []
+
+
+def test_a_recharge_parts_the_stretches_of_a_task(picture):
+    bars = tuple(
+        Bar(kind, begin, begin + 10.0, "field")
+        for kind, begin in (
+            ("work", 0.0),
+            ("transit", 10.0),
+            ("work", 20.0),
+            ("recharge", 30.0),
+            ("work", 40.0),
+        )
+    )
+    assert list(stretches(replace(picture.robots[0], bars=bars))) == [
+        ("field", 0.0, 30.0),
+        ("field", 40.0, 50.0),
+    ]
 
 
 def test_a_timeline_without_robots_is_still_a_picture(without_robots):

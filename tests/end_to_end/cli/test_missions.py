@@ -1,0 +1,137 @@
+"""Commands on missions: from models to everything that a demonstration leaves."""
+
+import json
+import shutil
+
+import pytest
+from lxml import etree
+
+from mmrs_core.cli.plan import Stage
+from mmrs_core.resources import shipped
+
+EXAMPLES = ("carbon-dioxide", "pool", "mixed-team")
+
+
+@pytest.fixture
+def pool(tmp_path):
+    """Return a copy of the smallest example."""
+    return shutil.copytree(shipped("examples") / "pool", tmp_path / "pool")
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_every_example_can_be_demonstrated(mmrs, tmp_path, example):
+    code, out, err = mmrs("demo", example, "--out", tmp_path / "out")
+    assert (code, err) == (0, "")
+    assert "the logs replay" in out
+    assert len(out.splitlines()) <= 45
+    left = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*")}
+    assert {"behaviour.xmi", "preview.html", "preview.svg", "controllers/mavlink-python"} <= left
+    assert any(path.startswith("logs/") for path in left)
+
+
+def test_a_demonstration_can_be_repeated(mmrs, tmp_path):
+    folder = tmp_path / "out"
+    first = mmrs("demo", "pool", "--out", folder)
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    second = mmrs("demo", "pool", "--out", folder)
+    assert first == second
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+
+
+def test_a_demonstration_tells_itself_as_one_object(mmrs, tmp_path):
+    told = json.loads(mmrs("demo", "pool", "--out", tmp_path / "out", "--json")[1])
+    assert told["mission"] == "Objects in the pool"
+    assert told["replay"]["complaints"] == []
+    assert {"robots", "tasks", "makespan", "verdicts", "ending", "files"} <= set(told)
+
+
+def test_examples_are_listed(mmrs):
+    out = mmrs("demo", "--list")[1]
+    assert [line.split()[0] for line in out.splitlines()] == sorted(EXAMPLES)
+
+
+def test_an_unknown_example_is_told_with_the_known_ones(mmrs, tmp_path):
+    code, _, err = mmrs("demo", "moon", "--out", tmp_path / "out")
+    assert code == 3
+    assert "carbon-dioxide" in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_plan_writes_the_behaviour_into_the_project(mmrs, pool):
+    code, out, _ = mmrs("plan", pool)
+    assert code == 0
+    assert f"written: {pool / 'behaviour.xmi'}" in out
+    assert mmrs("check", pool)[0] == 0
+
+
+def test_plan_takes_the_file_of_the_mission(mmrs, pool):
+    mission = (pool / "mission.xmi").rename(pool / "monday.xmi")
+    assert mmrs("plan", mission)[0] == 0
+    assert (pool / "behaviour.xmi").is_file()
+
+
+def test_plan_writes_where_it_is_told(mmrs, pool, tmp_path):
+    assert mmrs("plan", pool, "-o", tmp_path / "b.xmi")[0] == 0
+    assert (tmp_path / "b.xmi").is_file()
+    assert not (pool / "behaviour.xmi").exists()
+
+
+def test_context_and_robot_types_can_be_named(mmrs, pool, tmp_path):
+    away = tmp_path / "away"
+    away.mkdir()
+    context = (pool / "context.xmi").rename(away / "place.xmi")
+    types = [path.rename(away / path.name) for path in sorted((pool / "robots").iterdir())]
+    assert mmrs("plan", pool, "--context", context, "--robots", *types)[0] == 0
+
+
+def test_the_same_seed_gives_the_same_behaviour(mmrs, pool):
+    behaviours = []
+    for seed in (7, 7):
+        mmrs("plan", pool, "--seed", seed)
+        behaviours.append((pool / "behaviour.xmi").read_bytes())
+    assert behaviours[0] == behaviours[1]
+
+
+@pytest.mark.parametrize("stage", list(Stage))
+def test_every_stage_can_be_looked_at(mmrs, pool, stage):
+    code, out, _ = mmrs("plan", pool, "--stop-after", stage.value, "--json")
+    assert code == 0
+    assert json.loads(out)["stage"] == stage.value
+    assert not (pool / "behaviour.xmi").exists()
+
+
+def test_plan_as_json_is_one_object(mmrs, pool):
+    told = json.loads(mmrs("plan", pool, "--json")[1])
+    assert told["behaviour"] == (pool / "behaviour.xmi").as_posix()
+    assert told["robots"][0]["length"] > 0
+
+
+def test_an_infeasible_mission_ends_with_4_and_writes_nothing(mmrs, pool):
+    file = pool / "mission.xmi"
+    tree = etree.parse(file)
+    tree.find("tasks").set("deadline", "0.5")
+    tree.write(file)
+    code, out, err = mmrs("plan", pool)
+    assert (code, out) == (4, "")
+    assert tree.find("tasks").get("name") in err
+    assert not (pool / "behaviour.xmi").exists()
+
+
+def test_preview_writes_into_the_project(mmrs, pool):
+    assert mmrs("preview", pool)[0] == 0
+    words = "".join(etree.parse(pool / "preview.svg").getroot().itertext())
+    assert "Naiad" in words
+    assert "moves " in words or "move " in words
+
+
+def test_the_planned_file_is_drawn_as_it_went(mmrs, pool):
+    mmrs("plan", pool)
+    assert mmrs("preview", pool / "behaviour.xmi")[0] == 0
+    assert (pool / "preview.html").is_file()
+
+
+@pytest.mark.parametrize("command", ["plan", "validate"])
+def test_without_plugins_their_tasks_are_unknown(mmrs, pool, command):
+    code, _, err = mmrs(command, pool, "--no-plugins")
+    assert code == 1
+    assert "urn:mmrs:survey:1.0" in err
