@@ -53,3 +53,26 @@ def test_hostile_names_run_nothing(shown, picture_named):
     dom, complaints = shown(page(picture_named(Alba=bait, field=bait, mission=f"</script>{bait}")))
     assert "data-caught" not in dom
     assert complaints == []
+
+
+def test_the_map_zooms_and_layers_go_off_and_time_moves(shown, picture):
+    user = """<script>
+      const map = document.querySelector("svg.map");
+      map.dispatchEvent(new WheelEvent("wheel", {deltaY: -400, clientX: 300, clientY: 300}));
+      const box = document.querySelector("[data-toggle=labels]");
+      box.checked = false;
+      box.dispatchEvent(new Event("change"));
+      const robot = document.querySelector("[data-toggle-robot='1']");
+      robot.checked = false;
+      robot.dispatchEvent(new Event("change"));
+      const slider = document.getElementById("time");
+      slider.value = 31;
+      slider.dispatchEvent(new Event("input"));
+    </script></body>"""
+    dom, complaints = shown(page(picture).replace("</body>", user))
+    assert complaints == []
+    view = [float(part) for part in re.search(r'class="map"[^>]*viewBox="([^"]+)"', dom).group(1).split()]
+    assert 0 < view[2] < 1000
+    assert re.search(r'class="layer labels off"', dom)
+    assert dom.count('class="robot off"') == 2
+    assert ">0:31</output>" in dom
