@@ -10,6 +10,8 @@ import shapely
 from mmrs_core import pipeline
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.checks import Status
+from mmrs_core.contributions.execution import Condition
+from mmrs_core.runtime.run import simulate
 from mmrs_core.scene import Serve, Step
 
 JUSTIFIED_UNKNOWNS = {"Objects in the pool": {"range"}}
@@ -142,3 +144,20 @@ def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kind
 def test_a_small_battery_makes_a_drone_of_the_mixed_team_recharge(taken):
     plan = taken("mixed-team").plan
     assert max(robot.sorties for robot in plan.robots) >= 2
+
+
+@pytest.mark.parametrize(("energetic", "task"), [(True, "landslide scar"), (False, "over the car park")])
+def test_the_choice_of_the_mixed_team_leads_to_the_task_of_its_arm(taken, contributions, energetic, task):
+    example = taken("mixed-team")
+    run = simulate(
+        example.program,
+        types=example.place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        conditions={"energy_above_100_kJ": Condition("energy_above_100_kJ", lambda state: energetic)},
+        environment=example.place.environment,
+    )
+    moves = {(robot.id, move.id): move.task for robot in example.program.robots for move in robot.moves}
+    done = {moves[record.robot, record.move] for record in run.records}
+    assert run.ending.outcome.value == "success"
+    assert done & {"landslide scar", "over the car park"} == {task}
