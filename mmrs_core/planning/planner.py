@@ -100,4 +100,9 @@ def _general(crew: Crew, job: Job) -> str:
         for name in crew.able(task.name)
     )
     wanted = f" by exactly {task.wanted} robots" if task.wanted is not None else ""
-    return f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted} within ({charges})"
+    short = "; ".join(crew.short_of_charge(task.name))
+    alone = f"; too long for some: {short}" if short else ""
+    return (
+        f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted}, after what comes before,"
+        f" by the robots that can do it ({charges}{alone})"
+    )

@@ -57,9 +57,10 @@ class Schedule:
 
 @dataclass(frozen=True, slots=True)
 class Shortfall:
-    """A job that no robots could be found for."""
+    """A job that no robots could be found for, and how many jobs are left with it."""
 
     job: str
+    left: int
 
 
 def signal_name(job: str, robot: str) -> str:
@@ -99,7 +100,7 @@ class _Scheduling:
             job = next(job for job in waiting if all(name in self._ends for name in job.after))
             waiting.remove(job)
             if not self._do(job):
-                return Shortfall(job.name)
+                return Shortfall(job.name, len(waiting) + 1)
         pilots = self._crew.pilots
         backs = {
             name: state.time + (pilots[name].exit_seconds(state.at) if state.away else 0.0)

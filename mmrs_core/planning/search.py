@@ -17,6 +17,9 @@ Cost: TypeAlias = tuple[float, float, float]
 _STEPS = 40
 """Schedules that are tried; a count, not a time, so that the same seed gives the same plan."""
 
+_STEPS_TO_BEGIN = 200
+"""Schedules that are tried as long as none does all jobs."""
+
 _PATIENCE = 15
 """Steps without a gain after which the search ends."""
 
@@ -38,15 +41,15 @@ def find_decisions(crew: Crew, jobs: Sequence[Job], seed: int) -> tuple[Decision
     tried = [(each, schedule(crew, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(crew, pair[1]))
     random, idle = Random(seed), 0
-    for _ in range(_STEPS if len(jobs) > 1 else 0):
+    for step in range(_STEPS_TO_BEGIN if len(jobs) > 1 else 0):
+        if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= _STEPS):
+            break
         other = _varied(crew, jobs, best, random)
         result = schedule(crew, jobs, other)
         if cost_of(crew, result) < _slightly_less(cost_of(crew, found)):
             best, found, idle = other, result, 0
         else:
             idle += 1
-        if idle >= _PATIENCE:
-            break
     return best, found
 
 
@@ -60,9 +63,12 @@ def _only_ones(crew: Crew, jobs: Sequence[Job]) -> list[str]:
 
 
 def cost_of(crew: Crew, found: Schedule | Shortfall) -> Cost:
-    """Return (seconds by which times are broken, makespan, sum of all robots' times); less is better."""
+    """Return (seconds by which times are broken, makespan, sum of all robots' times); less is better.
+
+    A shortfall costs (inf, jobs left, 0).
+    """
     if isinstance(found, Shortfall):
-        return (inf, inf, inf)
+        return (inf, float(found.left), 0.0)
     broken = sum(late for _, late in broken_times(crew, found.spans))
     return (broken, found.makespan, sum(found.backs.values()))
 
@@ -86,7 +92,7 @@ def broken_times(crew: Crew, spans: Mapping[str, tuple[float, float]]) -> list[t
 
 
 def _slightly_less(cost: Cost) -> Cost:
-    return (cost[0] - 1e-9, cost[1], cost[2]) if cost[0] > 0 else (0.0, cost[1] - 1e-6, cost[2])
+    return (cost[0] - 1e-9, cost[1], cost[2]) if 0 < cost[0] < inf else (cost[0], cost[1] - 1e-6, cost[2])
 
 
 def _first_order(crew: Crew, jobs: Sequence[Job]) -> tuple[str, ...]:

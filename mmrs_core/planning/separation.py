@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import inf
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.segments import closest_approach
@@ -14,8 +17,13 @@ from mmrs_core.planning.schedule import Decisions
 from mmrs_core.planning.timeline import Track, track_of
 from mmrs_core.scene import Plan, Scene
 
+Indices: TypeAlias = NDArray[np.intp]
+
 _ROUNDS = 60
-_LONGEST_DELAY = 3600.0
+_STEP = 2.0
+"""Seconds by which delays are told apart."""
+
+_LONGEST_DELAY = 36_000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +55,71 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
     least = scene.minimum_separation
     if least is None or least <= 0:
         return found
-    before: Encounter | None = None
     for _ in range(_ROUNDS):
         encounter = first_encounter(scene, found, least)
         if encounter is None:
             return found
-        decisions = _delayed(scene, decisions, encounter, least, before)
-        later = planned(decisions)
-        if later is None or max(decisions.delays.values()) > _LONGEST_DELAY:
+        better = _resolved(scene, found, decisions, planned, encounter, least)
+        if better is None:
             break
-        found, before = later, encounter
+        decisions, found = better
     raise InfeasibleError(_words(first_encounter(scene, found, least), least))
+
+
+def _resolved(
+    scene: Scene,
+    found: Plan,
+    decisions: Decisions,
+    planned: Callable[[Decisions], Plan | None],
+    encounter: Encounter,
+    least: float,
+) -> tuple[Decisions, Plan] | None:
+    """Return decisions, with their plan, in which an encounter is gone or comes later; None if none are.
+
+    One of the two robots starts later, by as little as would do if all else stayed; where it waits for
+    the other anyway, that changes nothing, and the other one is tried.
+    """
+    robots = {robot.name: robot for robot in scene.robots}
+    steps = {each.robot: each.steps for each in found.robots}
+    first = track_of(steps[encounter.first], robots[encounter.first])
+    second = track_of(steps[encounter.second], robots[encounter.second])
+    shifts = [
+        (_shift(first, second, least), encounter.second),
+        (_shift(second, first, least), encounter.first),
+    ]
+    for shift, name in sorted(shifts):
+        delays = {**decisions.delays, name: decisions.delays.get(name, 0.0) + shift}
+        later = replace(decisions, delays=delays)
+        plan = planned(later) if shift < _LONGEST_DELAY else None
+        left = None if plan is None else first_encounter(scene, plan, least)
+        if plan is not None and (left is None or _is_progress(encounter, left)):
+            return later, plan
+    return None
+
+
+def _is_progress(before: Encounter, after: Encounter) -> bool:
+    alike = (before.first, before.second) == (after.first, after.second)
+    return not alike or after.time > before.time + 0.5
+
+
+def _shift(fixed: Track, late: Track, least: float) -> float:
+    """Return by how many seconds a track must come later to keep apart from another; inf: never."""
+    i, j = _near_in_space(fixed, late, least)
+    longest = float(fixed.times.max() - late.times.min())
+    for shift in np.arange(_STEP, longest + 2 * _STEP, _STEP).tolist():
+        moved = Track(late.times + shift, late.places)
+        if _nearest_of(fixed, moved, i, j, least) is None:
+            return float(shift)
+    return inf
+
+
+def _near_in_space(one: Track, two: Track, least: float) -> tuple[Indices, Indices]:
+    """Return pairs of pieces whose boxes come within a distance, whenever they are there."""
+    low_one, high_one = one.places.min(axis=1)[:, None], one.places.max(axis=1)[:, None]
+    low_two, high_two = two.places.min(axis=1)[None], two.places.max(axis=1)[None]
+    near = ((low_one - least < high_two) & (low_two - least < high_one)).all(axis=2)
+    i, j = np.nonzero(near)
+    return i, j
 
 
 def _words(encounter: Encounter | None, least: float) -> str:
@@ -68,24 +130,6 @@ def _words(encounter: Encounter | None, least: float) -> str:
         f" after {encounter.time:.0f} s, {least:g} m are required: {least - encounter.distance:.1f} m short;"
         " starting later does not help"
     )
-
-
-def _delayed(
-    scene: Scene, decisions: Decisions, encounter: Encounter, least: float, before: Encounter | None
-) -> Decisions:
-    """Delay one of the robots by the time in which it goes twice the distance.
-
-    It is the one that comes later in the team, unless delaying that one changed nothing: then it waits
-    for the other anyway.
-    """
-    again = before is not None and (before.first, before.second) == (encounter.first, encounter.second)
-    stays = before is not None and again and abs(before.time - encounter.time) < 0.5
-    name = encounter.first if stays else encounter.second
-    kinematics = scene.robot(name).kinematics
-    speed = kinematics.cruise if kinematics is not None else 1.0
-    delays = dict(decisions.delays)
-    delays[name] = delays.get(name, 0.0) + max(1.0, 2.0 * least / speed)
-    return replace(decisions, delays=delays)
 
 
 def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
@@ -102,12 +146,17 @@ def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
 
 def _nearest(one: Track, two: Track, least: float) -> tuple[float, float] | None:
     """Return (time, distance) at the beginning of the first encounter of two tracks."""
-    begin = np.maximum(one.times[:, None, 0], two.times[None, :, 0])
-    end = np.minimum(one.times[:, None, 1], two.times[None, :, 1])
-    i, j = np.nonzero(begin < end)
-    if not len(i):
+    return _nearest_of(one, two, *_near_in_space(one, two, least), least)
+
+
+def _nearest_of(one: Track, two: Track, i: Indices, j: Indices, least: float) -> tuple[float, float] | None:
+    """Return the same for certain pairs of pieces only."""
+    start = np.maximum(one.times[i, 0], two.times[j, 0])
+    stop = np.minimum(one.times[i, 1], two.times[j, 1])
+    meet = start < stop
+    if not meet.any():
         return None
-    start, stop = begin[i, j], end[i, j]
+    i, j, start, stop = i[meet], j[meet], start[meet], stop[meet]
     first = np.stack([one.at(i, start), one.at(i, stop)], axis=1)
     second = np.stack([two.at(j, start), two.at(j, stop)], axis=1)
     distance, when = closest_approach(first, second, start, stop)

@@ -1,0 +1,347 @@
+from dataclasses import replace
+
+import pytest
+from plain_scenes import (
+    CRAWLER,
+    box,
+    control,
+    field_work,
+    photo,
+    road,
+    robot,
+    scene,
+    task,
+    visit,
+    with_kinematics,
+)
+from plan_replay import complaints
+
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.planner import plan
+from mmrs_core.planning.separation import first_encounter
+from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, Signal, Transit
+
+TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
+FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
+CUTS = tuple(range(50, 1000, 50))
+
+
+def steps_of(found, name, kind):
+    return [
+        step for each in found.robots if each.robot == name for step in each.steps if isinstance(step, kind)
+    ]
+
+
+def sound(whole, **features):
+    found = plan(whole, **features)
+    assert complaints(whole, found) == []
+    return found
+
+
+def test_one_robot_goes_does_it_and_comes_back():
+    found = sound(scene([robot()], {"a": visit((100.0, 0.0, 20.0))}))
+    kinds = [type(step) for step in found.robots[0].steps]
+    assert kinds == [Launch, Transit, Serve, Transit, Recover]
+    assert found.makespan == pytest.approx(5 + 20 / 3 + 10 + 10 + 10 + 5)
+    assert found.robots[0].energy == pytest.approx(200.0 * found.makespan)
+    assert found.robots[0].sorties == 1
+
+
+def test_a_robot_without_work_has_no_steps():
+    found = sound(scene(TWO, {"a": visit((100.0, 0.0, 20.0))}))
+    assert sorted(len(each.steps) for each in found.robots) == [0, 5]
+
+
+def test_a_field_is_shared_by_robots_that_are_back_at_about_the_same_time():
+    empty = scene(TWO, {})
+    alone = sound(scene(TWO[:1], {"a": field_work(empty, FIELD)}))
+    found = sound(scene(TWO, {"a": field_work(empty, FIELD)}))
+    ends = [each.steps[-1].end for each in found.robots]
+    assert found.makespan < 0.65 * alone.makespan
+    assert abs(ends[0] - ends[1]) < 0.15 * found.makespan
+
+
+def test_a_stroke_is_split_at_its_cuts():
+    work = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS)
+    found = sound(scene((robot("r1"), robot("r2", (1000.0, 0.0, 0.0))), {"a": work}))
+    shares = [step.stroke for each in found.robots for step in each.steps if isinstance(step, Serve)]
+    assert len(shares) == 2
+    assert all(end[0] % 50 == pytest.approx(0.0) for s in shares for end in (s.points[0], s.points[-1]))
+
+
+def test_indivisible_work_is_done_by_one_robot():
+    work = visit((100.0, 0.0, 20.0), (200.0, 0.0, 20.0), (100.0, 100.0, 20.0))
+    found = sound(scene(TWO, {"a": work}))
+    assert sum(bool(each.steps) for each in found.robots) == 1
+
+
+def test_two_tasks_go_to_two_robots():
+    works = {"a": visit((400.0, 0.0, 20.0)), "b": visit((-400.0, 0.0, 20.0))}
+    found = sound(scene(TWO, works))
+    assert all(each.steps for each in found.robots)
+
+
+def test_the_same_seed_gives_the_same_plan():
+    whole = scene(
+        TWO, {name: field_work(scene(TWO, {}), FIELD, altitude=up) for name, up in (("a", 20.0), ("b", 30.0))}
+    )
+    assert plan(whole, seed=4) == plan(whole, seed=4)
+
+
+def test_a_task_waits_for_another_robots_share_of_the_one_before():
+    works = {"a": {"r1": visit((300.0, 0.0, 20.0))}, "b": {"r2": visit((30.0, 0.0, 20.0))}}
+    found = sound(scene(TWO, works, after=[("a", "b")]))
+    (signal,) = steps_of(found, "r1", Signal)
+    (wait,) = steps_of(found, "r2", Await)
+    assert wait.signals == (signal.signal,)
+    assert signal.receivers == ("r2",)
+    assert found.begins["b"] >= found.ends["a"]
+
+
+def test_a_robot_that_has_done_nothing_yet_waits_on_the_ground():
+    works = {"a": {"r1": visit((300.0, 0.0, 20.0))}, "b": {"r2": visit((30.0, 0.0, 20.0))}}
+    found = sound(scene(TWO, works, after=[("a", "b")]))
+    assert isinstance(found.robots[1].steps[0], Await)
+
+
+def test_a_robot_that_is_away_waits_where_its_work_begins():
+    works = {
+        "a": {"r1": visit((300.0, 0.0, 20.0))},
+        "first": {"r2": visit((60.0, 0.0, 20.0))},
+        "b": {"r2": visit((30.0, 0.0, 20.0))},
+    }
+    whole = scene(TWO, works, after=[("a", "b"), ("first", "b")])
+    steps = sound(whole).robots[1].steps
+    wait = next(i for i, step in enumerate(steps) if isinstance(step, Await))
+    assert isinstance(steps[wait + 1], Serve)
+    assert steps[wait].end > steps[wait].begin
+
+
+def test_a_robots_own_order_needs_no_signal():
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((30.0, 0.0, 20.0))}
+    found = sound(scene([robot()], works, after=[("a", "b")]))
+    assert not [step for step in found.robots[0].steps if isinstance(step, Signal | Await)]
+
+
+def test_fork_and_join_pass_the_order_on():
+    works = {name: visit((100.0 * k, 50.0, 20.0)) for k, name in enumerate("abcd", 1)}
+    after = [("a", "fork"), ("fork", "b"), ("fork", "c"), ("b", "join"), ("c", "join"), ("join", "d")]
+    whole = scene(TWO, works, after=after, controls=(control("fork", "Fork"), control("join", "Join")))
+    found = sound(whole)
+    assert found.begins["fork"] == found.ends["a"]
+    assert found.begins["d"] >= found.ends["join"] >= max(found.ends["b"], found.ends["c"])
+
+
+def test_each_ending_share_has_a_signal_of_its_own():
+    empty = scene(TWO, {})
+    works = {"a": field_work(empty, FIELD), "b": field_work(empty, FIELD, altitude=40.0)}
+    found = sound(scene(TWO, works, after=[("a", "b")]))
+    signals = [step.signal for each in found.robots for step in each.steps if isinstance(step, Signal)]
+    assert len(signals) == len(set(signals)) == 2
+
+
+def test_wanted_robots_all_get_a_share():
+    team = [robot(f"r{k}", (10.0 * k, 0.0, 0.0)) for k in range(4)]
+    work = road((0.0, 50.0, 20.0), (400.0, 50.0, 20.0), cuts=CUTS[:7])
+    whole = scene(team, {"a": work}, tasks={"a": task("a", wanted=3)})
+    assert sum(bool(each.steps) for each in sound(whole).robots) == 3
+
+
+def test_more_robots_wanted_than_can_share_is_refused():
+    whole = scene(TWO, {"a": visit((9.0, 9.0, 9.0))}, tasks={"a": task("a", wanted=3)})
+    with pytest.raises(InfeasibleError, match="wants 3 robots, 2 can share it: 1 short"):
+        plan(whole)
+
+
+def test_indivisible_work_wanted_by_two_is_refused():
+    whole = scene(TWO, {"a": visit((9.0, 9.0, 9.0))}, tasks={"a": task("a", wanted=2)})
+    with pytest.raises(InfeasibleError, match="cannot be done by exactly 2 robots"):
+        plan(whole)
+
+
+def test_an_earliest_time_is_kept_by_the_clock():
+    whole = scene([robot()], {"a": visit((100.0, 0.0, 20.0))}, tasks={"a": task("a", earliest=500.0)})
+    found = sound(whole)
+    assert found.begins["a"] == pytest.approx(500.0)
+    assert found.robots[0].busy < 60.0
+
+
+def test_a_deadline_that_cannot_be_kept_is_refused_with_how_late_it_is():
+    whole = scene([robot()], {"a": visit((1000.0, 0.0, 20.0))}, tasks={"a": task("a", deadline=100.0)})
+    with pytest.raises(InfeasibleError, match=r"its deadline is 100 s: 12 s late"):
+        plan(whole)
+
+
+def test_a_duration_that_is_exceeded_is_refused_with_by_how_much():
+    work = road((0.0, 0.0, 20.0), (1000.0, 0.0, 20.0))
+    whole = scene([robot()], {"a": work}, tasks={"a": task("a", longest=60.0)})
+    with pytest.raises(InfeasibleError, match=r"takes 100 s, 60 s are allowed: 40 s too long"):
+        plan(whole)
+
+
+def test_a_higher_priority_comes_first():
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((-300.0, 0.0, 20.0))}
+    whole = scene([robot()], works, tasks={"b": task("b", priority=5)})
+    found = sound(whole)
+    assert found.begins["b"] < found.begins["a"]
+
+
+def folded():
+    """Return a road of 5.5 km in a square of half a kilometre: eleven times there and back."""
+    points = [(500.0 * (k % 2), 20.0 * (k // 2), 20.0) for k in range(12)]
+    return road(*points, cuts=tuple(range(50, 5500, 50)))
+
+
+def test_work_that_takes_longer_than_a_charge_becomes_several_sorties():
+    found = sound(scene([with_kinematics(robot(), endurance=200.0, energy=1e9)], {"a": folded()}))
+    assert found.robots[0].sorties > 3
+    assert len(steps_of(found, "r1", Recharge)) == found.robots[0].sorties - 1
+
+
+def test_energy_limits_sorties_as_time_does():
+    found = sound(scene([with_kinematics(robot(), energy=200.0 * 200.0)], {"a": folded()}))
+    assert found.robots[0].sorties > 3
+
+
+def test_work_that_no_charge_suffices_for_is_refused_with_what_is_short():
+    whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
+    with pytest.raises(
+        InfeasibleError, match=r"takes 227 s there and back, of one charge 100 s .*: 127 s short"
+    ):
+        plan(whole)
+
+
+def test_a_battery_that_cannot_be_recharged_is_told():
+    works = {name: visit((300.0, 10.0 * k, 20.0)) for k, name in enumerate("abcd")}
+    lone = with_kinematics(robot(), endurance=120.0, recharge=None)
+    whole = scene(
+        [lone],
+        {n: replace(w, strokes=tuple(replace(s, hold=30.0) for s in w.strokes)) for n, w in works.items()},
+    )
+    with pytest.raises(InfeasibleError, match="cannot recharge"):
+        plan(whole)
+
+
+def test_all_reasons_are_given_at_once():
+    whole = scene([robot()], {"a": visit((9.0, 9.0, 500.0)), "b": visit((9.0, 9.0, 0.0))})
+    with pytest.raises(InfeasibleError) as caught:
+        plan(whole)
+    assert len(caught.value.reasons) == 2
+    assert "380.0 m short" in caught.value.reasons[0]
+    assert "1.0 m short" in caught.value.reasons[1]
+
+
+def test_work_within_a_clearance_is_refused_with_the_area():
+    whole = scene([robot()], {"a": visit((105.0, 0.0, 20.0))}, areas=[box("tower", 100, -10, 110, 10)])
+    with pytest.raises(InfeasibleError, match="within the clearance of 'tower'"):
+        plan(whole)
+
+
+def test_a_missing_device_is_told():
+    work = visit((9.0, 9.0, 9.0), actions=(replace(photo(0.0), action="sample"),))
+    with pytest.raises(InfeasibleError, match="r1: has no device for action 'sample'"):
+        plan(scene([robot()], {"a": work}))
+
+
+def test_transits_go_around_areas_and_stay_clear():
+    whole = scene(
+        [robot()],
+        {"a": visit((300.0, 0.0, 20.0))},
+        areas=[box("wall", 100, -80, 120, 80), box("low", 200, -300, 210, 300, high=12.0)],
+    )
+    sound(whole)
+
+
+def test_the_transit_altitude_is_used_between_tasks():
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((300.0, 300.0, 20.0))}
+    found = sound(scene([robot()], works, transit_altitude=60.0))
+    assert all(max(point[2] for point in s.route) == 60.0 for s in steps_of(found, "r1", Transit))
+    assert steps_of(found, "r1", Launch)[0].up == 60.0
+
+
+def test_a_robot_that_need_not_return_comes_down_where_it_ends():
+    found = sound(scene([robot(returns=False)], {"a": visit((300.0, 0.0, 20.0))}))
+    assert found.robots[0].steps[-1].at == (300.0, 0.0, 20.0)
+    assert found.robots[0].steps[-1].up == 0.0
+
+
+def test_a_robot_that_cannot_come_down_where_it_ends_returns():
+    whole = scene(
+        [robot(returns=False)],
+        {"a": visit((300.0, 0.0, 20.0))},
+        areas=[box("hut", 290, -9, 310, 9, high=8.0)],
+    )
+    assert sound(whole).robots[0].steps[-1].at[:2] == (0.0, 0.0)
+
+
+def test_a_crawler_neither_launches_nor_recovers():
+    rover = robot(kinematics=CRAWLER)
+    found = sound(scene([rover], {"a": visit((50.0, 10.0, 0.0))}))
+    assert [type(step) for step in found.robots[0].steps] == [Transit, Serve, Transit]
+
+
+def test_a_choice_is_one_robots_work_and_counts_its_longer_arm():
+    works = {
+        "a": visit((100.0, 0.0, 20.0)),
+        "near": visit((120.0, 0.0, 20.0)),
+        "far": visit((500.0, 0.0, 20.0)),
+    }
+    works["z"] = visit((0.0, 100.0, 20.0))
+    after = [("a", "f"), ("f", "near", "windy"), ("f", "far"), ("near", "j"), ("far", "j"), ("j", "z")]
+    whole = scene(TWO, works, after=after, controls=(control("f", "Fork"), control("j", "Join")))
+    found = sound(whole)
+    (branch,) = [step for each in found.robots for step in each.steps if isinstance(step, Branch)]
+    assert [condition for condition, _ in branch.arms] == ["windy", None]
+    assert found.begins["z"] >= branch.end
+    assert branch.end - branch.begin == pytest.approx(
+        max(arm[-1].end for _, arm in branch.arms) - branch.begin
+    )
+
+
+def test_a_choice_may_do_nothing_otherwise():
+    works = {"a": visit((100.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
+    after = [("a", "f"), ("f", "b", "sunny"), ("f", "j"), ("b", "j")]
+    whole = scene([robot()], works, after=after, controls=(control("f", "Fork"), control("j", "Join")))
+    (branch,) = steps_of(sound(whole), "r1", Branch)
+    assert branch.arms[-1][0] is None
+    assert not [step for step in branch.arms[-1][1] if isinstance(step, Serve)]
+
+
+def test_a_fork_without_an_else_arm_is_refused():
+    works = {"a": visit((100.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
+    after = [("f", "a", "sunny"), ("f", "b", "windy")]
+    whole = scene([robot()], works, after=after, controls=(control("f", "Fork"),))
+    with pytest.raises(InfeasibleError, match="fork 'f' has 0 ways out without a condition"):
+        plan(whole)
+
+
+def test_tasks_in_a_circle_are_refused_with_the_circle():
+    works = {"a": visit((100.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
+    with pytest.raises(InfeasibleError, match=r"circle: .*a.*b"):
+        plan(scene([robot()], works, after=[("a", "b"), ("b", "a")]))
+
+
+def test_robots_that_would_meet_are_kept_apart():
+    team = (robot("r1", (0.0, 0.0, 0.0)), robot("r2", (200.0, 0.0, 0.0)))
+    works = {"a": {"r1": visit((200.0, 5.0, 20.0))}, "b": {"r2": visit((0.0, 5.0, 20.0))}}
+    near = scene(team, works)
+    assert first_encounter(near, plan(near), 20.0) is not None
+    apart = replace(near, minimum_separation=20.0)
+    found = sound(apart)
+    assert first_encounter(apart, found, 20.0) is None
+
+
+def test_robots_that_work_at_one_place_take_turns():
+    works = {
+        "a": {"r1": visit((100.0, 0.0, 20.0), hold=100.0)},
+        "b": {"r2": visit((101.0, 0.0, 20.0), hold=100.0)},
+    }
+    whole = scene(TWO, works, minimum_separation=5.0)
+    found = sound(whole)
+    assert first_encounter(whole, found, 5.0) is None
+
+
+def test_no_tasks_make_an_empty_plan():
+    found = plan(scene(TWO, {}))
+    assert found.makespan == 0.0
+    assert all(not each.steps for each in found.robots)
