@@ -13,7 +13,7 @@ from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal
 _NOTES = (
     "the terrain is flat at the origin's height",
     "times do not count accelerations, nor turns on the way",
-    "energy is mean power times time on one charge",
+    "energy is the power against the wind or current times the time on one charge",
 )
 
 
@@ -45,7 +45,8 @@ def _robot_plan(
     if name not in finished:
         return RobotPlan(name, ())
     end = finished[name]
-    power = crew.pilots[name].kinematics.power
+    kinematics = crew.pilots[name].kinematics
+    power = kinematics.power * kinematics.draw
     return RobotPlan(name, steps[name], end.length, end.busy, power * end.busy, end.sorties)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
 from typing import TypeAlias
 
 import numpy as np
@@ -19,7 +18,6 @@ from shapely.geometry import Polygon
 from shapely.geometry.polygon import orient
 
 from mmrs_core.geometry.clearance import EPSILON, grow
-from mmrs_core.geometry.segments import prism_distance
 from mmrs_core.scene import Area
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -63,6 +61,8 @@ class Obstacles:
         self.grown = tuple(_grown(area, area.safety_distance + clearance) for area in areas)
         self.low = np.array([each.low for each in self.grown])
         self.high = np.array([each.high for each in self.grown])
+        self._clearance = np.array([each.clearance for each in self.grown])
+        self._drawn = np.array([Polygon(each.area.shell) for each in self.grown], dtype=np.object_)
         smaller = [grow(each.area.shell, each.clearance, margin=EPSILON / 2) for each in self.grown]
         self._blocked = np.array(smaller, dtype=np.object_)
         shapely.prepare(self._blocked)
@@ -137,15 +137,13 @@ class Obstacles:
         A line may not come nearer than the clearance and a spare distance; one that has an end nearer
         than that, no nearer than its end.
         """
-        near = np.zeros(len(lines), dtype=np.bool_)
-        flat = np.concatenate([lines, np.zeros((len(lines), 2, 1))], axis=2)
-        for each in np.unique(area).tolist():
-            mine, grown = area == each, self.grown[each]
-            legs, shell = flat[mine], grown.area.shell
-            ends = np.concatenate([legs[:, [0, 0]], legs[:, [1, 1]]])
-            at_ends = prism_distance(ends, shell, -inf, inf).reshape(2, -1).min(axis=0)
-            needed = np.clip(at_ends, grown.clearance, grown.clearance + spare)
-            near[mine] = prism_distance(legs, shell, -inf, inf) < needed - HEIGHT_MARGIN
+        drawn, clearance = self._drawn[area], self._clearance[area]
+        at_ends = np.minimum(
+            shapely.distance(shapely.points(lines[:, 0]), drawn),
+            shapely.distance(shapely.points(lines[:, 1]), drawn),
+        )
+        needed = np.clip(at_ends, clearance, clearance + spare)
+        near: Flags = shapely.distance(shapely.linestrings(lines), drawn) < needed - HEIGHT_MARGIN
         return near
 
     def _between_heights(self, legs: Floats, area: NDArray[np.intp]) -> tuple[Floats, Floats]:

@@ -1,8 +1,8 @@
 """A robot's way through its plan: a state that grows step by step, within what its batteries allow.
 
 Time on one charge counts as the verifier counts it: for a robot that launches, from launch to recovery,
-waits aloft included; for all others from the mission's start or the last recharge on. Energy is mean
-power times time.
+waits aloft included; for all others from the mission's start or the last recharge on. Energy is power
+against the wind or current times time.
 """
 
 from __future__ import annotations
@@ -88,9 +88,10 @@ class Pilot:
         """
         self.travel, self._slack = travel, slack
         self.robot, self.kinematics = travel.robot, travel.kinematics
-        power = self.kinematics.power
+        power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
         self.limit = min(self.kinematics.endurance, by_energy)
+        self._exits: dict[Position, float] = {}
 
     def start(self, delay: float = 0.0) -> State:
         """Return the state in which the mission begins, after a delay at home."""
@@ -99,10 +100,14 @@ class Pilot:
 
     def exit_seconds(self, position: Position) -> float:
         """Return the seconds that ending the sortie from a place takes; inf where it cannot be ended."""
-        try:
-            return self.way_out(position).seconds
-        except UnreachableError:
-            return inf
+        seconds = self._exits.get(position)
+        if seconds is None:
+            try:
+                seconds = self.way_out(position).seconds
+            except UnreachableError:
+                seconds = inf
+            self._exits[position] = seconds
+        return seconds
 
     def way_out(self, position: Position) -> Way:
         """Return the way on which a sortie is ended from a place: home, or down where that is allowed.
