@@ -173,6 +173,8 @@ class Kinematics:
         endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
         energy: usable joules of one sortie, reserve taken off; inf for wired robots.
         power: mean power in watts; 0 where nothing is known of energy.
+        draw: by how much the power may exceed the mean for long, as a factor of one or more: what it
+            takes to travel against the wind or current all the time.
         recharge: seconds from empty to full at home; None where impossible.
         launches: whether the robot climbs from its home before it travels and descends onto it
             at the end (a drone does; an underwater vehicle or rover does not).
@@ -192,6 +194,7 @@ class Kinematics:
     endurance: float = inf
     energy: float = inf
     power: float = 0.0
+    draw: float = 1.0
     recharge: float | None = None
     launches: bool = False
 

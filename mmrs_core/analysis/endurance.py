@@ -1,7 +1,9 @@
 """Whether robots have enough time and energy for every sortie, and recharge as their batteries allow.
 
 The limits follow from the robot type alone: the lifetime of the capability for the robot's payload, and
-what the batteries hold, both less the reserve. Mean power is what empties the batteries in the lifetime.
+what the batteries hold, both less the reserve. Mean power is what empties the batteries in the lifetime;
+against wind or current all the time it is more, by the kinematics' draw. Times are those of the kinds of
+moves; what these reckon without, the reserve must cover.
 """
 
 from __future__ import annotations
@@ -9,7 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import dist, inf
 
-from mmrs_core.analysis.figures import MissingFigureError, capability_of, home_of, type_of
+from mmrs_core.analysis.figures import (
+    MissingFigureError,
+    capability_of,
+    home_of,
+    kinematics_of,
+    type_of,
+)
 from mmrs_core.analysis.motion import Leg, motions
 from mmrs_core.analysis.sorties import RECHARGE, Sorties, sorties_of
 from mmrs_core.analysis.verdicts import (
@@ -71,7 +79,8 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not lifetime:
         raise MissingFigureError(f"{robot.id}: its lifetime, from which its power follows, is not given")
     allowed = stored * (1.0 - input.reserve)
-    yield from _judged_uses(ENERGY_NAME, robot, _uses(input, robot), stored / lifetime, allowed, "J")
+    power = stored / lifetime * kinematics_of(input, robot).draw
+    yield from _judged_uses(ENERGY_NAME, robot, _uses(input, robot), power, allowed, "J")
 
 
 def _lifetime(input: CheckInput, robot: RobotProgram) -> float | None:

@@ -1,8 +1,9 @@
 """How a simulated robot gets along: straight legs, evenly travelled, and what they cost.
 
 Cost is counted in seconds at mean power. It grows by `CLIMBING` times the share of the largest climb
-rate that is used, and by the square of the headwind's share of the largest speed; a robot that holds
-its position has the whole wind against it.
+rate that is used, and falls by as much on the way down, so that up and down again costs no more than
+the time that it takes; it grows by the square of the headwind's share of the largest speed. A robot that
+holds its position has the whole wind against it.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ def cost(start: Position, finish: Position, seconds: float, kinematics: Kinemati
     else:
         against = hypot(*flow)
     climb = (finish[2] - start[2]) / seconds if seconds > 0.0 else 0.0
-    climbing = CLIMBING * min(1.0, max(0.0, climb) / kinematics.climb) if kinematics.climb > 0.0 else 0.0
+    climbing = CLIMBING * max(-1.0, min(1.0, climb / kinematics.climb)) if kinematics.climb > 0.0 else 0.0
     headwind = max(0.0, against) / kinematics.fastest if kinematics.fastest > 0.0 else 0.0
     return 1.0 + climbing + headwind**2
 

@@ -45,11 +45,17 @@ def kinematics_for(
     launch: float = 0.0,
     recovery: float = 0.0,
     launches: bool = False,
+    flow: str = "",
 ) -> Kinematics:
     """Return the kinematics that follow from a robot type's own figures.
 
     Cruise is the travel mode's share of the largest speed, never under the smallest. The mean power
-    is what empties the batteries in the lifetime. Robot kinds add their limits of height.
+    is what empties the batteries in the lifetime; against the flow it grows by (flow / largest speed)².
+    Robot kinds add their limits of height.
+
+    Args:
+        flow: name of the environment's attribute with the speed of the wind or current that the robot
+            travels in; empty: none.
 
     Raises:
         InfeasibleError: if the type has no capability for the robot's payload.
@@ -74,6 +80,7 @@ def kinematics_for(
         endurance=inf if lifetime is None else lifetime * usable,
         energy=stored * usable if stored else inf,
         power=stored / lifetime if stored and lifetime else 0.0,
+        draw=1.0 + (scene.environment.get(flow, 0.0) / fastest) ** 2 if fastest > 0.0 else 1.0,
         recharge=_recharge(robot.type),
         launches=launches,
     )

@@ -30,7 +30,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     density = scene.environment.get("waterDensity", SEA_WATER)
     surface = scene.frame.surface
     deepest = largest_depth(robot.type, robot.payload, density)
-    return kinematics_for(robot, scene, floor=surface - deepest, ceiling=surface)
+    return kinematics_for(robot, scene, floor=surface - deepest, ceiling=surface, flow="currentSpeed")
 
 
 def largest_depth(robot_type: RobotType, payload: float, density: float) -> float:

@@ -42,6 +42,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
         launch=SPIN_UP,
         recovery=TOUCH_DOWN,
         launches=True,
+        flow="windSpeed",
     )
 
 
