@@ -51,7 +51,7 @@ class _Walk:
             self.faults.append(f"{step} begins before {self.time}")
         if step.end < step.begin - NEAR:
             self.faults.append(f"{step} ends before it begins")
-        if self.away or isinstance(step, Launch):
+        if not isinstance(step, Branch) and (self.away or isinstance(step, Launch)):
             self.used += step.end - self.time
         self.time = step.end
 
@@ -131,7 +131,7 @@ class _Walk:
     def _Branch(self, step):  # noqa: N802
         if [condition for condition, _ in step.arms].count(None) != 1 or step.arms[-1][0] is not None:
             self.faults.append("a branch needs one else arm, the last one")
-        start, began = (self.here, self.away, self.used - (step.end - step.begin), self.length), step.begin
+        start, began = (self.here, self.away, self.used, self.length), step.begin
         uses = []
         for _, arm in step.arms:
             self.here, self.away, self.used, self.length = start
