@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.sorties import Pilot
@@ -155,8 +156,11 @@ def _entry(work: Work, pilot: Pilot) -> Position | None:
 
 def faults(work: Work, pilot: Pilot) -> Iterator[str]:
     """Yield why a robot cannot do a work, whatever the plan: heights, clearance, actions, speed, charge."""
-    if not work.strokes:
+    if not work.strokes or not all(stroke.points for stroke in work.strokes):
         yield "there is nothing to be done"
+        return
+    if not pilot.kinematics.cruise > 0:
+        yield "its cruise speed is zero"
         return
     yield from _height_faults(work.strokes, pilot)
     for stroke in work.strokes:
@@ -168,7 +172,10 @@ def faults(work: Work, pilot: Pilot) -> Iterator[str]:
         missing_action(pilot.robot.type, action) for stroke in work.strokes for action in stroke.actions
     }
     yield from sorted(reason for reason in lacking if reason is not None)
-    yield from _speed_faults(work.strokes, pilot)
+    slow = list(_speed_faults(work.strokes, pilot))
+    yield from slow
+    if not slow and inf in (serve_seconds(each, pilot.robot, pilot.kinematics) for each in work.strokes):
+        yield "it cannot turn on the spot, or change its height, as the work demands"
 
 
 def _height_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:

@@ -30,7 +30,7 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     """
     jobs = jobs_of(scene)
     crew = Crew(scene)
-    _refuse(list(crew.shortfalls()), "no plan")
+    _refuse([*crew.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
     try:
         return _plan_with(crew, jobs, seed)
     except _TooCoarseError:
@@ -50,12 +50,28 @@ def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
     else:
         _refuse([reason for reason, _ in broken_times(crew, found.spans)], "no plan keeps all times")
     try:
-        return separated(crew.scene, decisions, lambda decided: _planned(crew, jobs, decided))
+        made = separated(crew.scene, decisions, lambda decided: _planned(crew, jobs, decided))
     except InfeasibleError:
         altitudes = stacked_altitudes(crew.scene)
         if crew.stacked or not altitudes:
             raise
+    else:
+        spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
+        _refuse([reason for reason, _ in broken_times(crew, spans)], "no plan keeps all times")
+        return made
     return _plan_with(Crew(crew.scene, fine=crew.fine, altitudes=altitudes), jobs, seed)
+
+
+def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
+    """Return why tasks between a Fork with conditions and its Join cannot be shared as wanted."""
+    wanted = {task.name: task.wanted or 1 for task in scene.tasks}
+    return [
+        f"task '{task}' wants {wanted[task]} robots, but fork '{job.name}' is one robot's work"
+        for job in jobs
+        if job.choice is not None
+        for task in job.tasks()
+        if wanted[task] > 1
+    ]
 
 
 def _planned(crew: Crew, jobs: Sequence[Job], decisions: Decisions) -> Plan | None:

@@ -63,9 +63,14 @@ class Shortfall:
     left: int
 
 
+_ENDED_BY = " ended by "
+
+
 def signal_name(job: str, robot: str) -> str:
-    """Return the name of the signal that a robot's share of a job has ended."""
-    return f"{job} ended by {robot}"
+    """Return the name of the signal that a robot's share of a job has ended; no two are alike."""
+    if _ENDED_BY in job or _ENDED_BY in robot:
+        return f"{job!r}{_ENDED_BY}{robot!r}"
+    return f"{job}{_ENDED_BY}{robot}"
 
 
 def schedule(

@@ -46,7 +46,8 @@ def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float
 def uncertain_seconds(stroke: Stroke, kinematics: Kinematics) -> float:
     """Return how much quicker than estimated a stroke may be done: turns and searches take up to that."""
     stays = stroke.hold > 0 or len(stroke.points) == 1 or stroke.object is not None
-    turning = 180.0 / kinematics.turn_rate if stroke.look is not None and stays else 0.0
+    half_turn = 180.0 / kinematics.turn_rate if kinematics.turn_rate > 0 else inf
+    turning = half_turn if stroke.look is not None and stays else 0.0
     if stroke.object is None:
         return turning
     return turning + 2.0 * (stroke.object_tolerance or 0.0) / commanded_speed(stroke, kinematics)

@@ -196,11 +196,14 @@ class Travel:
             return str(error)
 
     def _raised(self, start: Position, goal: Position, level: float) -> tuple[Position, ...] | None:
-        """Return a route up to a level, along it, and down to the goal; None where something is above."""
+        """Return a route up to a level, along it, and down to the goal; None where that is blocked."""
         up, over = (start[0], start[1], level), (goal[0], goal[1], level)
         if not (self.space.is_clear((start, up)) and self.space.is_clear((over, goal))):
             return None
-        route = (start, *self.space.route(up, over), goal)
+        try:
+            route = (start, *self.space.route(up, over), goal)
+        except UnreachableError:
+            return None
         return tuple(each for i, each in enumerate(route) if i == 0 or each != route[i - 1])
 
 

@@ -345,3 +345,43 @@ def test_no_tasks_make_an_empty_plan():
     found = plan(scene(TWO, {}))
     assert found.makespan == 0.0
     assert all(not each.steps for each in found.robots)
+
+
+def test_a_deadline_within_a_choice_is_checked():
+    works = {"a": visit((900.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
+    whole = scene(
+        [robot()],
+        works,
+        after=[("f", "a", "sunny"), ("f", "b")],
+        controls=(control("f", "Fork"),),
+        tasks={"a": task("a", deadline=50.0)},
+    )
+    with pytest.raises(InfeasibleError, match="its deadline is 50 s"):
+        plan(whole)
+
+
+def test_a_choice_cannot_be_shared():
+    works = {"a": visit((900.0, 0.0, 20.0)), "b": visit((200.0, 0.0, 20.0))}
+    after = [("f", "a", "sunny"), ("f", "b")]
+    tasks = {"a": task("a", wanted=2)}
+    whole = scene(TWO, works, after=after, controls=(control("f", "Fork"),), tasks=tasks)
+    with pytest.raises(InfeasibleError, match="one robot's work"):
+        plan(whole)
+
+
+def test_a_robot_that_does_not_move_is_refused():
+    whole = scene([with_kinematics(robot(), cruise=0.0)], {"a": visit((9.0, 9.0, 9.0))})
+    with pytest.raises(InfeasibleError, match="r1: its cruise speed is zero"):
+        plan(whole)
+
+
+def test_names_that_look_like_signals_stay_apart():
+    works = {
+        "a": {"b ended by c": visit((300.0, 0.0, 20.0))},
+        "a ended by b": {"c": visit((200.0, 0.0, 20.0))},
+    }
+    works["z"] = {"d": visit((100.0, 0.0, 20.0))}
+    team = [robot(name, (10.0 * k, 0.0, 0.0)) for k, name in enumerate(("b ended by c", "c", "d"))]
+    found = sound(scene(team, works, after=[("a", "z"), ("a ended by b", "z")]))
+    (wait,) = steps_of(found, "d", Await)
+    assert len(set(wait.signals)) == 2
