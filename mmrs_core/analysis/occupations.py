@@ -2,7 +2,8 @@
 
 An occupation is a way along which a robot moves, or a place at which it acts or waits, with the
 earliest time at which it may come there and the latest at which it may still be there. Robots on the
-ground, before launching and after landing, take up none.
+ground, before launching and after landing, and robots that stand at their homes take up none: how near
+homes are to each other is the operator's choice.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ from mmrs_core.analysis.times import Times, times_of
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Kinematics, Position
+
+AT_HOME = 0.1
+"""Metres from its home within which a robot stands at home."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,13 +106,20 @@ def _occupations(
     duration = times.durations[robot.id].of[leg.move]
     begin = Span(times.earliest[robot.id, leg.move], times.latest.get((robot.id, leg.move), inf))
     leave, arrive = begin + duration.before, begin + duration.moved
-    if leave.high > begin.low:
+    if len(leg.points) == 1:
+        arrive = begin
+    elif leave.high > begin.low and not _at_home(robot, leg.points[0]):
         yield _stand(robot, leg, begin, leave, waiting=False)
     if len(leg.points) > 1:
         yield _movement(robot, leg, (leave, arrive), duration.moved.low - duration.before.low, kinematics)
     gone = _gone(robot, leg.move, times)
-    if states.after[leg.move] != {GROUNDED} and gone.high > arrive.low:
+    standing = states.after[leg.move] != {GROUNDED} and not _at_home(robot, leg.points[-1])
+    if standing and gone.high > arrive.low:
         yield _stand(robot, leg, arrive, gone, waiting=True)
+
+
+def _at_home(robot: RobotProgram, place: Position) -> bool:
+    return robot.home is not None and dist(place, robot.home) <= AT_HOME
 
 
 def _gone(robot: RobotProgram, move: int, times: Times) -> Span:

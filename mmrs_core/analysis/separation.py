@@ -3,13 +3,15 @@
 Two occupations are apart if the ways are far enough from each other, if they never overlap in time, if
 one is over before the other begins because robots wait for each other, or if at every time the parts
 of the ways on which the robots may then be are far enough from each other. What then is left is
-violated where times are exact, and otherwise undecided.
+violated where times are exact, and otherwise undecided. Times are those of the kinds of moves: where
+these reckon without wind and accelerations, so does this check, and only waits for each other are proof.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from itertools import pairwise
 from math import inf
 
@@ -128,32 +130,43 @@ def _ordered(order: HappensBefore, one: Occupation, other: Occupation) -> bool:
 
 
 def _meeting(one: Occupation, other: Occupation, needed: float) -> Iterator[Encounter]:
-    """Yield the first encounter that is certain, or else the first of all.
+    """Yield the nearest encounter that is certain, or else the nearest of all.
 
-    The time that both may be there is halved until the parts of the ways are far enough apart.
+    The time that both may be there is halved, always where the parts of the ways are nearest to each
+    other, until they are far enough apart or the time is short.
     """
     required = _needed(one, other, needed)
-    pending = [_common_time(one, other)]
-    first: Encounter | None = None
+    begin, end = _common_time(one, other)
+    pending = [(_apart(one.between(begin, end), other.between(begin, end)), begin, end)]
+    nearest: Encounter | None = None
     left = MOST_STRETCHES
-    while pending and left:
-        begin, end = pending.pop()
-        apart = _apart(one.between(begin, end), other.between(begin, end))
-        if apart >= required:
-            continue
+    while pending and left and pending[0][0] < required:
+        apart, begin, end = heappop(pending)
         if end - begin > FINEST:
             middle = (begin + end) / 2
-            pending += [(middle, end), (begin, middle)]
+            for half in ((begin, middle), (middle, end)):
+                heappush(pending, (_apart(one.between(*half), other.between(*half)), *half))
             continue
-        left -= 1
         decided = _certainly(one, begin, end) and _certainly(other, begin, end)
+        if decided:
+            apart = _apart_moving(one, other, begin, end)
+            if apart >= required:
+                continue
+        left -= 1
         found = Encounter(one, other, begin, apart - one.radius - other.radius, needed, decided)
         if decided:
             yield found
             return
-        first = first or found
-    if first is not None:
-        yield first
+        nearest = nearest or found
+    if nearest is not None:
+        yield nearest
+
+
+def _apart_moving(one: Occupation, other: Occupation, begin: float, end: float) -> float:
+    """Return how near two robots come whose places are known at the begin and the end of a short time."""
+    first = np.subtract(one.between(begin, begin)[0], other.between(begin, begin)[0])
+    last = np.subtract(one.between(end, end)[0], other.between(end, end)[0])
+    return _apart((tuple(first), tuple(last)), ((0.0, 0.0, 0.0),))
 
 
 def _common_time(one: Occupation, other: Occupation) -> tuple[float, float]:

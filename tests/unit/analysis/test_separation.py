@@ -83,6 +83,14 @@ def test_stopping_in_the_way_is_violated():
     assert (verdict.status, verdict.robot) == (Status.VIOLATED, "a")
 
 
+def test_holding_in_the_way_is_violated():
+    moves = [go("east", (20.0, 0.0, 0.0)), hold("look", 60.0), go("off", (20.0, 90.0, 0.0))]
+    a = robot("a", moves, home=(10.0, 0.0, 0.0))
+    b = robot("b", [hold("late", 10.0), go("east", (40.0, 0.0, 0.0))])
+    (verdict,) = separation(a, b)
+    assert (verdict.status, verdict.move) == (Status.VIOLATED, "look")
+
+
 def flights(second_waits):
     moves = [take_off("up", 10.0), go("over", (20.0, 0.0, 10.0)), land("down", after=(notify("b.go"),))]
     a = robot("a", moves, home=(0.0, 0.0, 0.0))
@@ -110,3 +118,17 @@ def test_a_chain_of_waits_keeps_robots_apart():
     c = robot("c", [hold("pass", after=(notify("b.go"),))], waits={"start": ["go"]}, home=(90.0, 90.0, 0.0))
     b = robot("b", [go("north", (20.0, 20.0, 0.0))], waits={"start": ["go"]}, home=(20.0, -20.0, 0.0))
     assert [verdict.status for verdict in separation(a, b, c, moves=uneven())] == [Status.SAFE]
+
+
+def test_robots_that_stand_at_their_homes_are_not_counted():
+    a = robot("a", [go("east", (40.0, 0.0, 0.0)), go("back", (0.0, 0.0, 0.0))])
+    b = robot("b", [hold("idle", 500.0)], home=(0.0, 2.0, 0.0))
+    assert [verdict.status for verdict in separation(a, b)] == [Status.SAFE]
+
+
+def test_the_nearest_approach_of_moving_robots_is_exact():
+    """Two robots at right angles, 2 m/s each, the second 4 m behind: nearest at 4 / sqrt(2) m."""
+    a, b = crossing(before=2.0)
+    (verdict,) = separation(a, b, least=3.0)
+    assert verdict.margin == pytest.approx(4.0 / 2.0**0.5 - 3.0, abs=0.01)
+    assert [verdict.status for verdict in separation(a, b, least=2.82)] == [Status.SAFE]
