@@ -5,6 +5,7 @@ out, ``vehicle.py`` says it in MAVLink, ``main.py`` is the command line.
 """
 
 from .main import main
+from .objects import Locator, where_expected
 from .pilot import Condition
 from .program import (
     Choose,
@@ -17,7 +18,9 @@ from .program import (
     Measure,
     NoEffect,
     Notify,
+    Object,
     Operate,
+    Place,
     Policy,
     Recharge,
     Report,
@@ -41,11 +44,14 @@ __all__ = [
     "Hold",
     "Land",
     "Local",
+    "Locator",
     "Look",
     "Measure",
     "NoEffect",
     "Notify",
+    "Object",
     "Operate",
+    "Place",
     "Policy",
     "Recharge",
     "Report",
@@ -60,4 +66,5 @@ __all__ = [
     "Then",
     "Turn",
     "main",
+    "where_expected",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import hypot, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -13,16 +14,20 @@ from .faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
 from .link import Link, Message
 from .missions import FENCE, MISSION, RALLY, Item, upload, verify
 from .places import bearing, distance, offset
-from .program import Geographic, Look, Place
+from .program import Geographic, Look, Object, Place
 from .telemetry import Telemetry
 from .vehicle import State
 
 READY_SECONDS = 120.0
 MODE_SECONDS = 5.0
+TAKE_OFF_TRIES = 3
+AFRESH_SECONDS = 3.0
+"""After which at least one new heartbeat should have come, even over a poor link."""
 RESEND_SECONDS = 1.0
 PATIENCE_FACTOR = 4.0
 PATIENCE_SECONDS = 60.0
 STILL = 0.3
+CLOSE_DEGREES = 5.0
 FORCE_DISARM = 21_196
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
@@ -103,8 +108,7 @@ class MavlinkVehicle:
         Raises:
             Refused: the vehicle does not arm or take off. Fault: it does not get there.
         """
-        self._arm()
-        command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+        self._leave_ground(height)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
         self._until(
             lambda: abs(self._telemetry.here().height - height) <= self._acceptance, limit, "to take off"
@@ -151,12 +155,13 @@ class MavlinkVehicle:
             return
         here = self._telemetry.here()
         wanted = self._yaw = _yaw(here, look)
-        self._send_target(here, wanted)
-        self._until(
-            lambda: abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < 5.0,
-            PATIENCE_SECONDS,
-            "to turn",
-        )
+        until = self._link.clock.now() + self._link.clock.patience(PATIENCE_SECONDS, 2.0)
+        while not self._faces(wanted):
+            if self._link.clock.now() > until:
+                raise Fault(NO_PROGRESS, "the vehicle takes too long to turn")
+            self._send_target(here, wanted)
+            self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
+            self._check_mode()
 
     def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
         """Fly items of the uploaded mission; the one after `last` must make the vehicle wait.
@@ -258,22 +263,10 @@ class MavlinkVehicle:
         verify(self._link, items, kind)
 
     def _stream(self, name: str, rate: float) -> None:
+        """Ask for a message at a rate; a vehicle that refuses sends it as it likes, or does without."""
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
-        self._link.send(
-            mavlink.MAVLink_command_long_message(
-                self._link.system,
-                self._link.component,
-                mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
-                0,
-                number,
-                1e6 / rate,
-                0,
-                0,
-                0,
-                0,
-                0,
-            )
-        )
+        with suppress(Refused):
+            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate)
 
     def _await_ready(self) -> None:
         if not self._link.wait(self._telemetry.ready, READY_SECONDS):
@@ -301,6 +294,18 @@ class MavlinkVehicle:
         if not self._telemetry.armed():
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
             self._until(self._telemetry.armed, MODE_SECONDS, "to arm")
+
+    def _leave_ground(self, height: float) -> None:
+        """Arm and take off, again where the vehicle has disarmed itself in between."""
+        for attempt in range(TAKE_OFF_TRIES):
+            self._arm()
+            try:
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+                return
+            except Refused:
+                if attempt + 1 == TAKE_OFF_TRIES:
+                    raise
+                self._link.wait(lambda: None, AFRESH_SECONDS)
 
     def _set_mode(self, mode: str) -> None:
         number = modes.MODES[self._kind][mode]
@@ -362,6 +367,9 @@ class MavlinkVehicle:
         near = distance(self._telemetry.here(), place) <= self._acceptance
         return near and (through or self._telemetry.speed() <= STILL)
 
+    def _faces(self, wanted: float) -> bool:
+        return abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < CLOSE_DEGREES
+
     def _heading(self) -> float:
         told = self._telemetry.heading()
         return self._yaw if told is None else told
@@ -378,6 +386,8 @@ class MavlinkVehicle:
 
 
 def _yaw(here: Place, look: Look) -> float:
+    if isinstance(look.at, Object):
+        raise ValueError(f"{look.at} has not been found yet")
     return (bearing(here, look.at) - look.angle - look.mount) % 360.0
 
 

@@ -18,9 +18,10 @@ from .dry import DryVehicle
 from .faults import LINK_LOST, STOPPED, Fault, Refused
 from .link import Link
 from .log import Log, Records
+from .objects import Locator
 from .pilot import Condition, Desk, Pilot
 from .ports import open_port
-from .program import Robot
+from .program import Choose, GoTo, Movement, Object, Robot, Turn
 from .responses import policy_for, respond
 from .slots import LocalSlots, Slots
 from .vehicle import Vehicle
@@ -57,9 +58,36 @@ class Options:
     patience: float
 
 
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What only the user can say: when conditions hold, and where objects are."""
+
+    conditions: Mapping[str, Condition]
+    locators: Mapping[str, Locator]
+
+    def faults(self, robots: Sequence[Robot]) -> list[str]:
+        """Return what is missing for these robots."""
+        choices = {s.then.condition for r in robots for s in r.steps if isinstance(s.then, Choose)}
+        objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
+        return [
+            *(
+                f"conditions.py decides nothing for {name!a}"
+                for name in sorted(choices - set(self.conditions))
+            ),
+            *(f"objects.py finds nothing for {name!a}" for name in sorted(objects - set(self.locators))),
+        ]
+
+
+def _objects(movement: Movement) -> list[str]:
+    look = movement.look if isinstance(movement, GoTo | Turn) else None
+    targets = [look.at if look else None, movement.at if isinstance(movement, GoTo) else None]
+    return [target.description for target in targets if isinstance(target, Object)]
+
+
 def main(
     robots: Sequence[Robot],
     conditions: Mapping[str, Condition] | None = None,
+    locators: Mapping[str, Locator] | None = None,
     arguments: Sequence[str] | None = None,
 ) -> int:
     """Run the programs of robots, each in a thread of its own, and return the exit code.
@@ -67,19 +95,20 @@ def main(
     Args:
         robots: at least one.
         conditions: what decides Choices, by identifier.
+        locators: what finds objects, by description.
         arguments: as on the command line; None: those of this process.
     """
     parser = _parser(robots)
     given = parser.parse_args(arguments)
     options = _options(parser, robots, given)
-    missing = _missing_conditions(robots, conditions or {})
-    if missing:
-        parser.error(f"conditions.py decides nothing for {', '.join(map(ascii, missing))}")
+    judgement = Judgement(conditions or {}, locators or {})
+    for fault in judgement.faults(robots):
+        parser.error(fault)
     with ExitStack() as stack:
         slots = _slots(parser, robots, given, stack)
         stop = threading.Event()
         _stop_on_signals(stop)
-        codes = _run_all(robots, options, slots, conditions or {}, stop)
+        codes = _run_all(robots, options, slots, judgement, stop)
     return next((code for code in (INTERRUPTED, LINK, FAILED) if code in codes), OK)
 
 
@@ -87,13 +116,13 @@ def _run_all(
     robots: Sequence[Robot],
     options: Options,
     slots: Slots,
-    conditions: Mapping[str, Condition],
+    judgement: Judgement,
     stop: threading.Event,
 ) -> list[int]:
     codes = [FAILED] * len(robots)
 
     def run(index: int) -> None:
-        codes[index] = run_robot(robots[index], options, slots, conditions, stop)
+        codes[index] = run_robot(robots[index], options, slots, judgement, stop)
 
     threads = [
         threading.Thread(target=run, args=(index,), name=f"robot {index}") for index in range(len(robots))
@@ -110,7 +139,7 @@ def run_robot(
     robot: Robot,
     options: Options,
     slots: Slots,
-    conditions: Mapping[str, Condition],
+    judgement: Judgement,
     stop: threading.Event,
 ) -> int:
     """Run one robot's program to its end, or to the end that its policies say; return the exit code."""
@@ -120,7 +149,9 @@ def run_robot(
             log = Log(options.log / robot.log, options.run, robot.id)
             stack.callback(log.close)
             records = Records(options.log / f"{Path(robot.log).stem}.records.ndjson")
-            desk = Desk(options.clock, slots, log, records, conditions, stop, say)
+            desk = Desk(
+                options.clock, slots, log, records, judgement.conditions, judgement.locators, stop, say
+            )
             vehicle, watch = _vehicle(robot, options, stop, stack)
             return _fly(robot, vehicle, watch, desk, options)
     except (OSError, ValueError) as error:
@@ -272,13 +303,6 @@ def _slots(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any,
             f"waits for {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus"
         )
     return LocalSlots()
-
-
-def _missing_conditions(robots: Sequence[Robot], conditions: Mapping[str, Condition]) -> list[str]:
-    from .program import Choose
-
-    needed = {s.then.condition for r in robots for s in r.steps if isinstance(s.then, Choose)}
-    return sorted(needed - set(conditions))
 
 
 def _stop_on_signals(stop: threading.Event) -> None:

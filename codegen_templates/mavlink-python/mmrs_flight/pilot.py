@@ -12,6 +12,7 @@ from .commands import Unanswered
 from .faults import CONDITION_FAILED, DEVICE_SILENT, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from .log import Log, Records
 from .missions import Item
+from .objects import Locator, look_at, place_of
 from .places import ends_of
 from .program import (
     Action,
@@ -19,6 +20,7 @@ from .program import (
     GoTo,
     Hold,
     Land,
+    Look,
     Measure,
     NoEffect,
     Notify,
@@ -52,7 +54,7 @@ class Desk:
     """What a pilot works with.
 
     Attributes:
-        conditions: by identifier.
+        conditions: by identifier; locators: by description of the object.
         stop: set when the robot is to stop.
         say: tells people what goes on.
     """
@@ -62,6 +64,7 @@ class Desk:
     log: Log
     records: Records
     conditions: Mapping[str, Condition]
+    locators: Mapping[str, Locator]
     stop: threading.Event
     say: Say
 
@@ -130,17 +133,22 @@ class Pilot:
             self._recharge(movement.seconds)
         elif isinstance(movement, Hold):
             self._vehicle.rest(movement.seconds)
-        elif isinstance(movement, Turn):
-            self._vehicle.turn(movement.look)
+        elif isinstance(movement, Turn) and (look := self._look(movement.look)) is not None:
+            self._vehicle.turn(look)
+
+    def _look(self, look: Look | None) -> Look | None:
+        return look_at(look, self._desk.locators, self._vehicle.state())
 
     def _go_to(self, movement: GoTo, fluid: bool) -> None:
         here = self._vehicle.state().place
         if not self.track:
             self._passed(here)
-        ends = ends_of(here, movement.at, movement.legs, movement.distance)
+        target = place_of(movement.at, self._desk.locators, self._vehicle.state())
+        look = self._look(movement.look)
+        ends = ends_of(here, target, movement.legs, movement.distance)
         for place in ends:
             last = place == ends[-1]
-            self._vehicle.go_to(place, movement.speed, movement.look, fluid and last)
+            self._vehicle.go_to(place, movement.speed, look, fluid and last)
             self._passed(place)
 
     def _run(self, flight: Flight) -> Step:
@@ -153,7 +161,7 @@ class Pilot:
                 return
             movement = self._steps[move].movement
             assert isinstance(movement, GoTo)
-            self._passed(movement.at)
+            self._passed(place_of(movement.at, {}, self._vehicle.state()))
             self._write("end")
             if move != moves[-1]:
                 following = moves[moves.index(move) + 1]

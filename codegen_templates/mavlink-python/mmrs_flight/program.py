@@ -33,8 +33,22 @@ Place: TypeAlias = Geographic | Local
 
 
 @dataclass(frozen=True, slots=True)
+class Object:
+    """Something that has to be found first.
+
+    Attributes:
+        expected: where it should be; None where nobody knows.
+        tolerance: metres that it may be from there; None where nobody knows.
+    """
+
+    description: str
+    expected: Place | None = None
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Look:
-    """What a device points at.
+    """What a device points at: `at` is a place by the time the robot turns.
 
     Attributes:
         angle: at 90 the target is on the device's right side, degrees.
@@ -42,7 +56,7 @@ class Look:
         gimbal: whether the device turns by itself, so that the robot need not.
     """
 
-    at: Place
+    at: Place | Object
     angle: float = 0.0
     mount: float = 0.0
     gimbal: bool = False
@@ -81,7 +95,7 @@ class GoTo:
         look: None: the front points the way the robot goes.
     """
 
-    at: Place
+    at: Place | Object
     speed: float | None = None
     legs: str = "direct"
     distance: float = 0.0

@@ -45,6 +45,7 @@ def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
         flights[run.moves[0]] = Flight(run, first, len(items) - 1, ends)
         last = robot.step(run.moves[-1]).movement
         assert isinstance(last, GoTo)
+        assert isinstance(last.at, Geographic)
         items.append(_positional(mavlink.MAV_CMD_NAV_LOITER_UNLIM, last.at))
     return tuple(items), flights
 
@@ -67,6 +68,7 @@ def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
     for move, hold in zip(run.moves, run.holds, strict=True):
         movement = robot.step(move).movement
         assert isinstance(movement, GoTo)
+        assert isinstance(movement.at, Geographic)
         if movement.speed is not None and movement.speed != speed:
             speed = movement.speed
             yield move, Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target
 from mmrs_core.contributions.rules import most_specific
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.earth import metres
@@ -33,14 +33,8 @@ def losses_of(move: Move, context: RobotContext) -> tuple[str, ...]:
     if most_specific(move.metaclasses, MOVEMENTS) != move.metaclasses[0]:
         return (f"{context.label(move)}: {move.kind} is not known to this target",)
     losses = []
-    if move.metaclasses[0][1] == "GoTo":
-        losses += _target_losses(move, context)
-        if context.speed(move) is None:
-            losses.append(
-                f"{context.label(move)}: its speed is not known, because its robot type is not given"
-            )
-    if move.heading is not None and move.heading.target.position is None:
-        losses.append(f"{context.label(move)}: points at an object whose place is not known")
+    if move.metaclasses[0][1] == "GoTo" and context.speed(move) is None:
+        losses.append(f"{context.label(move)}: its speed is not known, because its robot type is not given")
     if move.metaclasses[0] == (MULTICOPTER, "TakeOff") and _number(move, "altitude") <= 0:
         losses.append(f"{context.label(move)}: takes off to {_number(move, 'altitude'):g} m above the ground")
     return tuple(losses)
@@ -56,10 +50,10 @@ def place_of(position: Position, context: RobotContext) -> Call:
     return Call("Geographic", (latitude, longitude, context.height(position)))
 
 
-def _target_losses(move: Move, context: RobotContext) -> list[str]:
-    if move.target is None or move.target.description is None:
-        return []
-    return [f"{context.label(move)}: goes to an object, which a MAVLink vehicle cannot find by itself"]
+def objects_of(move: Move) -> tuple[str, ...]:
+    """Return the descriptions of the objects that a move goes to or points at."""
+    targets = (move.target, move.heading.target if move.heading else None)
+    return tuple(target.description for target in targets if target and target.description is not None)
 
 
 def _start(move: Move, context: RobotContext) -> Call:
@@ -79,8 +73,8 @@ def _land(move: Move, context: RobotContext) -> Call:
 
 
 def _go_to(move: Move, context: RobotContext) -> Call:
-    if move.target is None or move.target.position is None:
-        return Call("Skip", ("it goes to an object whose place is not known",))
+    if move.target is None:
+        return Call("Skip", ("it has no target",))
     named: list[tuple[str, object]] = [("speed", context.speed(move))]
     legs = LEGS[str(move.attributes.get("trajectory", "DIRECT"))]
     if legs != "direct":
@@ -90,7 +84,7 @@ def _go_to(move: Move, context: RobotContext) -> Call:
     look = _look(move.heading, context)
     if look is not None:
         named.append(("look", look))
-    return Call("GoTo", (place_of(move.target.position, context),), tuple(named))
+    return Call("GoTo", (_target(move.target, context),), tuple(named))
 
 
 def _hold(move: Move, context: RobotContext) -> Call:
@@ -103,11 +97,11 @@ def _recharge(move: Move, context: RobotContext) -> Call:
 
 def _turn(move: Move, context: RobotContext) -> Call:
     look = _look(move.heading, context)
-    return Call("Turn", (look,)) if look else Call("Skip", ("what it turns to has no known place",))
+    return Call("Turn", (look,)) if look else Call("Skip", ("it has no heading",))
 
 
 def _look(heading: Heading | None, context: RobotContext) -> Call | None:
-    if heading is None or heading.target.position is None:
+    if heading is None:
         return None
     device = context.type.devices.get(heading.device) if context.type else None
     properties = device.properties if device else {}
@@ -118,7 +112,16 @@ def _look(heading: Heading | None, context: RobotContext) -> Call | None:
         named.append(("mount", float(properties["mount.yaw"])))
     if "mavlink.gimbal" in properties:
         named.append(("gimbal", True))
-    return Call("Look", (place_of(heading.target.position, context),), tuple(named))
+    return Call("Look", (_target(heading.target, context),), tuple(named))
+
+
+def _target(target: Target, context: RobotContext) -> Call:
+    place = None if target.position is None else place_of(target.position, context)
+    if target.description is None:
+        if place is None:
+            raise ValueError("a coordinate has no position")
+        return place
+    return Call("Object", (target.description, place, target.tolerance))
 
 
 def _number(move: Move, feature: str) -> float:

@@ -12,7 +12,7 @@ from mmrs_core.contributions.targets import TargetInput, TracedStep
 from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.escaping import Call
 from mmrs_core.generation.mavlink.actions import action_of
-from mmrs_core.generation.mavlink.movements import movement_of, place_of
+from mmrs_core.generation.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.generation.mavlink.runs import Run, runs_of
 from mmrs_core.generation.safety import (
     clearance_of,
@@ -44,6 +44,7 @@ class RobotView:
     head: tuple[tuple[str, object], ...]
     steps: tuple[StepView, ...]
     conditions: tuple[str, ...]
+    objects: tuple[str, ...]
 
 
 def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
@@ -57,12 +58,19 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     steps = tuple(_step(index, context) for index in _ordered(robot))
     head = tuple(_head(context, input, fence, points, clearance))
     words = _words((head, [step.call for step in steps]))
-    return RobotView(robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot))
+    return RobotView(
+        robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot), objects_in(robot)
+    )
 
 
 def conditions_of(robot: RobotProgram) -> tuple[str, ...]:
     """Return the identifiers of the conditions that a robot's Choices ask for, sorted."""
     return tuple(sorted({t.condition for t in robot.transitions.values() if t.condition is not None}))
+
+
+def objects_in(robot: RobotProgram) -> tuple[str, ...]:
+    """Return the descriptions of the objects that a robot goes to or points at, sorted."""
+    return tuple(sorted({found for move in robot.moves for found in objects_of(move)}))
 
 
 def trace_of(robot: RobotProgram) -> tuple[TracedStep, ...]:

@@ -10,7 +10,7 @@ from mmrs_core.generation.context import context_of
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.generation.mavlink.actions import action_losses
 from mmrs_core.generation.mavlink.movements import losses_of
-from mmrs_core.generation.mavlink.program import conditions_of, robot_view, trace_of
+from mmrs_core.generation.mavlink.program import conditions_of, objects_in, robot_view, trace_of
 from mmrs_core.resources import shipped
 
 RUNTIME = "mmrs_flight"
@@ -27,15 +27,19 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
             f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
         )
     conditions = sorted({condition for robot in robots for condition in conditions_of(robot)})
+    objects = sorted({found for robot in robots for found in objects_in(robot)})
     common = {
         "mission": input.program.name,
         "modules": list(zip(modules, [robot.id for robot in robots], strict=True)),
         "conditions": conditions,
+        "objects": objects,
     }
     yield FileSpec("fleet.py", "fleet.py.jinja", common)
     yield FileSpec("README.md", "README.md.jinja", common)
     if conditions:
         yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True)
+    if objects:
+        yield FileSpec("objects.py", "objects.py.jinja", common, once=True)
     for path in sorted((TEMPLATES / RUNTIME).glob("*.py")):
         yield FileSpec(f"{RUNTIME}/{path.name}", f"{RUNTIME}/{path.name}")
 

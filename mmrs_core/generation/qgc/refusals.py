@@ -9,7 +9,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.earth import sea_level_of
 from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
-from mmrs_core.generation.mavlink.movements import losses_of
+from mmrs_core.generation.mavlink.movements import losses_of, objects_of
 from mmrs_core.generation.wiring import Sampled, Unwired, wiring_of
 
 
@@ -32,6 +32,8 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     context = context_of(robot, input, geographic=False)
     for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
+        for description in objects_of(move):
+            yield f"{context.label(move)}: object '{description}', which a plan cannot have looked for"
         for action in (*move.before, *move.after):
             yield from _of_action(action, move, context)
         yield from _of_heading(move, context)

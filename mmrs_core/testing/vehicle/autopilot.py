@@ -46,6 +46,7 @@ class Settings:
         ready: seconds after which it has a position and may be armed.
         disarm_delay: seconds after which it disarms by itself on the ground.
         energy: seconds of motors running until the battery is empty.
+        recharge: seconds without motors running until it is full again.
         values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
         refuse: commands that it does not know.
         silent: commands that it never answers.
@@ -59,6 +60,7 @@ class Settings:
     ready: float = 2.0
     disarm_delay: float = 10.0
     energy: float = 1200.0
+    recharge: float = 60.0
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
@@ -98,7 +100,9 @@ class Autopilot:
             _PILOTS.get(self._mode_name(), Autopilot._brake)(self, seconds)
             self.body.advance(seconds)
             self._touch_ground()
-        elif self.time < self.settings.boot:
+            return
+        self.energy = min(1.0, self.energy + seconds / self.settings.recharge)
+        if self.time < self.settings.boot:
             self.mode = MODES[self.settings.kind]["stabilize"]
 
     @property

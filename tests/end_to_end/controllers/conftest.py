@@ -18,7 +18,7 @@ from mmrs_core.generation.writing import write
 from mmrs_core.testing.programs import target_input
 from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
 
-PATIENCE = 120.0
+PATIENCE = 60.0
 
 
 class Controllers:
@@ -43,7 +43,8 @@ class Controllers:
                 _, said = process.communicate(timeout=PATIENCE)
             except subprocess.TimeoutExpired:
                 process.kill()
-                raise
+                _, said = process.communicate()
+                pytest.fail(f"{script} does not end; it said:\n{said}")
         return process.returncode, said
 
     def replayed(self, *, partial: bool = False) -> ReplayResult:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import Transition
+from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.scene import Device, DeviceAction, Frame
 from mmrs_core.testing.programs import (
@@ -153,3 +153,42 @@ def test_a_wrong_command_line_is_a_usage_error(controllers, arguments, complaint
     code, said = controllers(two_drones()).run("fleet.py", *arguments)
     assert code == 2
     assert complaint in said
+
+
+def buoy(tolerance: float):
+    goes = replace(
+        go_to("a", (0.0, 20.0, 10.0)), target=Target((0.0, 20.0, 10.0), "a buoy", tolerance), distance=4.0
+    )
+    return program(robot_program("alpha", [take_off("up", 10.0), goes, LAND]))
+
+
+def find_buoy(made, place: str) -> None:
+    path = made.folder / "objects.py"
+    found = f": lambda state, expected: {place},"
+    path.write_text(path.read_text("ascii").replace(": not_looked_for,", found), "ascii")
+
+
+def test_an_object_that_nobody_finds_is_a_fault(controllers):
+    made = controllers(buoy(2.0))
+    code, said = made.run("fleet.py", "--dry-run")
+    assert code == 1
+    assert "nobody has said yet" in said
+    assert made.replayed(partial=True).faults == {"alpha": "OBJECT_NOT_FOUND"}
+
+
+def test_an_object_is_approached_where_it_was_found(controllers, hangar):
+    made = controllers(buoy(2.0))
+    find_buoy(made, "where_expected(state, expected)")
+    vehicles, links = hangar(made.program)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+    assert vehicles["alpha"].autopilot.body.position[0] == pytest.approx(16.0, abs=0.6)
+
+
+def test_an_object_is_not_followed_to_where_it_may_not_be(controllers):
+    made = controllers(buoy(2.0))
+    find_buoy(made, "type(expected)(expected.latitude + 0.001, expected.longitude, expected.height)")
+    code, said = made.run("fleet.py", "--dry-run")
+    assert code == 1
+    assert "111.3 m from where it should be" in said

@@ -186,7 +186,7 @@ def test_policies_are_the_waits_then_the_robots_then_the_types():
     given = target_input(made)
     files = render(MAVLINK_PYTHON, replace(given, policies=(Policy("LINK_LOST", "LAND"),)))
     source = files[0].content.decode().replace('"', "'")
-    assert "policies=(Policy('LINK_LOST', 'HOLD', 10.0),)," in source
+    assert "    policies=(\n        Policy('LINK_LOST', 'HOLD', 10.0),\n    )," in source
     assert "policies=(Policy('WAIT_TOO_LONG', 'LAND', 9.0),)" in source
 
 
@@ -203,10 +203,12 @@ def test_an_unknown_action_is_refused():
     assert fault == "robot 'alpha', move 'down': action Sing is not known to this target"
 
 
-def test_an_object_is_refused():
-    goes = replace(go_to("a", (0.0, 9.0, 5.0)), target=Target(None, "a buoy", None))
-    (fault,) = refused(take_off("up", 5.0), goes, LAND)
-    assert "goes to an object" in fault
+def test_an_object_is_looked_for_by_the_users_own_function():
+    goes = replace(go_to("a", (0.0, 9.0, 5.0)), target=Target((0.0, 9.0, 5.0), "a buoy", 2.0), distance=3.0)
+    files = generated(program(robot_program("alpha", [take_off("up", 5.0), goes, LAND])))
+    source = files["robot_alpha.py"].decode()
+    assert "GoTo(Object('a buoy', Geographic(42.370081, 13.35, 5.0), 2.0), speed=5.0, distance=3.0)" in source
+    assert b"'a buoy': not_looked_for," in files["objects.py"]
 
 
 def test_a_device_without_wiring_is_refused():

@@ -199,4 +199,4 @@ def test_a_local_behaviour_is_refused_whatever_is_allowed():
 def test_an_object_target_is_refused():
     goes = replace(go_to("a", (0.0, 9.0, 20.0)), target=Target((0.0, 9.0, 20.0), "a buoy", 2.0))
     (fault,) = refused(take_off("up", 20.0), goes, LAND)
-    assert "goes to an object" in fault
+    assert "object 'a buoy'" in fault

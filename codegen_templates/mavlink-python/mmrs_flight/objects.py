@@ -1,0 +1,51 @@
+"""Finding objects: by functions of the user, within what the behaviour was verified for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from .faults import OBJECT_NOT_FOUND, Fault
+from .places import distance
+from .program import Look, Object, Place
+from .vehicle import State
+
+Locator = Callable[[State, Place | None], Place]
+
+
+def where_expected(state: State, expected: Place | None) -> Place:
+    """Take an object to be where it is expected, without looking for it.
+
+    Raises:
+        LookupError: nobody knows where it is expected.
+    """
+    if expected is None:
+        raise LookupError("nobody knows where it is expected")
+    return expected
+
+
+def place_of(target: Place | Object, locators: Mapping[str, Locator], state: State) -> Place:
+    """Return where a target is.
+
+    Raises:
+        Fault: its locator does not find it, or finds it farther from where it is expected than it may
+            be: routes were checked for no other places.
+    """
+    if not isinstance(target, Object):
+        return target
+    try:
+        found = locators[target.description](state, target.expected)
+    except Exception as error:
+        raise Fault(OBJECT_NOT_FOUND, f"object {target.description!a}: {error!r}") from error
+    if target.expected is not None and target.tolerance is not None:
+        away = distance(target.expected, found)
+        if away > target.tolerance:
+            raise Fault(
+                OBJECT_NOT_FOUND, f"object {target.description!a}: {away:.1f} m from where it should be"
+            )
+    return found
+
+
+def look_at(look: Look | None, locators: Mapping[str, Locator], state: State) -> Look | None:
+    """Return a look whose target is a place."""
+    return None if look is None else replace(look, at=place_of(look.at, locators, state))
