@@ -139,7 +139,7 @@ def _meeting(one: Occupation, other: Occupation, needed: float) -> Iterator[Enco
     begin, end = _common_time(one, other)
     pending = [(_apart(one.between(begin, end), other.between(begin, end)), begin, end)]
     nearest: Encounter | None = None
-    left = MOST_STRETCHES
+    left = MOST_STRETCHES if _certain_together(one, other) else 1
     while pending and left and pending[0][0] < required:
         apart, begin, end = heappop(pending)
         if end - begin > FINEST:
@@ -173,6 +173,11 @@ def _common_time(one: Occupation, other: Occupation) -> tuple[float, float]:
     """Return when both may be there; where there is no end, until both may have come everywhere."""
     begin, end = max(one.begin, other.begin), min(one.end, other.end)
     return begin, end if end < inf else begin + max(FINEST, sum(one.least), sum(other.least))
+
+
+def _certain_together(one: Occupation, other: Occupation) -> bool:
+    begin, end = (max(one.certain[0], other.certain[0]), min(one.certain[1], other.certain[1]))
+    return begin <= end + TOLERANCE
 
 
 def _certainly(occupation: Occupation, begin: float, end: float) -> bool:

@@ -2,13 +2,14 @@
 
 from itertools import pairwise
 from math import dist
+from random import Random
 
 import numpy as np
-from checking import findings, given
+from checking import findings, given, uneven
 from hypothesis import given as for_all
 from hypothesis import settings
 from hypothesis import strategies as st
-from small_behaviours import go, hold, robot
+from small_behaviours import go, hold, notify, robot
 
 from mmrs_core.contributions.checks import Status
 
@@ -26,22 +27,33 @@ def tours(draw):
     return places, draw(st.lists(st.floats(0.0, 5.0), min_size=len(places), max_size=len(places)))
 
 
-def made(name, tour):
+def made(name, tour, tells=None, **more):
+    """Return the robot; it notifies after the last move to the place of that number."""
     places, stays = tour
     moves = []
     for i, (place, seconds) in enumerate(zip(places[1:], stays[1:], strict=True)):
-        moves += [go(f"go {i}", place), hold(f"hold {i}", seconds)]
-    return robot(name, moves, home=places[0])
+        after = (notify("b.go"),) if i == tells else ()
+        moves += [go(f"go {i}", place), hold(f"hold {i}", seconds, after=after)]
+    return robot(name, moves, home=places[0], **more)
 
 
-def sampled(tour, times):
-    """Return where a robot is at these times."""
+def timed(tour, factor=lambda: 1.0, waits=None, until=0.0):
+    """Return (times, corners) of a robot; after the stay of number `waits` it waits until a time."""
     places, stays = tour
     corners, when = [places[0]], [0.0]
-    for (a, b), seconds in zip(pairwise(places), stays[1:], strict=True):
+    for i, ((a, b), seconds) in enumerate(zip(pairwise(places), stays[1:], strict=True)):
         for place, duration in ((b, dist(a, b) / SPEED), (b, seconds)):
             corners.append(place)
-            when.append(when[-1] + duration)
+            when.append(when[-1] + factor() * duration)
+        if i == waits:
+            corners.append(b)
+            when.append(max(when[-1], until))
+    return when, corners
+
+
+def sampled(tour, times, **more):
+    """Return where a robot is at these times."""
+    when, corners = timed(tour, **more)
     return np.stack([np.interp(times, when, [corner[i] for corner in corners]) for i in range(3)], axis=1)
 
 
@@ -57,3 +69,25 @@ def test_robots_with_certain_times_are_too_near_exactly_if_they_ever_are(first, 
         assert verdict.margin <= apart - least + 1e-3
     elif apart > least + 2 * SPEED * STEP:
         assert verdict.status is Status.SAFE
+
+
+@settings(max_examples=60, deadline=None)
+@for_all(tours(), tours(), st.floats(0.5, 4.0), st.integers(0, 10**6))
+def test_robots_called_safe_keep_apart_however_long_their_moves_take(first, second, least, seed):
+    random = Random(seed)
+    tells, waits = random.randrange(len(first[0]) - 1), random.randrange(len(second[0]) - 1)
+    robots = (made("a", first, tells), made("b", second, waits={f"hold {waits}": ["go"]}))
+    found = findings("separation", given(*robots, minimum_separation=least, moves=uneven()))
+    if [verdict.status for verdict in found] == [Status.SAFE]:
+        times = np.arange(0.0, 400.0, STEP)
+
+        def factor():
+            return random.uniform(0.5, 2.0)
+
+        when, corners = timed(first, factor)
+        told = when[2 * (tells + 1)]
+        one = np.stack([np.interp(times, when, [c[i] for c in corners]) for i in range(3)], axis=1)
+        other = sampled(second, times, factor=factor, waits=waits, until=told)
+        near = np.linalg.norm(one - other, axis=1) < least - 1e-3
+        at_home = (other == second[0][0]).all(axis=1) | (one == first[0][0]).all(axis=1)
+        assert not (near & ~at_home).any()
