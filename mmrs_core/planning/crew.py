@@ -8,9 +8,12 @@ from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.jobs import is_control
 from mmrs_core.planning.materials import Layout, Material, charge_faults, faults, lay_out, layout_of
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.strokes import uncertain_seconds
+from mmrs_core.planning.strokes import length_of, uncertain_seconds
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.scene import Scene, Task, Work
+
+_PORTIONS_PER_ROBOT = 60
+"""Portions of a robot's part of the whole mission that are small enough to balance it."""
 
 Direction = bool
 """Whether a material is laid out backwards."""
@@ -48,6 +51,7 @@ class Crew:
             )
             for robot in scene.robots
         }
+        self._coarsest = _seconds_of_all(scene) / (_PORTIONS_PER_ROBOT * max(1, len(scene.robots)))
         self.refusals: dict[tuple[str, str], str] = dict(scene.refusals)
         self._layouts: dict[tuple[str, str], Layout] = {}
         self._materials: dict[tuple[str, str, Direction], Material | None] = {}
@@ -83,7 +87,7 @@ class Crew:
 
     def _able(self, task: str, work: Work, team: Sequence[str]) -> tuple[str, ...]:
         """Lay the work out for each robot of a team; return those that find a way through it."""
-        layout = layout_of(work, self.pilots[team[0]], len(team), fine=self.fine)
+        layout = layout_of(work, self.pilots[team[0]], len(team), coarsest=self._coarsest, fine=self.fine)
         able = []
         for name in team:
             self._layouts[task, name] = layout
@@ -155,4 +159,15 @@ def _slack(scene: Scene) -> float:
     for (task, robot), work in scene.works.items():
         seconds = sum(uncertain_seconds(stroke, kinematics[robot]) for stroke in work.strokes)
         by_task[task] = max(by_task.get(task, 0.0), seconds)
+    return sum(by_task.values())
+
+
+def _seconds_of_all(scene: Scene) -> float:
+    """Return roughly how long all works take one robot: each task's length at some robot's cruise."""
+    cruises = {robot.name: kinematics_of(robot).cruise for robot in scene.robots}
+    by_task: dict[str, float] = {}
+    for (task, robot), work in scene.works.items():
+        metres = sum(length_of(stroke.points) for stroke in work.strokes)
+        if task not in by_task and cruises[robot] > 0:
+            by_task[task] = metres / cruises[robot]
     return sum(by_task.values())

@@ -87,20 +87,22 @@ class Layout:
     can_turn: bool
 
 
-def layout_of(work: Work, pilot: Pilot, robots: int, *, fine: bool = False) -> Layout:
+def layout_of(work: Work, pilot: Pilot, robots: int, *, coarsest: float = 0.0, fine: bool = False) -> Layout:
     """Divide a work into portions, fine enough to balance so many robots and to fit into sorties.
 
     Args:
         work: to be divided; an indivisible one is a single portion.
         pilot: of one robot that can do it.
         robots: how many may share it.
+        coarsest: seconds of a portion that is small enough to balance the mission as a whole.
         fine: whether each part between two cuts is a portion.
     """
     if not work.divisible:
         return Layout((work.strokes,), can_turn=False)
     parts = [part for stroke in work.strokes for part in parts_of(stroke)]
     seconds = [serve_seconds(part, pilot.robot, pilot.kinematics) for part in parts]
-    target = min(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), pilot.limit / _PORTIONS_PER_CHARGE)
+    target = max(sum(seconds) / (_PORTIONS_PER_ROBOT * robots), coarsest)
+    target = min(target, pilot.limit / _PORTIONS_PER_CHARGE)
     target = 0.0 if fine else target
     turns = not work.ordered and work.entry is None and all(can_turn(stroke) for stroke in work.strokes)
     return Layout(tuple(_gathered(parts, seconds, target)), turns)

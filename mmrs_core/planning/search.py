@@ -17,6 +17,9 @@ Cost: TypeAlias = tuple[float, float, float]
 _STEPS = 40
 """Schedules that are tried; a count, not a time, so that the same seed gives the same plan."""
 
+_EFFORT = 3000
+"""Jobs times robots times schedules tried, at most, where that is less."""
+
 _STEPS_TO_BEGIN = 200
 """Schedules that are tried as long as none does all jobs."""
 
@@ -41,8 +44,9 @@ def find_decisions(crew: Crew, jobs: Sequence[Job], seed: int) -> tuple[Decision
     tried = [(each, schedule(crew, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(crew, pair[1]))
     random, idle = Random(seed), 0
+    steps = min(_STEPS, max(4, _EFFORT // max(1, len(jobs) * len(crew.pilots))))
     for step in range(_STEPS_TO_BEGIN if len(jobs) > 1 else 0):
-        if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= _STEPS):
+        if isinstance(found, Schedule) and (idle >= _PATIENCE or step >= steps):
             break
         other = _varied(crew, jobs, best, random)
         result = schedule(crew, jobs, other)

@@ -11,8 +11,8 @@ from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import Run
 from mmrs_core.planning.sorties import Pilot, Ready, State
 
-_HALVINGS = 18
-_CLOSE = 1e-3
+_HALVINGS = 12
+_CLOSE = 4e-3
 """Share of the time within which two ways of sharing out are alike."""
 
 
