@@ -129,7 +129,7 @@ class _Scheduling:
         for share in sharing.shares:
             name = share.candidate.pilot.robot.name
             self._states[name] = share.run.state(share.end)
-            ends[name] = share.run.ended(share.end)
+            ends[name] = self._states[name].time
         begin = min(share.run.started() for share in sharing.shares)
         self._note(job, ends, begin)
         return True
