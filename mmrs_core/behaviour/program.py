@@ -81,6 +81,7 @@ class Move:
             those of plug-ins included.
         target, distance, heading, speed: of a GoTo; heading also of a HeadTo. Metres, metres per second.
         before, after: pre- and post-actions in order.
+        flows: whether the robot may go into it, or out of it, without a stop.
         task, rule: what the move serves and which rule made it; empty where nothing is said.
     """
 
@@ -93,6 +94,7 @@ class Move:
     speed: float | None = None
     before: tuple[Action, ...] = ()
     after: tuple[Action, ...] = ()
+    flows: bool = False
     task: str = ""
     rule: str = ""
     place: Place = Place()

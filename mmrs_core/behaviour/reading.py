@@ -73,7 +73,11 @@ class _Reading:
 
     def _robot(self, robot: bl.Robot, number: int) -> RobotProgram:
         path = f"/robots[{number}]"
-        moves = tuple(self._move(move, index, path) for index, move in enumerate(robot.moves))
+        flowing = _flowing(robot)
+        moves = tuple(
+            self._move(move, f"{path}/moves[{index}]", index, move in flowing)
+            for index, move in enumerate(robot.moves)
+        )
         self._refuse_doubles(robot.moves, [move.id for move in moves], "move")
         self._refuse_doubles(robot.slots, [slot.name for slot in robot.slots], "slot")
         if not robot.id:
@@ -93,8 +97,7 @@ class _Reading:
             place=self._at(robot, path),
         )
 
-    def _move(self, move: bl.Move, index: int, robot_path: str) -> Move:
-        path = f"{robot_path}/moves[{index}]"
+    def _move(self, move: bl.Move, path: str, index: int, flows: bool) -> Move:
         goes = move if isinstance(move, bl.GoTo) else None
         turns = move.heading if isinstance(move, bl.GoTo | bl.HeadTo) else None
         if isinstance(move, bl.GoTo) and move.target is None:
@@ -111,6 +114,7 @@ class _Reading:
             speed=goes.speed if goes is not None else None,
             before=self._actions(move.preActions, f"{path}/preActions"),
             after=self._actions(move.postActions, f"{path}/postActions"),
+            flows=flows,
             task=move.task or "",
             rule=move.rule or "",
             place=self._at(move, path),
@@ -246,3 +250,13 @@ class _Reading:
 
     def _add(self, element: Element, message: str) -> None:
         self.faults.append(fault(element, message, code=UNREADABLE))
+
+
+def _flowing(robot: bl.Robot) -> set[bl.Move | None]:
+    """Return the moves that the robot may go into or out of without a stop."""
+    return {
+        move
+        for transition in robot.moveTransitions
+        if transition.fluid
+        for move in (transition.from_, transition.to)
+    }

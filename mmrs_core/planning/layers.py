@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from math import hypot
+from math import dist, hypot, sqrt
 
 import numpy as np
 
@@ -23,11 +23,16 @@ _ABOVE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """Metres per second, level, up and down; a rate that is not positive rules that way out."""
+    """Metres per second, level, up and down; a rate that is not positive rules that way out.
+
+    Ways are chosen by even speed; plans count time with a standstill at both ends of every leg, speeding
+    up and slowing down at `acceleration`, metres per second squared.
+    """
 
     cruise: float
     climb: float
     descent: float
+    acceleration: float = float("inf")
 
     def upright(self, rise: float) -> float:
         """Return the seconds of an upright way; inf where it is ruled out."""
@@ -40,6 +45,22 @@ class Rates:
         """Return the seconds of a straight leg: the slower of its level and its upright part."""
         level = hypot(end[0] - start[0], end[1] - start[1]) / self.cruise
         return max(level, self.upright(end[2] - start[2]))
+
+    def from_stop_to_stop(self, start: Position, end: Position) -> float:
+        """Return the seconds of a straight leg that begins and ends at a standstill."""
+        return self._with_stops(dist(start, end), self.leg(start, end))
+
+    def rise(self, metres: float) -> float:
+        """Return the seconds of an upright way that begins and ends at a standstill."""
+        return self._with_stops(abs(metres), self.upright(metres))
+
+    def _with_stops(self, length: float, even: float) -> float:
+        if not 0.0 < even < float("inf"):
+            return even
+        speed = length / even
+        if length >= speed**2 / self.acceleration:
+            return even + speed / self.acceleration
+        return 2.0 * sqrt(length / self.acceleration)
 
 
 class Layers:

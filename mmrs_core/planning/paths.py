@@ -72,7 +72,7 @@ class Space:
 
     def seconds(self, route: Sequence[Position]) -> float:
         """Return how long a route takes at the robot's rates."""
-        return sum(self.rates.leg(one, two) for one, two in pairwise(route))
+        return sum(self.rates.from_stop_to_stop(one, two) for one, two in pairwise(route))
 
     def route(self, start: Position, goal: Position) -> tuple[Position, ...]:
         """Return the positions of a quick way from start to goal, both included, at least two.

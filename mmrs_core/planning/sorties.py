@@ -210,7 +210,7 @@ class Pilot:
         trail, time = state.trail, state.time
         if way.height is not None:
             climb = way.height - self.robot.home[2]
-            up = time + self.kinematics.launch + self.travel.space.rates.upright(climb)
+            up = time + self.kinematics.launch + self.travel.space.rates.rise(climb)
             trail = (trail, Launch(time, up, task, self.robot.home, way.height))
             time = up
         end = state.time + way.seconds
@@ -288,7 +288,7 @@ class Pilot:
         at = last
         if self.kinematics.launches and way.height is not None:
             ground = self.robot.home[2] if len(way.route) > 1 else way.height
-            down = self.travel.space.rates.upright(ground - last[2]) + self.kinematics.recovery
+            down = self.travel.space.rates.rise(ground - last[2]) + self.kinematics.recovery
             at = (last[0], last[1], ground)
         if len(way.route) > 1 and way.route[0] != last:
             trail = (trail, Transit(state.time, end - down, task, way.route))

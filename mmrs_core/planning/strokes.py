@@ -12,6 +12,9 @@ from mmrs_core.scene import ActionAt, Kinematics, Position, Robot, RobotType, St
 
 _SAME = 1e-9
 
+NEAR = 1e-6
+"""Metres within which a robot is at the same place."""
+
 
 def length_of(points: Iterable[Position]) -> float:
     """Return the metres along a polyline."""
@@ -33,14 +36,40 @@ def commanded_speed(stroke: Stroke, kinematics: Kinematics) -> float:
 def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float:
     """Return how long a robot takes for a stroke from its first point, actions, hold and turn included.
 
-    Accelerations are not counted. Where the robot must turn on the spot, half a circle is counted;
-    where an object may be anywhere within a tolerance, the way there and back is.
+    It stops at every vertex and wherever something is done. Where the robot must turn on the spot, half
+    a circle is counted; where an object may be anywhere within a tolerance, the way there and back is.
     """
-    speed = commanded_speed(stroke, kinematics)
-    rates = Rates(speed, kinematics.climb, kinematics.descent)
-    moving = sum(rates.leg(one, two) for one, two in pairwise(stroke.points))
+    rates = rates_of(kinematics, commanded_speed(stroke, kinematics))
+    moving = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(stops_of(stroke)))
     acting = sum(action_seconds(robot.type, action) for action in stroke.actions)
     return moving + acting + stroke.hold + uncertain_seconds(stroke, kinematics)
+
+
+def rates_of(kinematics: Kinematics, speed: float) -> Rates:
+    """Return the rates of a robot at a commanded speed, metres per second."""
+    return Rates(speed, kinematics.climb, kinematics.descent, kinematics.acceleration)
+
+
+def stops_of(stroke: Stroke) -> list[Position]:
+    """Return where a robot stops along a stroke: its vertices, and the places of its actions."""
+    stops = [stroke.points[0]]
+    todo = [action.at for action in stroke.actions]
+    done = 0.0
+    for one, two in pairwise(stroke.points):
+        length = dist(one, two)
+        between = [at for at in todo if done + NEAR < at < done + length - NEAR]
+        for at in dict.fromkeys(between):
+            share = (at - done) / length
+            stops.append(
+                (
+                    one[0] + share * (two[0] - one[0]),
+                    one[1] + share * (two[1] - one[1]),
+                    one[2] + share * (two[2] - one[2]),
+                )
+            )
+        stops.append(two)
+        done += length
+    return stops
 
 
 def uncertain_seconds(stroke: Stroke, kinematics: Kinematics) -> float:

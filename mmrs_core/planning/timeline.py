@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.planning.layers import Rates
-from mmrs_core.planning.strokes import action_seconds
+from mmrs_core.planning.strokes import NEAR, action_seconds, rates_of, stops_of
 from mmrs_core.planning.travel import kinematics_of
 from mmrs_core.scene import Branch, Launch, Position, Recover, Robot, Serve, Step, Transit
 
@@ -92,37 +92,26 @@ def _of_step(step: Step, robot: Robot, here: Position) -> Iterator[Piece]:
 def _stops(step: Step, robot: Robot, here: Position) -> Iterator[tuple[float, Position]]:
     """Yield (seconds, where the robot is after them) through a step."""
     kinematics = kinematics_of(robot)
-    rates = Rates(kinematics.cruise, kinematics.climb, kinematics.descent)
+    rates = rates_of(kinematics, kinematics.cruise)
     if isinstance(step, Launch):
-        above = (step.at[0], step.at[1], step.up)
         yield kinematics.launch, step.at
-        yield rates.leg(step.at, above), above
+        yield rates.rise(step.up - step.at[2]), (step.at[0], step.at[1], step.up)
     elif isinstance(step, Recover):
-        below = (step.at[0], step.at[1], step.up)
-        yield rates.leg(step.at, below), below
+        yield rates.rise(step.up - step.at[2]), (step.at[0], step.at[1], step.up)
     elif isinstance(step, Transit):
         for one, two in pairwise(step.route):
-            yield rates.leg(one, two), two
+            yield rates.from_stop_to_stop(one, two), two
     elif isinstance(step, Serve):
-        yield from _served(step, robot, Rates(step.speed, kinematics.climb, kinematics.descent))
+        yield from _served(step, robot, rates_of(kinematics, step.speed))
 
 
 def _served(step: Serve, robot: Robot, rates: Rates) -> Iterator[tuple[float, Position]]:
     todo = list(step.stroke.actions)
-    done = 0.0
-    points = step.stroke.points
-    for one, two in pairwise(points):
-        length = dist(one, two)
-        spent = 0.0
-        while todo and todo[0].at <= done + length and length > 0.0:
-            share = max(0.0, todo[0].at - done) / length
-            place = (
-                one[0] + share * (two[0] - one[0]),
-                one[1] + share * (two[1] - one[1]),
-                one[2] + share * (two[2] - one[2]),
-            )
-            yield max(0.0, share * rates.leg(one, two) - spent), place
-            spent = share * rates.leg(one, two)
+    stops = stops_of(step.stroke)
+    done, here = 0.0, stops[0]
+    for place in stops:
+        done += dist(here, place)
+        yield rates.from_stop_to_stop(here, place), place
+        here = place
+        while todo and todo[0].at <= done + NEAR:
             yield action_seconds(robot.type, todo.pop(0)), place
-        yield max(0.0, rates.leg(one, two) - spent), two
-        done += length

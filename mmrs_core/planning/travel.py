@@ -42,7 +42,7 @@ class Spaces:
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
         kinematics = kinematics_of(robot)
-        rates = Rates(kinematics.cruise, kinematics.climb, kinematics.descent)
+        rates = Rates(kinematics.cruise, kinematics.climb, kinematics.descent, kinematics.acceleration)
         key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates)
         if key not in self._spaces:
             self._spaces[key] = Space(self._areas, *key[:3], rates=rates)
@@ -149,7 +149,7 @@ class Travel:
                 best = best or way
                 continue
             climb = height - self.robot.home[2]
-            seconds = self.kinematics.launch + self.space.rates.upright(climb) + way.seconds
+            seconds = self.kinematics.launch + self.space.rates.rise(climb) + way.seconds
             return Way(way.route, seconds, way.length + climb, height)
         return best
 
@@ -164,7 +164,7 @@ class Travel:
                 best = best or way
                 continue
             drop = height - self.robot.home[2]
-            seconds = way.seconds + self.space.rates.upright(-drop) + self.kinematics.recovery
+            seconds = way.seconds + self.space.rates.rise(-drop) + self.kinematics.recovery
             return Way(way.route, seconds, way.length + drop, height)
         return best
 

@@ -92,7 +92,8 @@ class _Drafting:
 
     @add.register
     def _(self, step: Recharge) -> None:
-        spec = MoveSpec((BEHAVIOUR, "Recharge"), {"duration": step.end - step.begin})
+        known = self._robot.kinematics.recharge if self._robot.kinematics else None
+        spec = MoveSpec((BEHAVIOUR, "Recharge"), {"duration": known or step.end - step.begin})
         self._add(spec, step.task, "recharge")
 
     @add.register

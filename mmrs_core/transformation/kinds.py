@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import dist, hypot, inf
+from math import dist, hypot, inf, sqrt
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
@@ -123,22 +123,39 @@ def before_target(here: Position, target: Position, distance: float) -> Position
 
 
 def leg_seconds(start: Position, end: Position, speed: float, kinematics: Kinematics) -> float:
-    """Return how long a straight leg takes: the slower of its level and its vertical part.
-
-    Accelerations are not counted.
-    """
+    """Return how long a straight leg takes at even speed: the slower of its level and its vertical part."""
     level = hypot(end[0] - start[0], end[1] - start[1]) / speed
     rise = end[2] - start[2]
     return max(level, rise / kinematics.climb, -rise / kinematics.descent)
 
 
+def stopping_seconds(start: Position, end: Position, speed: float, kinematics: Kinematics) -> float:
+    """Return how long a straight leg takes that begins and ends at a standstill.
+
+    The robot speeds up and slows down at its largest acceleration, and may be too near to get up to speed.
+    """
+    even, length = leg_seconds(start, end, speed, kinematics), dist(start, end)
+    if even <= 0.0:
+        return even
+    pace = length / even
+    if length >= pace**2 / kinematics.acceleration:
+        return even + pace / kinematics.acceleration
+    return 2.0 * sqrt(length / kinematics.acceleration)
+
+
 def path_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
 ) -> tuple[float, float]:
-    """Return how long a move along a path takes at its commanded or its robot's cruise speed."""
+    """Return how long a move along a path takes at its commanded or its robot's cruise speed.
+
+    The robot stops after every leg; where the move flows into the next or out of the one before, it may
+    be as quick as at even speed.
+    """
     speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
-    whole = sum(leg_seconds(a, b, speed, kinematics) for a, b in pairwise(path))
-    return whole, whole
+    whole = sum(stopping_seconds(a, b, speed, kinematics) for a, b in pairwise(path))
+    if not move.flows:
+        return whole, whole
+    return sum(leg_seconds(a, b, speed, kinematics) for a, b in pairwise(path)), whole
 
 
 def stays(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:

@@ -8,7 +8,7 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Position, Robot, Scene
-from mmrs_core.transformation.kinds import kinematics_for, leg_seconds, path_seconds
+from mmrs_core.transformation.kinds import kinematics_for, path_seconds, stopping_seconds
 from mmrs_multicopter import trajectories
 from mmrs_multicopter.names import DRONE, GO_TO, LAND, TAKE_OFF
 
@@ -78,7 +78,7 @@ def take_off_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
 ) -> tuple[float, float]:
     """Return the duration of spinning up and climbing, as the plan counts it."""
-    whole = kinematics.launch + leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
+    whole = kinematics.launch + stopping_seconds(path[0], path[-1], kinematics.cruise, kinematics)
     return whole, whole
 
 
@@ -86,7 +86,7 @@ def land_seconds(
     move: Move, path: tuple[Position, ...], kinematics: Kinematics, mode: str
 ) -> tuple[float, float]:
     """Return the duration of descending and stopping the motors, as the plan counts it."""
-    whole = kinematics.recovery + leg_seconds(path[0], path[-1], kinematics.cruise, kinematics)
+    whole = kinematics.recovery + stopping_seconds(path[0], path[-1], kinematics.cruise, kinematics)
     return whole, whole
 
 

@@ -10,10 +10,12 @@ import shapely
 
 from mission_generator.missions import sample
 from mmrs_core import pipeline
+from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.behaviour.replay import Outcome as Outcomes
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.errors import InfeasibleError, InvalidModelError
+from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
 
 GRID = 1e-6
@@ -69,6 +71,7 @@ def _carry_out(folder, contributions, outcome):
     plan = pipeline.plan(scene)
     behaviour, _ = pipeline.transform(scene, plan, contributions)
     pipeline.save(behaviour, folder / "behaviour.xmi", contributions)
+    behaviour = _read_again(folder / "behaviour.xmi", models, contributions, outcome)
     program = pipeline.program_of(behaviour, contributions)
     place = pipeline.place_of_scene(scene)
     against = pipeline.refusals(pipeline.verify(program, place, contributions), program)
@@ -84,6 +87,21 @@ def _carry_out(folder, contributions, outcome):
     for task, share in outcome.coverage.items():
         if share < 0.999:
             outcome.complaints.append(f"coverage of '{task}': {share:.5f}")
+
+
+def _read_again(file, models, contributions, outcome):
+    """Return the behaviour as it stands in its file; what breaks a constraint is a complaint."""
+    model = read_model(file, contributions.languages)
+    (behaviour,) = model.roots
+    faults = check_behaviour(
+        behaviour,
+        contributions.constraints,
+        contributions.languages,
+        robots=models.robots,
+        place=models.context,
+    )
+    outcome.complaints += [f"behaviour: {fault}" for fault in (*model.diagnostics, *faults)]
+    return behaviour
 
 
 def _intrusions(scene, tracks):
