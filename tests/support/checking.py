@@ -4,13 +4,12 @@ from dataclasses import replace
 from itertools import pairwise
 from math import dist, inf
 
-from small_behaviours import MOVE, ROBOT_TYPE, program, robot_type
-
 from mmrs_core.analysis.checks import CHECKS
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.scene import Area, AreaUse, Kinematics
+from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_type
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 FLYER = ("urn:mmrs:test:1.0", "Flyer")

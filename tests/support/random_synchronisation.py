@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 from hypothesis import strategies as st
-from small_behaviours import hold, notify, program, robot
 
 from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock
+from mmrs_core.testing.small_programs import hold, notify, program, robot
 
 SILENT = {"begin", "end", "act"}
 

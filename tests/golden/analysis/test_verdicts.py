@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 from checking import given, kind, land, recharge, rover, square, strange, take_off
-from small_behaviours import go, hold, notify, robot, use
 
 from mmrs_core.analysis.checks import CHECKS
 from mmrs_core.analysis.verification import verify
 from mmrs_core.behaviour.program import Target
 from mmrs_core.scene import Part
+from mmrs_core.testing.small_programs import go, hold, notify, robot, use
 
 EXPECTED = Path(__file__).parent / "expected"
 WEATHER = {"windSpeed": 4.0, "temperature": 15.0, "waterDensity": 1000.0}

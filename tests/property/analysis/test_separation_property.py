@@ -9,9 +9,9 @@ from checking import findings, given, uneven
 from hypothesis import given as for_all
 from hypothesis import settings
 from hypothesis import strategies as st
-from small_behaviours import go, hold, notify, robot
 
 from mmrs_core.contributions.checks import Status
+from mmrs_core.testing.small_programs import go, hold, notify, robot
 
 LENGTHS = st.floats(-20.0, 20.0).map(lambda x: round(x, 1))
 POINTS = st.tuples(LENGTHS, LENGTHS)

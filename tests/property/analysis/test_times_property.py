@@ -10,11 +10,11 @@ from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
 from random_synchronisation import behaviours
-from small_behaviours import hold, notify, program, robot
 
 from mmrs_core.analysis.order import HappensBefore
 from mmrs_core.analysis.sorties import sorties_of
 from mmrs_core.analysis.times import times_of
+from mmrs_core.testing.small_programs import hold, notify, program, robot
 
 SLACK = 1e-9
 

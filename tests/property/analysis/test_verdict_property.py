@@ -7,9 +7,9 @@ from checking import findings, given, rover, square
 from hypothesis import given as for_all
 from hypothesis import settings
 from hypothesis import strategies as st
-from small_behaviours import go, hold, notify, robot
 
 from mmrs_core.contributions.checks import Status
+from mmrs_core.testing.small_programs import go, hold, notify, robot
 
 LENGTHS = st.floats(-40.0, 40.0).map(lambda x: round(x, 2))
 POINTS = st.tuples(LENGTHS, LENGTHS, LENGTHS)

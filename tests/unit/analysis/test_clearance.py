@@ -5,11 +5,11 @@ from math import sqrt
 
 import pytest
 from checking import finding, findings, given, kind, land, rover, square, strange, take_off
-from small_behaviours import go, hold, robot
 
 from mmrs_core.behaviour.program import Target
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import Area, AreaUse, Part
+from mmrs_core.testing.small_programs import go, hold, robot
 
 
 def past(*moves, area, home=(0.0, 0.0, 0.0), **more):

@@ -5,13 +5,13 @@ from math import inf
 
 import pytest
 from checking import finding, findings, given, kind, land, recharge, rover, take_off, uneven
-from small_behaviours import go, hold, notify, robot, use
 
 from mmrs_core.analysis.certainty import certain_moves
 from mmrs_core.analysis.times import times_of
 from mmrs_core.behaviour.program import Target
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import Battery
+from mmrs_core.testing.small_programs import go, hold, notify, robot, use
 
 LAUNCHES = {"robot_kind": kind(launches=True)}
 

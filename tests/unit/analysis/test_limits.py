@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 from checking import FLYER, finding, findings, given, kind, land, rover, square, strange, take_off
-from small_behaviours import go, hold, robot, use
 
 from mmrs_core.analysis.heights import ATMOSPHERE, GRAVITY
 from mmrs_core.behaviour.program import Heading, Target
 from mmrs_core.contributions.checks import Status
 from mmrs_core.scene import DeviceAction, Part
+from mmrs_core.testing.small_programs import go, hold, robot, use
 
 AWAY = go("away", (30.0, 40.0, 0.0))
 

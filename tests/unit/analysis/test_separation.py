@@ -2,9 +2,9 @@
 
 import pytest
 from checking import finding, findings, given, kind, land, strange, take_off, uneven
-from small_behaviours import go, hold, notify, robot
 
 from mmrs_core.contributions.checks import Status
+from mmrs_core.testing.small_programs import go, hold, notify, robot
 
 
 def separation(*robots, least=3.0, **more):

@@ -1,9 +1,9 @@
 """On the ground or not, on every way that Choices may go."""
 
 from checking import finding, findings, given, kind, land, recharge, take_off
-from small_behaviours import go, hold, robot
 
 from mmrs_core.contributions.checks import Status
+from mmrs_core.testing.small_programs import go, hold, robot
 
 OVER = go("over", (5.0, 0.0, 10.0))
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 from checking import finding, findings, given
-from small_behaviours import go, hold, notify, robot
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.contributions.checks import Status
+from mmrs_core.testing.small_programs import go, hold, notify, robot
 
 MOVES = [hold("one"), hold("two")]
 

@@ -2,7 +2,6 @@
 
 import pytest
 from checking import finding, findings, given
-from small_behaviours import hold, notify, program, robot
 
 from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
@@ -10,6 +9,7 @@ from mmrs_core.analysis.synchronisation.network import network_of
 from mmrs_core.analysis.synchronisation.search import LimitExceededError, find_trap, follow
 from mmrs_core.contributions.checks import Status
 from mmrs_core.errors import InternalError
+from mmrs_core.testing.small_programs import hold, notify, program, robot
 
 
 def messages(*robots):

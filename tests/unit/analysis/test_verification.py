@@ -1,11 +1,11 @@
 """All checks together, and what they let pass."""
 
 from checking import given, kind, rover, square, strange
-from small_behaviours import go, robot
 
 from mmrs_core.analysis.checks import CHECKS
 from mmrs_core.analysis.verification import refuses, verify
 from mmrs_core.contributions.checks import Check, Status, Verdict
+from mmrs_core.testing.small_programs import go, robot
 
 
 def test_every_check_says_something_of_every_robot_or_of_all():
