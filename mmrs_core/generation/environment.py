@@ -15,6 +15,7 @@ from mmrs_core.generation.escaping import (
     identifier,
     json_literal,
     name,
+    python_lines,
     python_literal,
 )
 
@@ -42,6 +43,7 @@ def environment_of(target: Target) -> Environment:
         "name": name,
         **target.filters,
     }
+    environment.filters["py_lines"] = python_lines
     environment.filters.update({key: _coded(encode) for key, encode in filters.items()})
     return environment
 

@@ -14,6 +14,7 @@ from hashlib import sha256
 from math import isfinite
 
 LONGEST_NAME = 48
+LINE = 110
 
 
 class Code(str):
@@ -48,11 +49,37 @@ def python_literal(value: object) -> Code:
     if value is None or isinstance(value, bool | int):
         return Code(repr(value))
     if isinstance(value, str):
-        return Code(ascii(str(value)))
+        return _quoted(str(value))
     if isinstance(value, tuple | list):
         inner = ", ".join(python_literal(item) for item in value)
         return Code(f"({inner},)" if len(value) == 1 else f"({inner})")
     raise ValueError(f"{value!r} is no plain value and has no literal")
+
+
+def python_lines(value: object, indent: int = 0, before: int = 0) -> Code:
+    """Return a value as a Python expression that is laid out in lines where one would be too long.
+
+    Args:
+        value: as for `python_literal`.
+        indent: of the line on which the expression begins, in characters.
+        before: characters on that line between the indentation and the expression.
+    """
+    flat = python_literal(value)
+    if indent + before + len(flat) < LINE or not isinstance(value, Call | tuple | list):
+        return flat
+    opening = f"{value.function}(" if isinstance(value, Call) else "("
+    given = [("", each) for each in (value.positional if isinstance(value, Call) else value)]
+    given += [(f"{key}=", each) for key, each in value.named] if isinstance(value, Call) else []
+    inner = indent + 4
+    lines = [f"{' ' * inner}{key}{python_lines(each, inner, len(key))},\n" for key, each in given]
+    return Code(f"{opening}\n{''.join(lines)}{' ' * indent})")
+
+
+def _quoted(text: str) -> Code:
+    literal = ascii(text)
+    if literal.startswith('"'):
+        return Code(literal)
+    return Code('"' + literal[1:-1].replace("\\'", "'").replace('"', '\\"') + '"')
 
 
 def json_literal(value: object) -> Code:

@@ -139,9 +139,10 @@ class BusSlots(LocalSlots):
     def _apply(self, owner: str, content: dict[str, Any]) -> None:
         known = (str(content["sender"]), str(content["incarnation"]), int(content["number"]))
         slots = [(owner, str(slot)) for slot in content["slots"]]
-        allowed = dict(self._robots[owner].senders)
+        robot = self._robots[owner]
+        allowed = dict(robot.senders if content["active"] else robot.resets)
         for _, slot in slots:
-            if content["active"] and known[0] not in allowed.get(slot, ()):
+            if known[0] not in allowed.get(slot, ()):
                 raise ValueError(f"{known[0]!a} never sets slot {slot!a}")
         with self._changed:
             if known in self._seen:

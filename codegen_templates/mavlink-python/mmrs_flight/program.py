@@ -245,7 +245,7 @@ class Robot:
         id: as in the behaviour; log: name of its log file.
         vehicle: ``copter``, ``sub`` or ``rover``.
         start: the first move.
-        slots: its own; senders: robots that notify each of them.
+        slots: its own; senders: robots that activate each of them; resets: robots that deactivate it.
         reserve: part of the energy that must be left.
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
@@ -259,6 +259,7 @@ class Robot:
     steps: tuple[Step, ...]
     slots: tuple[str, ...] = ()
     senders: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    resets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     policies: tuple[Policy, ...] = ()
     reserve: float = 0.2
     runs: tuple[Run, ...] = ()

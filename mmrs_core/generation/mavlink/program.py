@@ -56,8 +56,8 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     vertices: list[Point] = [vertex for ring in fence for vertex in ring]
     context = context_of(robot, input, [*vertices, *points], geographic=geographic)
     steps = tuple(_step(index, context) for index in _ordered(robot))
-    head = tuple(_head(context, input, fence, points, clearance))
-    words = _words((head, [step.call for step in steps]))
+    head = tuple(each for each in _head(context, input, fence, points, clearance) if each[1] != ())
+    words = {"Robot"} | _words((head, [step.call for step in steps]))
     return RobotView(
         robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot), objects_in(robot)
     )
@@ -82,14 +82,16 @@ def trace_of(robot: RobotProgram) -> tuple[TracedStep, ...]:
     )
 
 
-def senders_of(robot: RobotProgram, program: Program) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Return, for each slot that somebody sets, the robots that do."""
+def senders_of(
+    robot: RobotProgram, program: Program, *, active: bool
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return, for each slot that somebody activates, or deactivates, the robots that do."""
     found: dict[str, dict[str, None]] = {}
     for sender in program.robots:
         for move in sender.moves:
             for action in (*move.before, *move.after):
                 for owner, slot in action.sets:
-                    if owner == robot.id and action.active:
+                    if owner == robot.id and action.active is active:
                         found.setdefault(slot, {})[sender.id] = None
     return tuple((slot, tuple(senders)) for slot, senders in sorted(found.items()))
 
@@ -143,7 +145,8 @@ def _head(
     yield "home", place_of(home, context)
     yield "start", robot.moves[robot.start].id
     yield "slots", robot.slots
-    yield "senders", senders_of(robot, program)
+    yield "senders", senders_of(robot, program, active=True)
+    yield "resets", senders_of(robot, program, active=False)
     yield "policies", tuple(_policy(policy) for policy in policies_of(robot, input))
     yield "reserve", program.reserve
     yield "runs", tuple(_run(run, robot) for run in runs_of(context))

@@ -15,6 +15,7 @@ from mmrs_core.generation.earth import degrees_of
 from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
+from mmrs_core.resources import shipped
 from mmrs_core.testing.programs import target_input
 from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
 
@@ -91,3 +92,19 @@ def hangar():
     yield open_hangar
     for vehicle in vehicles:
         vehicle.stop()
+
+
+@pytest.fixture
+def flight(monkeypatch):
+    """Return the runtime of generated controllers as a package."""
+    monkeypatch.syspath_prepend(str(shipped("codegen_templates") / "mavlink-python"))
+    import mmrs_flight.clock
+    import mmrs_flight.commands
+    import mmrs_flight.link
+    import mmrs_flight.missions
+    import mmrs_flight.ports
+    import mmrs_flight.uploads
+
+    yield mmrs_flight
+    for name in [name for name in sys.modules if name.partition(".")[0] == "mmrs_flight"]:
+        del sys.modules[name]

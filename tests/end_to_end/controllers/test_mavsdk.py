@@ -12,26 +12,9 @@ import pytest
 from mmrs_core.generation.qgc.target import QGC_PLAN
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.resources import shipped
 from mmrs_core.testing.programs import target_input, two_drones
 
 PEERS = Path(__file__).parents[2] / "peers"
-
-
-@pytest.fixture
-def flight(monkeypatch):
-    """Return the runtime of generated controllers as a package."""
-    monkeypatch.syspath_prepend(str(shipped("codegen_templates") / "mavlink-python"))
-    import mmrs_flight.clock
-    import mmrs_flight.commands
-    import mmrs_flight.link
-    import mmrs_flight.missions
-    import mmrs_flight.ports
-    import mmrs_flight.uploads
-
-    yield mmrs_flight
-    for name in [name for name in sys.modules if name.partition(".")[0] == "mmrs_flight"]:
-        del sys.modules[name]
 
 
 class Peer:

@@ -18,6 +18,7 @@ from mmrs_core.generation.escaping import (
     identifier,
     json_literal,
     name,
+    python_lines,
     python_literal,
 )
 
@@ -69,6 +70,17 @@ def test_an_object_has_no_literal():
 def test_a_call_is_written_with_its_arguments():
     inner = Call("Local", (1.0, "a'b"))
     assert python_literal(Call("GoTo", (inner,), (("speed", 2.0),))) == 'GoTo(Local(1.0, "a\'b"), speed=2.0)'
+
+
+@given(plain, st.integers(0, 100))
+def test_a_value_laid_out_in_lines_is_still_the_value(value, indent):
+    assert ast.literal_eval(python_lines(value, indent).strip()) == value
+
+
+def test_lines_are_broken_only_where_they_are_too_long():
+    short, long = ("a", "b"), tuple("abcdefghij" * 3)
+    laid_out = python_lines(Call("f", (short,), (("g", long),)), 4)
+    assert laid_out.splitlines()[:3] == ["f(", '        ("a", "b"),', "        g=("]
 
 
 @given(texts)

@@ -34,7 +34,7 @@ def with_file(target: Target, path: str, template: str) -> Target:
 
 def test_a_template_is_rendered_with_its_view(target):
     files = render(target, target_input(two_drones()))
-    assert (files[0].path, files[0].content) == ("hello.txt", b"hello 'survey'\n")
+    assert (files[0].path, files[0].content) == ("hello.txt", b'hello "survey"\n')
 
 
 def test_a_template_without_the_ending_is_copied(target):
