@@ -21,7 +21,8 @@ STRAIGHT = pi / 180
 class Corners:
     """Tells whether a robot that does not stop at a corner stays clear of everything.
 
-    A robot that goes round a corner without a stop cuts it by up to v² / 2a.
+    A robot that goes round a corner without a stop cuts it by up to v² / 2a. Where robots must keep apart
+    they stop at every corner, so that it is certain when they are where.
     """
 
     def __init__(self, robot: Robot, scene: Scene, chain: Chain) -> None:
@@ -29,11 +30,12 @@ class Corners:
         self._shapes = np.array([shapely.Polygon(area.shell) for area in areas], dtype=object)
         self._keep = np.array([area.safety_distance + robot.clearance for area in areas])
         self._robot, self._chain = robot, chain
+        self._timed = scene.minimum_separation is not None
         self._before = {way: edge.source for edge in chain.edges for way in (edge.to, edge.otherwise)}
 
     def may_flow(self, edge: Edge) -> bool:
         """Return whether the transition along that edge may be fluid."""
-        if edge.to is None or edge.waits or edge.condition is not None:
+        if self._timed or edge.to is None or edge.waits or edge.condition is not None:
             return False
         nodes = self._chain.nodes
         first, second = nodes[edge.source], nodes[edge.to]
