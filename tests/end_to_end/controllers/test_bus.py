@@ -6,6 +6,7 @@ import json
 import signal
 import socket
 import subprocess
+import time
 from contextlib import ExitStack
 from dataclasses import replace
 
@@ -40,6 +41,10 @@ def start_all(made, stack, endpoint, first, second, *arguments):
     listening = stack.enter_context(made.start(first, *common, "--bus-listen", endpoint))
     calling = stack.enter_context(made.start(second, *common, "--bus-connect", endpoint))
     return listening, calling
+
+
+def await_line(process: subprocess.Popen[str], words: str) -> None:
+    assert any(words in line for line in process.stderr), f"{words} was never said"
 
 
 def end(process: subprocess.Popen[str]) -> tuple[int, str]:
@@ -90,9 +95,9 @@ def test_a_robot_notices_that_a_peer_was_killed(controllers, endpoint):
     made = controllers(waiting(Policy("PEER_LOST", "LAND", 3.0)))
     with ExitStack() as stack:
         alpha, beta = start_all(made, stack, endpoint, "robot_alpha.py", "robot_beta.py", "--speedup", "5")
-        for line in beta.stderr:
-            if "waits for 'go'" in line:
-                break
+        await_line(beta, "waits for 'go'")
+        await_line(alpha, "'stay'")
+        time.sleep(1.5)
         alpha.send_signal(signal.SIGKILL)
         code, said = end(beta)
     assert code == 1
