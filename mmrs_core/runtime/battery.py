@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from math import inf
 
 from mmrs_core.behaviour.policies import response_to
-from mmrs_core.contributions.execution import BackendInput, Fault
-from mmrs_core.runtime.escape import escape_path
+from mmrs_core.contributions.execution import Fault
+from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.legs import Flow, Leg, stretches
-from mmrs_core.scene import Kinematics, Policy, Position
+from mmrs_core.scene import Kinematics, Policy
 
 SLACK = 1e-6
 """Seconds, and seconds at mean power, that rounding may cost."""
@@ -28,11 +28,9 @@ class Battery:
         capacity: seconds at mean power when they are full; inf for a wired robot.
     """
 
-    def __init__(
-        self, given: BackendInput, kinematics: Kinematics, home: Position, policies: tuple[Policy, ...]
-    ) -> None:
+    def __init__(self, kinematics: Kinematics, escapes: Escapes, policies: tuple[Policy, ...]) -> None:
         self.capacity = _capacity(kinematics)
-        self._given, self._kinematics, self._home = given, kinematics, home
+        self._kinematics, self._escapes = kinematics, escapes
         self._response = response_to("BATTERY_LOW", policies)
 
     def energy(self, charge: float) -> float | None:
@@ -70,7 +68,7 @@ class Battery:
         """Return the seconds left beyond what the response takes; inf where it takes none."""
         if self._response in _STAYING:
             return inf
-        path = escape_path(self._response, leg.position(time), self._home, self._given)
+        path = self._escapes.straight(self._response, leg.position(time))
         way = stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=flow)
         return leg.charge_at(time) - sum(each.seconds * each.rate for each in way)
 

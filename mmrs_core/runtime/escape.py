@@ -2,41 +2,81 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import dist
 
-from shapely.geometry import Polygon
-
 from mmrs_core.contributions.execution import BackendInput
-from mmrs_core.scene import AreaUse, Position
+from mmrs_core.errors import UnreachableError
+from mmrs_core.geometry.clearance import shrink
+from mmrs_core.planning.paths import Space
+from mmrs_core.scene import Area, AreaUse, Kinematics, Position
 
 
-def escape_path(response: str, here: Position, home: Position, given: BackendInput) -> tuple[Position, ...]:
-    """Return the straight way that a response takes; `here` alone where the robot stays.
+class Escapes:
+    """Where one robot goes when something has gone wrong.
 
-    Ways home and to emergency areas are level first, then down to the height of home; obstacles are
-    not gone around. Where there is no emergency area the robot comes down where it is.
+    Ways home and to emergency areas keep the robot's height, then lead down to the height of home.
     """
-    if response == "LAND":
-        return _down((here,), home)
-    if response == "SURFACE":
-        return (here, (here[0], here[1], given.program.frame.surface))
-    if response == "RETURN":
-        return _down((here, (home[0], home[1], here[2])), home)
-    if response == "EMERGENCY_AREA":
-        refuge = _refuge(here, given)
-        return _down((here,) if refuge is None else (here, refuge), home)
-    return (here,)
 
+    def __init__(self, given: BackendInput, kinematics: Kinematics, home: Position) -> None:
+        self._given, self._kinematics, self._home = given, kinematics, home
+        self._clearance = given.type.half_diagonal + given.program.position_error
 
-def _down(path: tuple[Position, ...], home: Position) -> tuple[Position, ...]:
-    east, north, up = path[-1]
-    return path if up == home[2] else (*path, (east, north, home[2]))
+    def straight(self, response: str, here: Position) -> tuple[Position, ...]:
+        """Return the way as if nothing stood in it; `here` alone where the robot stays."""
+        if response == "SURFACE":
+            return (here, (here[0], here[1], self._given.program.frame.surface))
+        if response == "LAND":
+            return self._down((here,))
+        goal = self._goal(response, here)
+        if goal is None:
+            return (here,)
+        return self._down((here,) if goal == here else (here, goal))
 
+    def clear(self, response: str, here: Position) -> tuple[Position, ...]:
+        """Return the way that keeps from forbidden areas and obstacles.
 
-def _refuge(here: Position, given: BackendInput) -> Position | None:
-    """Return a point inside the nearest emergency area, at the robot's height."""
-    inside = (
-        Polygon(area.shell).representative_point() for area in given.areas if area.use is AreaUse.EMERGENCY
-    )
-    places = [(point.x, point.y, here[2]) for point in inside]
-    return min(places, key=lambda place: dist(place, here), default=None)
+        Where there is none, the robot comes down where it is if it flies, and else stays.
+        """
+        goal = self._goal(response, here)
+        if goal is None or goal == here:
+            return self.straight(response, here)
+        try:
+            return self._down(self._space.route(here, goal))
+        except UnreachableError:
+            return self._down((here,)) if self._kinematics.launches else (here,)
+
+    def _goal(self, response: str, here: Position) -> Position | None:
+        """Return the place to go to, at the robot's height; None where it goes nowhere else."""
+        if response == "RETURN":
+            return (self._home[0], self._home[1], self._height(here))
+        if response == "EMERGENCY_AREA":
+            places = [(east, north, self._height(here)) for east, north in self._refuges]
+            return min(places, key=lambda place: dist(place, here), default=here)
+        return None
+
+    def _height(self, here: Position) -> float:
+        return min(max(here[2], self._kinematics.floor), self._kinematics.ceiling)
+
+    def _down(self, path: tuple[Position, ...]) -> tuple[Position, ...]:
+        east, north, up = path[-1]
+        ground = self._home[2]
+        return path if up == ground else (*path, (east, north, ground))
+
+    @cached_property
+    def _refuges(self) -> tuple[tuple[float, float], ...]:
+        """Return a point inside every emergency area that is large enough for the robot."""
+        inside = (shrink(area.shell, self._keep(area)) for area in self._areas(AreaUse.EMERGENCY))
+        points = (shape.representative_point() for shape in inside if not shape.is_empty)
+        return tuple((point.x, point.y) for point in points)
+
+    @cached_property
+    def _space(self) -> Space:
+        kept_from = (*self._areas(AreaUse.FORBIDDEN), *self._areas(AreaUse.OBSTACLE))
+        return Space(kept_from, self._clearance, self._kinematics.floor, self._kinematics.ceiling)
+
+    def _areas(self, use: AreaUse) -> tuple[Area, ...]:
+        return tuple(area for area in self._given.areas if area.use is use)
+
+    def _keep(self, area: Area) -> float:
+        return area.safety_distance + self._clearance

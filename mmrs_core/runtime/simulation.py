@@ -18,7 +18,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.runtime.battery import SLACK, Battery
-from mmrs_core.runtime.escape import escape_path
+from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
 from mmrs_core.runtime.legs import STILL, Flow, Leg, Stretch, bearing, cost, current, stretches, turn, wind
 from mmrs_core.scene import Position
@@ -47,7 +47,8 @@ class SimulatedRobot:
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         policies = in_precedence(given.robot.policies, given.policies)
-        self._battery = Battery(given, self._kinematics, self._robot.home, policies)
+        self._escapes = Escapes(given, self._kinematics, self._robot.home)
+        self._battery = Battery(self._kinematics, self._escapes, policies)
         self.notes: list[str] = []
         self._grounded, self._done, self._halted, self._rolling = True, False, False, False
         self._move: Move | None = None
@@ -124,7 +125,7 @@ class SimulatedRobot:
             return
         self._catch_up(now)
         self._halted, self._move = True, None
-        path = escape_path(response, self._legs[-1].finish, self._robot.home, self._given)
+        path = self._escapes.clear(response, self._legs[-1].finish)
         if self._legs[-1].charge_at(now) <= SLACK or len(path) < 2:
             return
         self._append(

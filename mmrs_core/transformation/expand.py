@@ -8,6 +8,7 @@ from dataclasses import replace
 from mmrs_core.contributions.rules import RobotKind, Rule, most_specific, robot_kind_of
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Device, Kinematics, Name, Robot, Scene, Task, Work
+from mmrs_core.transformation.fitness import out_of_reach, unfit
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -61,6 +62,8 @@ def _expand_task(
         if key not in alike:
             alike[key] = _work(task, robot, scene, rules[name])
         found = alike[key]
+        if isinstance(found, Work):
+            found = out_of_reach(found, robot) or found
         if isinstance(found, str):
             refusals[task.name, robot.name] = found
         else:
@@ -68,7 +71,7 @@ def _expand_task(
 
 
 def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
-    missing = next(_missing(task, robot.type.devices), None)
+    missing = next(_missing(task, robot.type.devices), None) or unfit(robot, scene)
     if missing:
         return missing
     try:

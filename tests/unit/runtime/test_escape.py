@@ -1,0 +1,51 @@
+"""Robots that respond to a fault keep from what is forbidden on their way."""
+
+import pytest
+import shapely
+
+from mmrs_core.behaviour.program import Program, RobotProgram
+from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.runtime.escape import Escapes
+from mmrs_core.scene import Area, AreaUse, Capability, Frame, Kinematics, Part, RobotType
+
+HOME = (0.0, 0.0, 0.0)
+HERE = (100.0, 0.0, 20.0)
+WALL = Area("wall", AreaUse.FORBIDDEN, ((40.0, -30.0), (60.0, -30.0), (60.0, 30.0), (40.0, 30.0)))
+RING = Area("pit", AreaUse.FORBIDDEN, ((90.0, -9.0), (99.0, -9.0), (99.0, 9.0), (90.0, 9.0)))
+PITCH = Area("pitch", AreaUse.EMERGENCY, ((120.0, 20.0), (140.0, 20.0), (140.0, 40.0), (120.0, 40.0)))
+TINY = Area("tiny", AreaUse.EMERGENCY, ((101.0, 1.0), (102.0, 1.0), (102.0, 2.0), (101.0, 2.0)))
+
+
+def escapes_among(*areas):
+    kind = RobotType("t", (), (), 2.0, None, (Capability(0, None, (0, 10)),), (), {}, Part((), {}))
+    robot = RobotProgram("r", "t", "NORMAL", 0.0, HOME, (), (), {}, 0, 0)
+    program = Program("p", Frame("EPSG:4326", None, None), (robot,))
+    kinematics = Kinematics(cruise=5, slowest=0, fastest=10, climb=3, descent=3, launches=True)
+    return Escapes(BackendInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
+
+
+def test_the_way_home_leads_around_a_forbidden_area_and_down():
+    path = escapes_among(WALL).clear("RETURN", HERE)
+    assert (path[0], path[-1]) == (HERE, HOME)
+    way = shapely.LineString([point[:2] for point in path[:-1]])
+    assert shapely.Polygon(WALL.shell).distance(way) >= 2.0 - 1e-9
+
+
+def test_a_robot_that_cannot_get_home_comes_down_where_it_is():
+    assert escapes_among(RING).clear("RETURN", HERE) == (HERE, (100.0, 0.0, 0.0))
+
+
+def test_the_nearest_emergency_area_that_is_large_enough_is_taken():
+    goal = escapes_among(PITCH, TINY).clear("EMERGENCY_AREA", HERE)[-1]
+    inside = shapely.Polygon(PITCH.shell).boundary.distance(shapely.Point(goal[:2]))
+    assert inside >= 2.0
+    assert goal[2] == 0.0
+
+
+@pytest.mark.parametrize("response", ["HOLD", "CONTINUE", "STOP_THRUST"])
+def test_a_robot_that_holds_stays_where_it_is(response):
+    assert escapes_among(WALL).clear(response, HERE) == (HERE,)
+
+
+def test_without_an_emergency_area_the_robot_comes_down():
+    assert escapes_among().clear("EMERGENCY_AREA", HERE) == (HERE, (100.0, 0.0, 0.0))

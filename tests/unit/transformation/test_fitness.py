@@ -1,0 +1,35 @@
+"""Robots are left out of what their radio does not reach and their type does not stand."""
+
+from mmrs_core.scene import Capability, Frame, Part, Robot, RobotType, Scene, Stroke, Work
+from mmrs_core.transformation.fitness import out_of_reach, unfit
+
+
+def robot_with(**attributes):
+    kind = RobotType("t", (), (), 0.5, None, (Capability(0, None, (0, 2)),), (), {}, Part((), attributes))
+    return Robot("r", kind, (0.0, 0.0, 0.0), True, 0.0, "NORMAL", 0.5)
+
+
+def scene_at(**environment):
+    return Scene("s", Frame("EPSG:4326", None, None), (), (), (), environment=environment)
+
+
+def work_at(*points):
+    return Work((Stroke(points),), divisible=False, rule="rule")
+
+
+def test_a_robot_does_not_operate_outside_of_its_temperatures():
+    warm = robot_with(operatingTemperature=Part((), {"min": 0.0, "max": 40.0}))
+    assert unfit(warm, scene_at(temperature=-5.0)) == "operates from 0 to 40 °C, not at -5 °C"
+    assert unfit(warm, scene_at(temperature=0.0)) is None
+
+
+def test_what_is_not_known_of_weather_or_robot_is_no_reason():
+    assert unfit(robot_with(), scene_at(temperature=-5.0)) is None
+    assert unfit(robot_with(operatingTemperature=Part((), {"min": 0.0, "max": 40.0})), scene_at()) is None
+
+
+def test_a_work_beyond_the_radio_is_out_of_reach():
+    near = robot_with(communicationRange=50.0)
+    assert out_of_reach(work_at((30.0, 40.0, 0.0)), near) is None
+    assert out_of_reach(work_at((30.0, 41.0, 0.0)), near) == "would be 51 m from home, its radio reaches 50 m"
+    assert out_of_reach(work_at((3e4, 0.0, 0.0)), robot_with()) is None
