@@ -1,4 +1,4 @@
-"""What this plug-in contributes: six types of task, what they are made of, what must hold, how they look."""
+"""What this plug-in contributes: six types of task, landmarks, what tasks are made of, what must hold, how all look."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mmrs_survey import names
 
 @hookimpl
 def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
-    """Contribute survey tasks to the mission layer."""
+    """Contribute survey tasks to the mission layer, and landmarks to the context layer."""
     ecore = Path(str(files("mmrs_survey"))) / "metamodels" / "survey.ecore"
     return (MetamodelSource(names.SURVEY, ecore, "mmrs-survey"),)
 
@@ -41,7 +41,7 @@ def mmrs_rules() -> tuple[Rule, ...]:
 
 @hookimpl
 def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
-    """Contribute how survey tasks look on maps."""
+    """Contribute how survey tasks and landmarks look on maps."""
     return (
         MapSymbol(names.PHOTO_GRID_TASK, "photo grid", "#c2571a", "▦", ("altitude", "gridResolution")),
         MapSymbol(names.GO_TO_TASK, "go to", "#5b3fa0", "➤", ("type",)),
@@ -49,4 +49,5 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
         MapSymbol(names.OBSERVE_TASK, "observe", "#a0235d", "◉", ("duration", "deviceId", "altitude")),
         MapSymbol(names.MEASURE_TASK, "measure", "#2d7a3a", "✚", ("actionName", "spacing", "altitude")),
         MapSymbol(names.APPROACH_TASK, "approach", "#37474f", "⌖", ("object", "distance", "tolerance")),
+        MapSymbol(names.LANDMARK, "landmark", "#0e7490", "⚑", ("description",)),
     )
