@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -14,6 +15,7 @@ from mmrs_core.behaviour.replay import ReplayResult, replay
 from mmrs_core.generation.earth import degrees_of
 from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
 from mmrs_core.generation.render import render
+from mmrs_core.generation.vehicles import vehicle_class
 from mmrs_core.generation.writing import write
 from mmrs_core.resources import shipped
 from mmrs_core.testing.programs import target_input
@@ -25,11 +27,11 @@ PATIENCE = 60.0
 class Controllers:
     """A folder of generated controllers, and what can be done with it."""
 
-    def __init__(self, folder: Path, program, types=None, **options) -> None:
+    def __init__(self, folder: Path, program, types=None, files=None, **options) -> None:
         self.folder = folder
         self.program = program
         self.logs = folder / "logs"
-        write(render(MAVLINK_PYTHON, target_input(program, types), **options), folder)
+        write(files or render(MAVLINK_PYTHON, target_input(program, types), **options), folder)
 
     def start(self, script: str, *arguments: str) -> subprocess.Popen[str]:
         command = [sys.executable, "-W", "error", str(self.folder / script), *arguments]
@@ -37,11 +39,11 @@ class Controllers:
             command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
 
-    def run(self, script: str, *arguments: str) -> tuple[int, str]:
+    def run(self, script: str, *arguments: str, patience: float = PATIENCE) -> tuple[int, str]:
         """Run a script to its end; return its exit code and what it said."""
         with self.start(script, *arguments) as process:
             try:
-                _, said = process.communicate(timeout=PATIENCE)
+                _, said = process.communicate(timeout=patience)
             except subprocess.TimeoutExpired:
                 process.kill()
                 _, said = process.communicate()
@@ -74,14 +76,17 @@ def hangar():
     """Return a function that switches on a vehicle at each robot's home, and gives the links to them."""
     vehicles: list[SimulatedVehicle] = []
 
-    def open_hangar(program, speedup: float = 20.0, loss: float = 0.0, **settings):
+    def open_hangar(
+        program, speedup: float = 20.0, loss: float = 0.0, types=MappingProxyType({}), **settings
+    ):
         links, found = ["--speedup", str(speedup)], {}
         for robot in program.robots:
             latitude, longitude = (42.37, 13.35)
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
             port = _free_port()
-            given = Settings(latitude=latitude, longitude=longitude, **settings)
+            kind = vehicle_class(robot, types.get(robot.type_name)).name
+            given = Settings(kind, latitude, longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)
             vehicle.start()
             vehicles.append(vehicle)
