@@ -266,7 +266,7 @@ class MavlinkVehicle:
         """Ask for a message at a rate; a vehicle that refuses sends it as it likes, or does without."""
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
         with suppress(Refused):
-            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate)
+            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=2)
 
     def _await_ready(self) -> None:
         if not self._link.wait(self._telemetry.ready, READY_SECONDS):

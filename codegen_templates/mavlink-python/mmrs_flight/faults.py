@@ -13,6 +13,7 @@ REFUSED = "REFUSED"
 CONDITION_FAILED = "CONDITION_FAILED"
 OBJECT_NOT_FOUND = "OBJECT_NOT_FOUND"
 STOPPED = "STOPPED"
+CRASHED = "CRASHED"
 
 
 class Fault(Exception):  # noqa: N818  # the word that policies and logs use

@@ -12,6 +12,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .clock import Clock
 from .ports import Port
+from .signing import sign
 
 Message = Any
 Found = TypeVar("Found")
@@ -31,8 +32,15 @@ class Link:
         garbled: how many frames could not be read.
     """
 
-    def __init__(self, port: Port, clock: Clock, system: int = 0) -> None:
-        """Listen to a vehicle; `system` 0 is whichever speaks first."""
+    def __init__(self, port: Port, clock: Clock, system: int = 0, key: bytes | None = None) -> None:
+        """Listen to a vehicle.
+
+        Args:
+            port: open.
+            clock: of the run.
+            system: of the vehicle; 0 is whichever speaks first.
+            key: to sign what is sent with; what comes must then be signed with it, too.
+        """
         self.clock = clock
         self.guard: Callable[[], None] = lambda: None
         self.system = system
@@ -42,6 +50,8 @@ class Link:
         self._port = port
         self._mav = mavlink.MAVLink(port, srcSystem=GROUND_SYSTEM, srcComponent=GROUND_COMPONENT)
         self._mav.robust_parsing = True
+        if key is not None:
+            sign(self._mav, key)
         self._sending = threading.Lock()
         self._changed = threading.Condition()
         self._latest: dict[str, tuple[Message, float]] = {}

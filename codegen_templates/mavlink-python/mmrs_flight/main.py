@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from traceback import format_exception
 from typing import Any
 
 from .ardupilot import MavlinkVehicle
 from .clock import Clock
 from .dry import DryVehicle
-from .faults import LINK_LOST, STOPPED, Fault, Refused
+from .faults import CRASHED, LINK_LOST, STOPPED, Fault
 from .link import Link
 from .log import Log, Records
 from .objects import Locator
@@ -23,11 +24,13 @@ from .pilot import Condition, Desk, Pilot
 from .ports import open_port
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 from .responses import policy_for, respond
+from .signing import signing_key
 from .slots import LocalSlots, Slots
 from .vehicle import Vehicle
 from .watch import Watch
 
-OK, FAILED, USAGE, LINK, INTERRUPTED = 0, 1, 2, 5, 130
+OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
+CODES = {STOPPED: INTERRUPTED, LINK_LOST: LINK}
 FIRST_PORT = 14_550
 PORT_STEP = 10
 DRY_SPEEDUP = 500.0
@@ -56,6 +59,7 @@ class Options:
     home_tolerance: float
     system: int
     patience: float
+    key: bytes | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +163,7 @@ def run_robot(
         return LINK
     except Fault as fault:
         say(f"{robot.id!a}: {fault}")
-        return LINK if fault.event == LINK_LOST else FAILED
+        return CODES.get(fault.event, FAILED)
 
 
 def _fly(robot: Robot, vehicle: Vehicle, watch: Watch, desk: Desk, options: Options) -> int:
@@ -168,8 +172,11 @@ def _fly(robot: Robot, vehicle: Vehicle, watch: Watch, desk: Desk, options: Opti
     try:
         pilot.fly(options.fence)
     except Fault as fault:
-        pilot.fail(fault.event)
         return _end_early(fault, pilot, robot, vehicle, watch, desk, options)
+    except Exception as error:
+        say("".join(format_exception(error)))
+        crash = Fault(CRASHED, f"the program itself fails: {error!r}")
+        return _end_early(crash, pilot, robot, vehicle, watch, desk, options)
     say(f"{robot.id!a}: done")
     return OK
 
@@ -187,18 +194,22 @@ def _end_early(
     if fault.event == STOPPED:
         response = options.on_stop.upper()
     say(f"{robot.id!a}: {fault.event}: {fault}; response: {response}")
-    desk.slots.leave(robot.id)
     watch.relax()
     try:
+        pilot.fail(fault.event)
+    except OSError as error:
+        say(f"{robot.id!a}: the log cannot be written: {error}")
+    desk.slots.leave(robot.id)
+    try:
         watched = respond(response, fault, robot, vehicle, pilot.track)
-    except Refused as error:
+    except Fault as error:
         say(f"{robot.id!a}: cannot carry out {response}: {error}; take over by hand")
-        return FAILED
+        return CODES.get(error.event, FAILED)
     if watched:
         say(f"{robot.id!a}: holds; interrupt to end")
         desk.stop.wait()
     say(f"{robot.id!a}: stopped" if fault.event == STOPPED else f"{robot.id!a}: ended early")
-    return {STOPPED: INTERRUPTED, LINK_LOST: LINK}.get(fault.event, FAILED)
+    return CODES.get(fault.event, FAILED)
 
 
 def _vehicle(
@@ -207,7 +218,7 @@ def _vehicle(
     watch = Watch(robot, options.clock, stop)
     if options.dry:
         return DryVehicle(options.clock, robot.home, watch.check), watch
-    link = Link(open_port(options.links[robot.id]), options.clock, options.system)
+    link = Link(open_port(options.links[robot.id]), options.clock, options.system, options.key)
     stack.callback(link.close)
     link.guard = watch.check
     say(f"{robot.id!a}: waits for a vehicle at {options.links[robot.id]}")
@@ -251,6 +262,7 @@ def _parser(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
     add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
     add("--system", type=int, default=0, help="MAVLink system of the vehicle; 0: whichever speaks first")
+    add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
@@ -284,7 +296,17 @@ def _options(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
         given.home_tolerance,
         given.system,
         given.patience,
+        _key(parser, given.signing_key),
     )
+
+
+def _key(parser: argparse.ArgumentParser, path: Path | None) -> bytes | None:
+    if path is None:
+        return None
+    try:
+        return signing_key(path)
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
 
 
 def _slots(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any, stack: ExitStack) -> Slots:

@@ -20,6 +20,7 @@ METRES_PER_DEGREE = 111_319.49
 HORIZONTAL_RADIUS = 2.0
 CLOSE = 0.2
 RETURN_HEIGHT = 15.0
+TRACK_SECONDS = 0.5
 
 ACCEPTED = mavlink.MAV_RESULT_ACCEPTED
 DENIED = mavlink.MAV_RESULT_DENIED
@@ -50,6 +51,7 @@ class Settings:
         values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
         refuse: commands that it does not know.
         silent: commands that it never answers.
+        key: 32 bytes to sign with and to expect signatures of; empty: no signatures.
     """
 
     kind: str = "copter"
@@ -64,6 +66,7 @@ class Settings:
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
+    key: bytes = b""
 
 
 class Autopilot:
@@ -73,6 +76,7 @@ class Autopilot:
         history: (seconds, command, parameters) of every command that it carried out, and of every
             mission item that it executed.
         visited: (seconds, item) of every mission item that it has left behind.
+        track: (seconds, north, east, up) of where it was while armed, every half a second.
         parameters: by name.
     """
 
@@ -87,6 +91,7 @@ class Autopilot:
         self.item = 0
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
         self.visited: list[tuple[float, int]] = []
+        self.track: list[tuple[float, float, float, float]] = []
         self.parameters: dict[str, float] = {"FS_GCS_ENABLE": 0.0, "FS_ACTION": 0.0, "FENCE_ENABLE": 0.0}
         self.stores: dict[int, list[Item]] = {0: [], 1: [], 2: []}
         self._held = 0.0
@@ -100,6 +105,8 @@ class Autopilot:
             _PILOTS.get(self._mode_name(), Autopilot._brake)(self, seconds)
             self.body.advance(seconds)
             self._touch_ground()
+            if not self.track or self.time - self.track[-1][0] >= TRACK_SECONDS:
+                self.track.append((self.time, *self.body.position))
             return
         self.energy = min(1.0, self.energy + seconds / self.settings.recharge)
         if self.time < self.settings.boot:

@@ -23,6 +23,7 @@ LARGEST = 65_535
 POSITION_SECONDS, STATUS_SECONDS, HEARTBEAT_SECONDS = 0.1, 0.5, 1.0
 YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
 PREARM = 0x1000_0000
+SIGNATURE_EPOCH = 1_420_070_400
 
 
 class SimulatedVehicle:
@@ -62,6 +63,8 @@ class SimulatedVehicle:
         self._socket.settimeout(TICK_SECONDS)
         self._mav = mavlink.MAVLink(None, srcSystem=self.autopilot.settings.system, srcComponent=1)
         self._mav.robust_parsing = True
+        if self.autopilot.settings.key:
+            self._sign(self.autopilot.settings.key)
         self._missions = MissionProtocol(self.autopilot.stores, self._send)
         self._due: dict[str, float] = {}
         self._muted = threading.Event()
@@ -96,6 +99,11 @@ class SimulatedVehicle:
     ) -> None:
         """Switch it off."""
         self.stop()
+
+    def _sign(self, key: bytes) -> None:
+        signing = self._mav.signing
+        signing.secret_key, signing.sign_outgoing = key, True
+        signing.timestamp = int((time.time() - SIGNATURE_EPOCH) * 100_000)
 
     def _run(self) -> None:
         last = time.monotonic()

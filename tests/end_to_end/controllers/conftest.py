@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 
@@ -54,12 +55,19 @@ class Controllers:
         return replay(self.program, read_logs([self.logs]), partial=partial)
 
 
+@pytest.fixture(scope="session")
+def new_controllers():
+    """Return a function that makes controllers in a folder."""
+    return Controllers
+
+
 @pytest.fixture
 def controllers(tmp_path):
+    """Return a function that makes controllers in a folder of this test."""
     return lambda program, **options: Controllers(tmp_path / "controllers", program, **options)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def free_port():
     """Return a function that finds a UDP port that nobody uses."""
     return _free_port
@@ -71,14 +79,12 @@ def _free_port() -> int:
         return probe.getsockname()[1]
 
 
-@pytest.fixture
-def hangar():
-    """Return a function that switches on a vehicle at each robot's home, and gives the links to them."""
+@contextmanager
+def _open_hangar():
+    """Give a function that switches on a vehicle at each robot's home, and returns the links to them."""
     vehicles: list[SimulatedVehicle] = []
 
-    def open_hangar(
-        program, speedup: float = 20.0, loss: float = 0.0, types=MappingProxyType({}), **settings
-    ):
+    def switch_on(program, speedup: float = 20.0, loss: float = 0.0, types=MappingProxyType({}), **settings):
         links, found = ["--speedup", str(speedup)], {}
         for robot in program.robots:
             latitude, longitude = (42.37, 13.35)
@@ -94,9 +100,24 @@ def hangar():
             links += ["--link", f"{robot.id}=udpin:127.0.0.1:{port}"]
         return found, links
 
-    yield open_hangar
-    for vehicle in vehicles:
-        vehicle.stop()
+    try:
+        yield switch_on
+    finally:
+        for vehicle in vehicles:
+            vehicle.stop()
+
+
+@pytest.fixture(scope="session")
+def new_hangar():
+    """Return a context manager for vehicles."""
+    return _open_hangar
+
+
+@pytest.fixture
+def hangar():
+    """Return a function that switches on vehicles for this test, and gives the links to them."""
+    with _open_hangar() as switch_on:
+        yield switch_on
 
 
 @pytest.fixture

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from functools import cache
+from math import hypot, inf
 
 import pytest
+from shapely import Point, Polygon
 
 from mmrs_core import pipeline
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.resources import shipped
+from mmrs_core.scene import AreaUse
+
+SLACK = 0.6
+"""Metres that a vehicle may be off its leg: the radius in which places count as reached, and a little."""
 
 EXAMPLES = ("carbon-dioxide", "mixed-team", "pool")
 
@@ -37,6 +43,7 @@ def made(planned, contributions, controllers):
         files = pipeline.render(program, place, "mavlink-python", contributions)
         made = controllers(program, files=files)
         made.types = place.types
+        made.areas = [area for area in place.areas if area.use is not AreaUse.EMERGENCY]
         for name, word, answer in (
             ("conditions.py", ": undecided,", ": lambda state: True,"),
             ("objects.py", ": not_looked_for,", ": where_expected,"),
@@ -68,3 +75,21 @@ def test_an_example_flies_and_its_logs_replay(made, hangar, example):
     result = controllers.replayed()
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
     assert not any(vehicle.autopilot.armed for vehicle in vehicles.values())
+    for robot in controllers.program.robots:
+        assert vehicles[robot.id].autopilot.track
+        needed = controllers.types[robot.type_name].half_diagonal + controllers.program.position_error
+        for area in controllers.areas:
+            margin = least_margin(vehicles[robot.id].autopilot.track, robot.home, area, needed)
+            assert margin >= -SLACK, f"{robot.id} is {-margin:.2f} m too close to {area.name}"
+
+
+def least_margin(track, home, area, needed: float) -> float:
+    """Return how much farther from an area than it must be a track stays, metres."""
+    shape = Polygon(area.shell)
+    margins = []
+    for _, north, east, up in track:
+        aside = shape.distance(Point(home[0] + east, home[1] + north))
+        height = home[2] + up
+        above = max(height - area.high, area.low - height, 0.0)
+        margins.append(hypot(aside, above) - area.safety_distance - needed)
+    return min(margins, default=inf)

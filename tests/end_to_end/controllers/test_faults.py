@@ -205,3 +205,27 @@ def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
     code, said = made.run("fleet.py", *links)
     assert code == 1
     assert "REFUSED" in said
+
+
+def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
+    made = controllers(one_drone(hold=5.0))
+    actions = made.folder / "mmrs_flight/pilot.py"
+    broken = actions.read_text("utf-8").replace("self._vehicle.operate(", "self._vehicle.no_such_word(")
+    actions.write_text(broken, "utf-8")
+    vehicles, links = hangar(made.program)
+    with made.start("fleet.py", *links) as process:
+        wait_for(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "CRASHED" in said
+    assert made.replayed(partial=True).faults == {"alpha": "CRASHED"}
+
+
+def test_stop_before_there_is_a_vehicle_ends_the_program(controllers):
+    made = controllers(one_drone())
+    with made.start("fleet.py", "--link", "alpha=udpin:127.0.0.1:0") as process:
+        assert any("waits for a vehicle" in line for line in process.stderr)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert process.returncode == 130

@@ -20,7 +20,7 @@ from mmrs_core.testing.programs import (
     two_drones,
 )
 
-TAKE_OFF, WAYPOINT_MODE, PHOTO = 22, 3, 2000
+PHOTO = 2000
 LAND = move("down", "Land", uri=MULTICOPTER)
 
 
@@ -36,10 +36,18 @@ def test_a_dry_run_replays(controllers):
     assert made.replayed().complaints == ()
 
 
-def test_two_drones_fly_and_their_logs_replay(controllers, hangar):
-    made = controllers(two_drones())
-    vehicles, links = hangar(made.program)
-    code, said = made.run("fleet.py", *links)
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory, new_hangar, new_controllers):
+    """Return two drones that have flown: their controllers, the vehicles, exit code and what was said."""
+    made = new_controllers(tmp_path_factory.mktemp("flown"), two_drones())
+    with new_hangar() as hangar:
+        vehicles, links = hangar(made.program)
+        code, said = made.run("fleet.py", *links)
+    return made, vehicles, code, said
+
+
+def test_two_drones_fly_and_their_logs_replay(flown):
+    made, vehicles, code, said = flown
     assert code == 0, said
     result = made.replayed()
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
@@ -48,21 +56,16 @@ def test_two_drones_fly_and_their_logs_replay(controllers, hangar):
         assert max(map(abs, vehicle.autopilot.body.position)) < 1.0
 
 
-def test_a_run_without_stops_is_flown_as_a_mission(controllers, hangar):
-    made = controllers(two_drones())
-    vehicles, links = hangar(made.program)
-    code, said = made.run("fleet.py", *links)
-    assert code == 0, said
+def test_a_run_without_stops_is_flown_as_a_mission(flown):
+    _, vehicles, _, _ = flown
     alpha, beta = vehicles["alpha"], vehicles["beta"]
     assert [item for _, item in alpha.autopilot.visited] == [1, 2, 3, 4, 5]
     assert beta.autopilot.visited == []
     assert len(commands(alpha, PHOTO)) == 1
 
 
-def test_fence_and_rally_points_are_uploaded(controllers, hangar):
-    made = controllers(two_drones())
-    vehicles, links = hangar(made.program)
-    made.run("fleet.py", *links)
+def test_fence_and_rally_points_are_uploaded(flown):
+    _, vehicles, _, _ = flown
     stores = vehicles["alpha"].autopilot.stores
     assert [item.command for item in stores[1]] == [5002] * 4
     assert [item.command for item in stores[2]] == [5100]

@@ -165,6 +165,15 @@ def test_generated_files_are_formatted_as_people_format_theirs(tmp_path):
     assert (formatted.returncode, checked.returncode) == (0, 0)
 
 
+@pytest.mark.thorough
+def test_generated_files_pass_a_strict_type_check(tmp_path):
+    write(render(MAVLINK_PYTHON, target_input(named(("alpha", "beta")))), tmp_path)
+    options = ["--strict", "--ignore-missing-imports", "--python-version", "3.11", "--cache-dir", "cache"]
+    command = [sys.executable, "-m", "mypy", *options, "."]
+    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stdout
+
+
 def test_every_step_carries_its_move_and_task():
     source = generated(two_drones())["robot_alpha.py"].decode()
     assert "# task photos, by rule by_hand" in source
