@@ -45,10 +45,10 @@ CLASSES: Mapping[Name, VehicleClass] = {
 def vehicle_class(robot: RobotProgram, type: RobotType | None) -> VehicleClass:
     """Return what a robot is by its type, or, where that is missing, by what it does."""
     if type is not None:
-        metaclasses = (*type.metaclasses[:1], *type.capability_metaclasses, *type.metaclasses)
-        found = most_specific(metaclasses, CLASSES)
-        if found is not None and CLASSES[found] is not ROVER:
-            return CLASSES[found]
+        for metaclasses in (type.metaclasses, type.capability_metaclasses):
+            found = most_specific(metaclasses, CLASSES)
+            if found is not None and CLASSES[found] is not ROVER:
+                return CLASSES[found]
     return COPTER if any(move.is_a(TAKE_OFF) for move in robot.moves) else ROVER
 
 

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.context import context_of
+from mmrs_core.generation.earth import degrees_of, metres, sea_level_of
+from mmrs_core.generation.vehicles import COPTER, ROVER, SUB, speed_of, vehicle_class
+from mmrs_core.scene import Capability, Frame
+from mmrs_core.testing.programs import L_AQUILA, go_to, program, quad, robot_program, take_off, target_input
+
+DIVER = replace(
+    quad(),
+    metaclasses=(("urn:mmrs:robot:1.0", "Robot"),),
+    capability_metaclasses=(
+        ("urn:mmrs:auv:1.0", "AUVMovement"),
+        ("urn:mmrs:robot:1.0", "MovementCapability"),
+    ),
+)
+CRAWLER = replace(quad(), metaclasses=(("urn:mmrs:robot:1.0", "Robot"),))
+
+
+@pytest.mark.parametrize(("type", "expected"), [(quad(), COPTER), (DIVER, SUB), (CRAWLER, ROVER)])
+def test_the_type_says_which_vehicle_a_robot_is(type, expected):
+    assert vehicle_class(robot_program("a", []), type) is expected
+
+
+def test_without_a_type_what_takes_off_is_a_copter():
+    assert vehicle_class(robot_program("a", [take_off("up", 5.0)]), None) is COPTER
+    assert vehicle_class(robot_program("a", []), None) is ROVER
+
+
+@pytest.mark.parametrize(("mode", "speed"), [("SAFE", 4.0), ("NORMAL", 6.0), ("AGGRESSIVE", 8.0)])
+def test_the_travel_mode_makes_the_speed(mode, speed):
+    robot = replace(robot_program("a", []), travel_mode=mode)
+    assert speed_of(go_to("m", (0.0, 0.0, 0.0), speed=None), robot, quad()) == speed
+
+
+def test_the_speed_is_never_below_the_least_possible():
+    type = replace(quad(), capabilities=(Capability(0.0, None, (7.0, 8.0)),))
+    robot = replace(robot_program("a", []), travel_mode="SAFE")
+    assert speed_of(go_to("m", (0.0, 0.0, 0.0), speed=None), robot, type) == 7.0
+
+
+def test_the_speed_is_that_with_the_payload_carried():
+    slow = Capability(0.5, None, (1.0, 4.0))
+    type = replace(quad(), capabilities=(*quad().capabilities, slow))
+    robot = replace(robot_program("a", []), payload=0.3)
+    assert speed_of(go_to("m", (0.0, 0.0, 0.0), speed=None), robot, type) == 3.0
+
+
+def test_heights_of_what_dives_count_from_the_surface():
+    robot = robot_program("a", [], home=(0.0, 0.0, 1.5))
+    frame = replace(L_AQUILA, surface=1.0)
+    given = target_input(program(robot, frame=frame), [replace(DIVER, name="Quad")])
+    assert context_of(robot, given, geographic=False).height((0.0, 0.0, -4.0)) == -5.0
+
+
+def test_degrees_of_another_crs_are_those_of_wgs84():
+    frame = Frame("EPSG:4230", 42.37, 13.35)
+    ((latitude, longitude),) = degrees_of([(0.0, 0.0)], frame)
+    assert (latitude, longitude) != (42.37, 13.35)
+    assert abs(latitude - 42.37) < 0.003
+    assert abs(longitude - 13.35) < 0.003
+
+
+def test_a_local_frame_has_no_degrees():
+    with pytest.raises(UnsupportedError, match="is local"):
+        degrees_of([(0.0, 0.0)], Frame("EPSG:4326", None, None))
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        (L_AQUILA, 722.0),
+        (Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID", 47.5), 724.5),
+        (Frame("EPSG:4326", 42.37, 13.35, 770.0, "ELLIPSOID"), None),
+        (Frame("EPSG:4326", 42.37, 13.35, 0.0, "ORIGIN"), None),
+        (Frame("EPSG:4326", 42.37, 13.35), None),
+    ],
+)
+def test_the_height_above_the_sea_is_told_only_where_it_is_known(frame, expected):
+    assert sea_level_of((0.0, 0.0, 2.0), frame) == expected
+
+
+def test_a_length_is_never_minus_zero():
+    assert str(metres(-0.0001)) == "0.0"
