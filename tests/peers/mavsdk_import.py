@@ -1,6 +1,6 @@
-"""Has MAVSDK import plans and tell what it found, as JSON. Usage: python mavsdk_import.py PORT PLAN...
+"""Has MAVSDK import plans, upload them to a vehicle, download them again, and tell it all, as JSON.
 
-Its importer needs a connected vehicle, which must be sending to PORT.
+Usage: python mavsdk_import.py PORT PLAN...; the vehicle must be sending to PORT.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ def main(port: str, paths: list[str]) -> None:
     for path in paths:
         found = missions.import_qgroundcontrol_mission_from_string(Path(path).read_text("utf-8"))
         lists = {"mission": found.mission_items, "fence": found.geofence_items, "rally": found.rally_items}
-        print("peer " + json.dumps({what: [item(each) for each in items] for what, items in lists.items()}))
+        missions.upload_mission(found.mission_items)
+        lists["downloaded"] = missions.download_mission()
+        shown = {what: [item(each) for each in items] for what, items in lists.items()}
+        print("peer " + json.dumps(shown), flush=True)
 
 
 if __name__ == "__main__":

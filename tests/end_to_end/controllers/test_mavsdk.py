@@ -78,7 +78,7 @@ def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(flight, link):
         assert peer.next() == {"what": "arm", "arm": True}
 
 
-def test_mavsdk_reads_the_plans(tmp_path, hangar, free_port):
+def test_mavsdk_reads_the_plans_and_has_a_simulated_vehicle_keep_them(tmp_path, hangar, free_port):
     program = two_drones()
     write(render(QGC_PLAN, target_input(program), allow_lossy=True), tmp_path)
     plans = sorted(tmp_path.glob("*.plan"))
@@ -91,6 +91,7 @@ def test_mavsdk_reads_the_plans(tmp_path, hangar, free_port):
             latitude, longitude, height = plan["mission"]["plannedHomePosition"]
             assert home == [16, 5, round(latitude * 1e7), round(longitude * 1e7), height]
             assert items == [expected(item) for item in plan["mission"]["items"]]
+            assert [item[:5] for item in found["downloaded"]] == [home, *items]
             assert [item[0] for item in found["fence"]] == [5002] * 4
             assert [item[0] for item in found["rally"]] == [5100]
 
