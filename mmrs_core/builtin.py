@@ -8,6 +8,7 @@ from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.hookspecs import hookimpl
 
@@ -58,3 +59,9 @@ def mmrs_backends() -> Iterable[BackendFactory]:
     from mmrs_core.runtime.simulation import SIMULATION
 
     return (SIMULATION,)
+
+
+@hookimpl
+def mmrs_map_symbols() -> Iterable[MapSymbol]:
+    """Contribute how the mission's control tasks look."""
+    return CORE_SYMBOLS

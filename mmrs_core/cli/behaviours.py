@@ -17,13 +17,13 @@ from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.grounding import area_of, ground_of, robot_type_of
+from mmrs_core.languages.grounding import area_of, ground_of, part_of, robot_type_of
 from mmrs_core.languages.grounding_parts import names_of
 from mmrs_core.languages.grounding_values import children, number
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import Place, program_of
-from mmrs_core.scene import Area
+from mmrs_core.scene import Area, Part
 
 _AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
@@ -51,10 +51,12 @@ class Loaded:
 
     Attributes:
         place: with areas None where there is no context.
+        elements: what else the context holds, of types that plug-ins add.
     """
 
     program: Program
     place: Place
+    elements: tuple[Part, ...] = ()
 
 
 def load_behaviour(
@@ -68,7 +70,7 @@ def load_behaviour(
     """
     files = read_behaviour_files(workshop, file, context=context, robots=robots)
     program, behaviour = _valid(workshop, files)
-    return Loaded(program, _place(behaviour, files))
+    return Loaded(program, _place(behaviour, files), _elements(behaviour, files.context))
 
 
 def read_behaviour_files(
@@ -169,6 +171,13 @@ def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ..
         raise InvalidModelError("the context has no place beside the behaviour", in_order(laid.faults))
     areas = names_of(area for feature in _AREAS for area in children(context, feature))
     return tuple(area_of(area, laid, name) for area, name in areas.items())
+
+
+def _elements(behaviour: bl.Behaviour, context: contexts.Context | None) -> tuple[Part, ...]:
+    if context is None or not children(context, "elements"):
+        return ()
+    laid = ground_of(behaviour, context)
+    return tuple(part_of(element, laid) for element in children(context, "elements"))
 
 
 def _environment(context: contexts.Context) -> Mapping[str, float]:

@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from mmrs_core.scene import Name
+from mmrs_core.contributions.rules import most_specific
+from mmrs_core.scene import Metaclasses, Name
+
+_COLOUR = re.compile("#[0-9a-fA-F]{6}")
+_LONGEST_ICON = 2
+_NEUTRAL = "#3f4a3a"
+_MISSION = "urn:mmrs:mission:1.0"
 
 
 @dataclass(frozen=True, slots=True)
 class MapSymbol:
     """The look of elements of one metaclass.
 
+    An element is drawn where its grounded attributes say: a mark at each coordinate, an outline through
+    the coordinates called ``shell`` and a line through those called ``points``, each by the same names
+    as in areas and tasks. What an element contains is drawn likewise.
+
     Attributes:
         metaclass: of the elements.
         label: what people call such an element.
         colour: as ``#rrggbb``.
         icon: up to two characters that stand for it on a map.
-        fields: attributes that an editor offers first, by feature name.
+        fields: attributes that an editor offers first, and that pictures tell, by feature name.
+
+    Raises:
+        ValueError: if the colour is none, or the icon is too long.
     """
 
     metaclass: Name
@@ -24,3 +39,44 @@ class MapSymbol:
     colour: str
     icon: str
     fields: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what no map can show."""
+        if not _COLOUR.fullmatch(self.colour):
+            raise ValueError(f"{self.colour!r}: a map symbol's colour is written #rrggbb")
+        if len(self.icon) > _LONGEST_ICON:
+            raise ValueError(f"{self.icon!r}: a map symbol's icon has two characters at most")
+
+
+def has_symbol(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> bool:
+    """Return whether somebody contributed a symbol for one of the metaclasses."""
+    return most_specific(metaclasses, symbols) is not None
+
+
+def symbol_of(metaclasses: Metaclasses, symbols: Mapping[Name, MapSymbol]) -> MapSymbol:
+    """Return the symbol of the most specific metaclass that has one; else a neutral one by its own name.
+
+    >>> symbol_of((("urn:solar:1.0", "PanelGroup"),), {}).label
+    'panel group'
+    """
+    name = most_specific(metaclasses, symbols)
+    if name is not None:
+        return symbols[name]
+    own = metaclasses[0] if metaclasses else ("", "")
+    return MapSymbol(own, words_of(own[1]), _NEUTRAL, "")
+
+
+def words_of(name: str) -> str:
+    """Return the words of a metaclass's or feature's name in small letters; abbreviations stay.
+
+    >>> words_of("gridResolution"), words_of("AUVDock")
+    ('grid resolution', 'AUV dock')
+    """
+    parted = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", name)
+    return " ".join(word if word.isupper() and len(word) > 1 else word.lower() for word in parted.split())
+
+
+CORE_SYMBOLS = (
+    MapSymbol((_MISSION, "Fork"), "fork", "#3f4a3a", "⋔"),
+    MapSymbol((_MISSION, "Join"), "join", "#3f4a3a", "⋈"),
+)

@@ -66,7 +66,8 @@ def picture_of(journey: Journey) -> Picture:
     from mmrs_core.cli.preview.from_plan import picture_of_plan
     from mmrs_core.cli.preview.moves import with_moves
 
-    return with_moves(picture_of_plan(journey.scene, journey.plan), journey.program)
+    symbols = journey.workshop.contributions.map_symbols
+    return with_moves(picture_of_plan(journey.scene, journey.plan, symbols), journey.program)
 
 
 def _of_behaviour(
@@ -77,18 +78,18 @@ def _of_behaviour(
     assume: list[str] | None,
 ) -> Picture:
     from mmrs_core.cli.behaviours import load_behaviour
-    from mmrs_core.cli.preview.from_run import picture_of_run
+    from mmrs_core.cli.preview.from_run import Surroundings, picture_of_run
     from mmrs_core.cli.simulation import answers, fly
 
     conditions = answers(assume)
     loaded = load_behaviour(workshop, file, context=context, robots=robots)
-    run = fly(workshop, loaded.program, loaded.place, conditions)
     program, place = loaded.program, loaded.place
-    clearances = [
-        place.types[robot.type_name].half_diagonal + program.position_error for robot in program.robots
-    ]
-    kinds = workshop.contributions.move_kinds
-    return picture_of_run(program, run.records, run.tracks, kinds, place.areas or (), clearances)
+    run = fly(workshop, program, place, conditions)
+    around = Surroundings(place.areas or (), loaded.elements, place.types)
+    contributed = workshop.contributions
+    return picture_of_run(
+        program, run.records, run.tracks, contributed.move_kinds, contributed.map_symbols, around
+    )
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import dist
 
@@ -11,10 +12,12 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotP
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.preview.figures import clock, length
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
-from mmrs_core.cli.preview.places import origin_of, zones_of
+from mmrs_core.cli.preview.places import origin_of, symbol_of_robot, zones_of
+from mmrs_core.cli.preview.things import things_of
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind, most_specific
-from mmrs_core.scene import Area, Name, Position
+from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.scene import Area, Name, Part, Position, RobotType
 
 _STANDSTILL = 1e-3
 _HOLD = (BEHAVIOUR, "HoldPosition")
@@ -22,13 +25,28 @@ _RECHARGE = (BEHAVIOUR, "Recharge")
 _STATES = {"airborne": "launch", "grounded": "recover"}
 
 
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a run took place in, as far as it is known.
+
+    Attributes:
+        areas: of the place, as drawn.
+        elements: context elements of plug-ins.
+        types: of the robots, by name.
+    """
+
+    areas: tuple[Area, ...] = ()
+    elements: tuple[Part, ...] = ()
+    types: Mapping[str, RobotType] = field(default_factory=dict)
+
+
 def picture_of_run(
     program: Program,
     records: Iterable[StepRecord],
     tracks: Mapping[str, Sequence[Sample]],
     move_kinds: Mapping[Name, MoveKind],
-    areas: Iterable[Area] = (),
-    clearances: Iterable[float] = (),
+    symbols: Mapping[Name, MapSymbol],
+    surroundings: Surroundings,
 ) -> Picture:
     """Return what to show of a run.
 
@@ -37,20 +55,28 @@ def picture_of_run(
         records: the run's steps; those of one robot in the order of its log.
         tracks: by robot, the way that it came.
         move_kinds: what tells launches and recoveries apart from other moves.
-        areas: of the place, as drawn.
-        clearances: of each robot without the areas' safety distances, metres.
+        symbols: how things look, by metaclass.
+        surroundings: what it took place in.
     """
     by_robot: dict[str, list[StepRecord]] = {robot.id: [] for robot in program.robots}
     for record in records:
         by_robot[record.robot].append(record)
+    types = surroundings.types
     robots = tuple(
-        _robot(robot, by_robot[robot.id], tracks.get(robot.id, ()), move_kinds) for robot in program.robots
+        replace(
+            _robot(robot, by_robot[robot.id], tracks.get(robot.id, ()), move_kinds),
+            symbol=symbol_of_robot(types[robot.type_name], symbols) if robot.type_name in types else None,
+        )
+        for robot in program.robots
     )
+    known = (types[robot.type_name] for robot in program.robots if robot.type_name in types)
+    clearances = [robot_type.half_diagonal + program.position_error for robot_type in known]
     return Picture(
         title=program.name,
         origin=origin_of(program.frame),
         robots=robots,
-        zones=zones_of(areas, clearances),
+        zones=zones_of(surroundings.areas, clearances),
+        things=things_of(surroundings.elements, symbols),
         handovers=tuple(_handovers(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )
@@ -86,12 +112,15 @@ def _legs(
     for begin, end in _movements(records):
         points = _way(track, begin.time, end.time)
         move = moves[begin.move]
-        if len(points) < 2 or sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL:
+        if not points:
             continue
         done = tuple(_at(track, time) for name, time in acts if name == move.id)
-        yield Leg(
-            _kind(move, kinds), points, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}"
-        )
+        stays = sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL
+        if stays and not done and (move.is_a(_RECHARGE) or not move.is_a(_HOLD)):
+            continue
+        kind = "hold" if stays and move.is_a(_HOLD) else _kind(move, kinds)
+        way = points[:1] if stays else points
+        yield Leg(kind, way, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}")
 
 
 def _movements(records: Sequence[StepRecord]) -> Iterator[tuple[StepRecord, StepRecord]]:

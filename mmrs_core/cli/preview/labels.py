@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
+from math import hypot, inf
 
 from mmrs_core.cli.preview.markup import element, text, title
 from mmrs_core.scene import Point
@@ -12,6 +14,13 @@ FONT = 12.0
 _WIDTH_OF_A_LETTER = 0.58
 _LONGEST = 34
 _STEP = FONT * 1.25
+_SAMPLE = 10.0
+_FARTHEST = 4
+_SHARES = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)
+_COVERING = 100.0
+_CROSSING = 1.5
+_OUTSIDE = 30.0
+_FARTHER = 3.0
 
 
 def shortened(words: str, longest: int = _LONGEST) -> str:
@@ -24,50 +33,104 @@ def width_of(words: str, size: float = FONT) -> float:
     return len(words) * size * _WIDTH_OF_A_LETTER
 
 
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom in pixels."""
+
+
 @dataclass(slots=True)
 class Labels:
-    """Words placed so far, within a picture of that width in pixels."""
+    """Words placed so far, within a picture of that size in pixels."""
 
     width: float
-    _taken: list[tuple[float, float, float, float]] = field(default_factory=list)
+    height: float = inf
+    _taken: list[Box] = field(default_factory=list)
+    _lines: list[Point] = field(default_factory=list)
     _markup: list[str] = field(default_factory=list)
 
-    def keep_off(self, at: Point, reach: float) -> None:
-        """Keep later words off a square around a point."""
-        self._taken.append((at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach))
+    def keep_off(self, box: Box) -> None:
+        """Keep later words off a box."""
+        self._taken.append(box)
 
-    def put(self, words: str, at: Point, kind: str, *, colour: str | None = None, tip: str = "") -> None:
-        """Place words centred near a point: where they cover nothing, as near as can be."""
+    def avoid(self, line: Iterable[Point]) -> None:
+        """Place later words where they cover little of a line."""
+        for (x1, y1), (x2, y2) in pairwise(line):
+            count = int(hypot(x2 - x1, y2 - y1) / _SAMPLE) + 1
+            self._lines += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count) for i in range(count)]
+
+    def put(
+        self,
+        words: str,
+        around: Box,
+        kind: str,
+        *,
+        colour: str | None = None,
+        tip: str = "",
+        icon: tuple[str, str] = ("", ""),
+    ) -> None:
+        """Place words on what they name if it is large enough, else beside it: where they cover least.
+
+        Args:
+            words: cut with an ellipsis where they are too long.
+            around: what they name.
+            kind: class of the style.
+            colour: of the words; None: the style's.
+            tip: shown when the pointer rests on them.
+            icon: what stands before them, and its colour.
+        """
         shown = shortened(words)
-        half = width_of(shown) / 2
-        places = [self._inside(place, half) for place in _places(at, half)]
-        x, y = next((place for place in places if self._free(place, half)), places[0])
-        self._taken.append((x - half, y - FONT, x + half, y + 3))
-        hint = title(tip) if tip else ""
+        before = f"{icon[0]}\u00a0" if icon[0] else ""
+        half = width_of(before + shown) / 2
+        places = [(rank, self._inside(place, half)) for rank, place in _places(around, half)]
+        _, (x, y) = min((self._cost(rank, place, half), place) for rank, place in places)
+        self._taken.append(_box((x, y), half))
         attributes = {"class": f"label {kind}", "x": x, "y": y, "fill": colour, "text_anchor": "middle"}
-        self._markup.append(element("text", attributes, text(shown), hint))
+        sign = element("tspan", {"class": "icon", "fill": icon[1]}, text(before)) if before else ""
+        self._markup.append(element("text", attributes, sign, text(shown), title(tip) if tip else ""))
 
     def markup(self) -> str:
         """Return all of them."""
         return "".join(self._markup)
 
     def _inside(self, place: Point, half: float) -> Point:
-        return min(max(place[0], half + 4), max(self.width - half - 4, half + 4)), place[1]
+        x = min(max(place[0], half + 4), max(self.width - half - 4, half + 4))
+        return x, min(max(place[1], FONT + 2), max(self.height - 5, FONT + 2))
 
-    def _free(self, place: Point, half: float) -> bool:
-        left, top, right, bottom = place[0] - half, place[1] - FONT, place[0] + half, place[1] + 3
-        return all(
-            right < taken[0] or left > taken[2] or bottom < taken[1] or top > taken[3]
+    def _cost(self, rank: float, place: Point, half: float) -> float:
+        left, top, right, bottom = _box(place, half)
+        covered = sum(
+            not (right < taken[0] or left > taken[2] or bottom < taken[1] or top > taken[3])
             for taken in self._taken
         )
+        crossed = sum(left < x < right and top < y < bottom for x, y in self._lines)
+        return _COVERING * covered + _CROSSING * crossed + rank
 
 
-def _places(at: Point, half: float) -> Iterator[Point]:
-    """Yield places for words, the best first: at the point, then around it, ever farther away."""
-    yield at
-    for ring in range(1, 5):
-        for side in (1, -1):
-            yield at[0], at[1] + side * ring * _STEP
-        for side in (1, -1):
-            yield at[0] + side * (half + ring * FONT), at[1]
-            yield at[0] + side * (half + ring * FONT), at[1] - ring * _STEP
+def _box(place: Point, half: float) -> Box:
+    return place[0] - half, place[1] - FONT, place[0] + half, place[1] + 3
+
+
+def around(at: Point, reach: float, above: float = 0.0) -> Box:
+    """Return the box that reaches so far from a point to all sides, and farther above."""
+    return at[0] - reach, at[1] - reach - above, at[0] + reach, at[1] + reach
+
+
+def _places(around: Box, half: float) -> Iterator[tuple[float, Point]]:
+    """Yield (rank, place) for words: on what they name, then beside it, ever farther away."""
+    left, top, right, bottom = around
+    x, y = (left + right) / 2, (top + bottom) / 2
+    room = right - left > 2 * half and bottom - top > 2 * FONT
+    if room:
+        aside, rows = (right - left) / 2 - half, (bottom - top) / 2 - FONT
+        for i, share in enumerate(_SHARES):
+            up = y + 4 + share * rows
+            yield from ((i / 2 + j / 2, (x + part * aside, up)) for j, part in enumerate(_SHARES))
+    rank = _OUTSIDE if room else 0.0
+    for ring in range(_FARTHEST):
+        out = ring * _STEP
+        rank += _FARTHER
+        yield rank, (x, top - 5 - out)
+        yield rank, (x, bottom + FONT + 3 + out)
+        for beside in (right + half + 5 + out, left - half - 5 - out):
+            yield rank + 0.5, (beside, y + 4)
+            yield rank + 0.7, (beside, top - 5)
+            yield rank + 0.7, (beside, bottom + FONT)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.cli.preview.labels import shortened, width_of
+from mmrs_core.cli.preview.map_places import badge
 from mmrs_core.cli.preview.markup import element, number, text
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.cli.preview.projection import Projection
+from mmrs_core.cli.preview.signs import symbols_in
 
 _ROW = 24.0
 _SAMPLE = 34.0
@@ -36,7 +38,7 @@ def legend_markup(picture: Picture, projection: Projection) -> str:
 def _rows(picture: Picture, width: float) -> Iterator[list[Entry]]:
     row: list[Entry] = []
     used = _MARGIN
-    for entry in (*_robots(picture), *_signs()):
+    for entry in (*_robots(picture), *_signs(), *_symbols(picture)):
         needed = _SAMPLE + 8 + width_of(entry[1]) + _GAP
         if row and used + needed > width:
             yield row
@@ -70,3 +72,9 @@ def _signs() -> Iterator[Entry]:
     yield element("path", {"class": "zone emergency", "d": "M0-7H34V7H0Z"}), "emergency area"
     yield element("path", {"class": "task area", "d": "M0-7H34V7H0Z"}), "task"
     yield element("path", {"class": "home", "d": "M10 7v-8l7-6l7 6v8Z", "fill": "#333"}), "home"
+    yield element("circle", {"class": "stay", "cx": 17, "r": 5.5, "stroke": "#333"}), "stays"
+
+
+def _symbols(picture: Picture) -> Iterator[Entry]:
+    for symbol in symbols_in(picture):
+        yield badge(symbol, (17.0, 0.0)), shortened(symbol.label)

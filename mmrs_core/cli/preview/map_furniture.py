@@ -19,6 +19,13 @@ def grid(projection: Projection) -> Iterator[str]:
         yield element("path", {"d": f"M{projection.line(ends)}"})
 
 
+def furniture_places(projection: Projection) -> tuple[tuple[float, float, float, float], ...]:
+    """Return what scale bar and north arrow cover: left, top, right, bottom in pixels."""
+    width = projection.bar_length() * projection.scale
+    bottom = projection.height
+    return (10.0, bottom - 42, 26.0 + width, bottom), (projection.width - 44, 6.0, projection.width - 8, 62.0)
+
+
 def furniture(projection: Projection) -> Iterator[str]:
     """Yield scale bar and north arrow."""
     metres = projection.bar_length()

@@ -14,7 +14,11 @@ from mmrs_core.cli.preview.projection import Projection
 from mmrs_core.scene import Point
 
 _ARROW_EVERY = 90.0
-_KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "recover": "landing"}
+_KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "hold": "hold", "recover": "landing"}
+STAYING = ("work", "hold")
+"""The kinds of legs whose stays are marked."""
+STAY = 5.5
+"""Radius of the mark of a stay, pixels."""
 
 
 def coverage(picture: Picture, projection: Projection) -> Iterator[str]:
@@ -31,7 +35,8 @@ def robot_way(index: int, robot: RobotPicture, projection: Projection) -> str:
     style = style_of(index)
     legs = (_leg(i, leg, robot, style, projection) for i, leg in enumerate(robot.legs))
     look = {"class": "robot", "data-robot": index, "stroke": style.colour, "color": style.colour}
-    return element("g", look, legs, _arrows(robot, projection), _actions(robot, projection))
+    marks = _stays(robot, projection), _arrows(robot, projection), _actions(robot, projection)
+    return element("g", look, legs, *marks)
 
 
 def _leg(index: int, leg: Leg, robot: RobotPicture, style: Style, projection: Projection) -> str:
@@ -44,6 +49,18 @@ def _leg(index: int, leg: Leg, robot: RobotPicture, style: Style, projection: Pr
         "data-leg": index,
     }
     return element("path", attributes, title(leg_tip(robot.name, leg)))
+
+
+def _stays(robot: RobotPicture, projection: Projection) -> Iterator[str]:
+    """Yield a mark for each place at which the robot stays, which tells of all its stays there."""
+    tips: dict[Point, list[str]] = {}
+    for leg in robot.legs:
+        if leg.kind in STAYING and len({projection.place(point) for point in leg.points}) < 2:
+            x, y = projection.place(leg.points[0])
+            tips.setdefault((round(x, 1), round(y, 1)), []).append(leg_tip(robot.name, leg))
+    for (x, y), told in tips.items():
+        look = {"class": "stay", "cx": x, "cy": y, "r": STAY}
+        yield element("circle", look, title("\n".join(told)))
 
 
 def leg_tip(robot: str, leg: Leg) -> str:
@@ -88,5 +105,6 @@ def home(index: int, robot: RobotPicture, projection: Projection) -> str:
     """Return the mark of a home."""
     x, y = projection.place(robot.home)
     shape = f"M{number(x - 7)} {number(y + 7)}v-8l7-6l7 6v8Z"
+    kind = f"{robot.type_name}, {robot.symbol.label}" if robot.symbol else robot.type_name
     look = {"class": "home", "d": shape, "fill": style_of(index).colour, "data-robot": index}
-    return element("path", look, title(f"home of {robot.name} ({robot.type_name})"))
+    return element("path", look, title(f"home of {robot.name} ({kind})"))

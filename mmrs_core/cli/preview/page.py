@@ -10,20 +10,22 @@ from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
-from mmrs_core.cli.preview.picture import Picture, RobotPicture
+from mmrs_core.cli.preview.picture import Picture, RobotPicture, Thing
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.projection import projection_of
+from mmrs_core.cli.preview.signs import sign, symbols_in
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
 from mmrs_core.cli.preview.timeline import timeline_markup
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-_TALLEST = 860
+_TALLEST = 940
 _LAYERS = (
     ("coverage", "ground covered"),
     ("clearance", "clearance"),
     ("areas", "areas and obstacles"),
     ("emergency", "emergency areas"),
     ("tasks", "tasks"),
+    ("things", "things at the place"),
     ("ways", "ways"),
     ("labels", "names"),
     ("grid", "grid"),
@@ -57,6 +59,7 @@ def page(picture: Picture) -> str:
         ),
         element("section", None, element("h2", None, "Heights above the origin"), profile_markup(picture)),
         element("section", None, element("h2", None, "Robots"), _table(picture)),
+        _things(picture),
         _notes(picture),
         '<div id="tip" role="status" hidden></div>',
         _data(picture),
@@ -69,10 +72,9 @@ def page(picture: Picture) -> str:
 
 def _lead(picture: Picture) -> str:
     robots, tasks = len(picture.robots), len(picture.tasks)
-    return (
-        f"{robots} robot{'s' * (robots != 1)}, {tasks} task{'s' * (tasks != 1)}, done after "
-        f"{clock(picture.makespan)}. Origin: {picture.origin}."
-    )
+    counts = [f"{robots} robot{'s' * (robots != 1)}"]
+    counts += [f"{tasks} task{'s' * (tasks != 1)}"] if tasks else []
+    return f"{', '.join(counts)}, done after {clock(picture.makespan)}. Origin: {picture.origin}."
 
 
 def _frame(picture: Picture) -> str:
@@ -93,14 +95,16 @@ def _controls(picture: Picture) -> str:
         element("h2", None, "Shown"),
         layers,
         element("h2", None, "Key"),
-        _key(),
+        _key(picture),
         '<p class="hint">Drag to move, wheel to zoom, double click to see all.</p>',
     )
 
 
 def _robot_box(index: int, robot: RobotPicture) -> str:
     style = style_of(index)
-    words = f"{_sample(style)}<b>{text(robot.name)}</b> <small>{text(robot.type_name)}</small>"
+    icon = f"{text(robot.symbol.icon)} " if robot.symbol and robot.symbol.icon else ""
+    kind = f"{robot.type_name}, {robot.symbol.label}" if robot.symbol else robot.type_name
+    words = f"{_sample(style)}<b>{icon}{text(robot.name)}</b> <small>{text(kind)}</small>"
     return _box({"data-toggle-robot": index}, words)
 
 
@@ -119,20 +123,21 @@ def _sample(style: Style) -> str:
     return element("svg", {"class": "sample", "width": 34, "height": 12}, element("path", line))
 
 
-def _key() -> str:
+def _key(picture: Picture) -> str:
     rows = (
         ("work", "thick line: doing a task"),
         ("transit", "thin line: on the way"),
         ("action", "dot: device action"),
+        ("stay", "ring: stays here"),
         ("home", "home"),
         ("forbidden", "forbidden area"),
         ("obstacle", "obstacle"),
         ("kept", "kept clear"),
         ("emergency", "emergency area"),
-        ("task", "task"),
     )
+    signs = (element("li", None, sign(symbol), text(symbol.label)) for symbol in symbols_in(picture))
     return element(
-        "ul", {"class": "key"}, (f'<li><i class="{name}"></i>{words}</li>' for name, words in rows)
+        "ul", {"class": "key"}, (f'<li><i class="{name}"></i>{words}</li>' for name, words in rows), signs
     )
 
 
@@ -160,6 +165,29 @@ def _row(robot: RobotPicture) -> str:
     return element("tr", None, (f"<td><bdi>{text(cell)}</bdi></td>" for cell in cells))
 
 
+def _things(picture: Picture) -> str:
+    """Return a table of what the place holds, with what is not on the map."""
+    if not picture.things:
+        return ""
+    head = element("tr", None, (element("th", None, title) for title in ("thing", "kind", "")))
+    rows = (
+        element("tr", None, (f"<td><bdi>{text(cell)}</bdi></td>" for cell in _thing_cells(thing)))
+        for thing in picture.things
+        if thing.name
+    )
+    table = element("div", {"class": "wide"}, element("table", None, head, rows))
+    return element("section", None, element("h2", None, "At the place"), table)
+
+
+def _thing_cells(thing: Thing) -> tuple[str, str, str]:
+    details = [f"{what}: {words}" for what, words in thing.details]
+    return (
+        thing.name,
+        thing.symbol.label,
+        "; ".join(details if thing.points else [*details, "without a place"]),
+    )
+
+
 def _notes(picture: Picture) -> str:
     if not picture.notes:
         return ""
@@ -181,6 +209,7 @@ def _data(picture: Picture) -> str:
                     "tip": leg_tip(robot.name, leg),
                 }
                 for leg in robot.legs
+                if not leg.aside
             ],
         }
         for index, robot in enumerate(picture.robots)

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from math import inf
+from typing import TypeAlias
 
+from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import AreaUse, Point, Position, Ring
+
+Details: TypeAlias = tuple[tuple[str, str], ...]
+"""What else to tell of something: (what, how much), in words."""
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A stretch that a robot travels.
+    """A stretch that a robot travels, or a place at which it stays.
 
     Attributes:
-        kind: ``launch``, ``transit``, ``work`` or ``recover``.
-        points: (east, north, up), at least one.
+        kind: ``launch``, ``transit``, ``work``, ``hold`` or ``recover``.
+        points: (east, north, up), at least one; where it stays, only one.
         covered: the ground that it covers, as rings that all turn the same way.
         actions: where device actions are done.
         note: more to say about it, one line; may be empty.
         moves: which moves of the behaviour it is; empty where that is not known.
+        aside: whether it is on a way of a choice that is not the longest of its ways.
     """
 
     kind: str
@@ -30,11 +37,17 @@ class Leg:
     actions: tuple[Position, ...] = ()
     note: str = ""
     moves: str = ""
+    aside: bool = False
+
+    @property
+    def stays(self) -> bool:
+        """Return whether the robot stays where it is."""
+        return len(set(self.points)) < 2
 
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A stretch of a robot's time; `kind` as a leg's, or ``wait``, ``hold`` or ``recharge``."""
+    """A stretch of a robot's time; `kind` as a leg's, or ``wait``, ``recharge`` or ``choice``."""
 
     kind: str
     begin: float
@@ -44,13 +57,34 @@ class Bar:
 
 
 @dataclass(frozen=True, slots=True)
+class Arm:
+    """One of the ways that a robot may choose.
+
+    Attributes:
+        words: when it is taken, such as ``if windy`` or ``otherwise``.
+        level: how many choices it is inside of, beside its own.
+        longest: whether none of the other ways takes longer; one of each choice's ways is.
+    """
+
+    words: str
+    begin: float
+    end: float
+    bars: tuple[Bar, ...]
+    level: int = 0
+    longest: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class RobotPicture:
     """One robot: where it starts, what it travels, what it does when.
 
     Attributes:
-        heights: (time, up), ascending in time: its altitude profile.
+        bars: what it does when; a choice is one bar.
+        heights: (time, up), ascending in time: its altitude profile; of a choice, the longest way's.
         floor, ceiling: heights that it keeps between; infinite where it has none.
         summary: (what, how much) for the table beneath the picture.
+        arms: the ways of its choices, in the order in which they are tested; inner ones after their outer.
+        symbol: of its kind, if anybody contributed one.
     """
 
     name: str
@@ -61,7 +95,9 @@ class RobotPicture:
     heights: tuple[tuple[float, float], ...]
     floor: float = -inf
     ceiling: float = inf
-    summary: tuple[tuple[str, str], ...] = ()
+    summary: Details = ()
+    arms: tuple[Arm, ...] = ()
+    symbol: MapSymbol | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,19 +124,44 @@ class TaskPicture:
     """A task on the map and in time.
 
     Attributes:
-        kind: what people call such a task.
+        symbol: how such a task looks, and what people call it.
         rings: outlines of an area, the shell first; empty for other tasks.
         line: of a task along a line; empty for other tasks. point: of a task at a point.
         begin, end: seconds; None where it is not planned.
     """
 
     name: str
-    kind: str
+    symbol: MapSymbol
     rings: tuple[Ring, ...] = ()
     line: tuple[Point, ...] = ()
     point: Point | None = None
     begin: float | None = None
     end: float | None = None
+    details: Details = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something at the place that robots need not keep away from: a context element of a plug-in.
+
+    Attributes:
+        name: empty for something without one that is part of another thing.
+        outlines: not closed. lines: polylines. marks: single points. All (east, north), metres.
+        inner: whether it is part of another thing.
+    """
+
+    name: str
+    symbol: MapSymbol
+    outlines: tuple[Ring, ...] = ()
+    lines: tuple[tuple[Point, ...], ...] = ()
+    marks: tuple[Point, ...] = ()
+    details: Details = ()
+    inner: bool = False
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Return all points that it has; none where it has no place."""
+        return tuple(chain(self.marks, *self.outlines, *self.lines))
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +196,7 @@ class Picture:
     robots: tuple[RobotPicture, ...]
     zones: tuple[Zone, ...] = ()
     tasks: tuple[TaskPicture, ...] = ()
+    things: tuple[Thing, ...] = ()
     handovers: tuple[Handover, ...] = ()
     makespan: float = 0.0
     notes: tuple[str, ...] = ()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from math import isfinite
 
 from mmrs_core.cli.preview.picture import TaskPicture, Zone
+from mmrs_core.cli.preview.things import details_of, point_of, points_of
+from mmrs_core.contributions.symbols import MapSymbol, has_symbol, symbol_of
 from mmrs_core.geometry.clearance import grow, shrink
 from mmrs_core.geometry.polygons import parts, rings
-from mmrs_core.scene import Area, AreaUse, Frame, Part, Point, Ring, Scene, Task, Value
+from mmrs_core.scene import Area, AreaUse, Frame, Name, Part, Ring, RobotType, Scene, Task, Value
 
 
 def origin_of(frame: Frame) -> str:
@@ -37,46 +38,49 @@ def _zone(area: Area, clearance: float) -> Zone:
 
 
 def task_pictures(
-    scene: Scene, begins: Mapping[str, float], ends: Mapping[str, float]
+    scene: Scene,
+    begins: Mapping[str, float],
+    ends: Mapping[str, float],
+    symbols: Mapping[Name, MapSymbol],
 ) -> tuple[TaskPicture, ...]:
     """Return the tasks, those without a place (Fork, Join) included.
 
     A task's place is found by the shape of its attributes: ``shell`` and ``holes`` make an area,
     ``points`` a line, ``point`` a point, whichever plug-in the task comes from.
     """
-    return tuple(_task_picture(task, begins.get(task.name), ends.get(task.name)) for task in scene.tasks)
+    return tuple(
+        _task_picture(
+            task, begins.get(task.name), ends.get(task.name), symbol_of(task.part.metaclasses, symbols)
+        )
+        for task in scene.tasks
+    )
 
 
-def _task_picture(task: Task, begin: float | None, end: float | None) -> TaskPicture:
+def _task_picture(task: Task, begin: float | None, end: float | None, symbol: MapSymbol) -> TaskPicture:
     attributes = task.part.attributes
-    shell = _points(attributes.get("shell"))
+    shell = points_of(attributes.get("shell"))
     return TaskPicture(
         name=task.name,
-        kind=task.part.metaclasses[0][1] if task.part.metaclasses else "",
+        symbol=symbol,
         rings=(shell, *_holes(attributes.get("holes"))) if shell else (),
-        line=_points(attributes.get("points")),
-        point=_point(attributes.get("point")),
+        line=points_of(attributes.get("points")),
+        point=point_of(attributes.get("point")),
         begin=begin,
         end=end,
+        details=details_of(task.part, symbol),
     )
+
+
+def symbol_of_robot(robot_type: RobotType, symbols: Mapping[Name, MapSymbol]) -> MapSymbol | None:
+    """Return the symbol of a robot's type, else that of how it moves; None where neither has one."""
+    for metaclasses in (robot_type.metaclasses, robot_type.capability_metaclasses):
+        if has_symbol(metaclasses, symbols):
+            return symbol_of(metaclasses, symbols)
+    return None
 
 
 def _holes(value: Value) -> Iterator[Ring]:
     for hole in value if isinstance(value, tuple) else ():
-        ring = _points(hole.attributes.get("points") if isinstance(hole, Part) else hole)
+        ring = points_of(hole.attributes.get("points") if isinstance(hole, Part) else hole)
         if ring:
             yield ring
-
-
-def _points(value: Value) -> tuple[Point, ...]:
-    found = tuple(_point(item) for item in value) if isinstance(value, tuple) else ()
-    return tuple(point for point in found if point is not None)
-
-
-def _point(value: Value) -> Point | None:
-    if not isinstance(value, tuple) or len(value) != 3:
-        return None
-    east, north = value[0], value[1]
-    if isinstance(east, float | int) and isinstance(north, float | int) and isfinite(east + north):
-        return float(east), float(north)
-    return None

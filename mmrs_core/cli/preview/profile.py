@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
-from mmrs_core.cli.preview.crossings import Crossing, crossings
+from mmrs_core.cli.preview.crossings import Crossing, corners, crossings
 from mmrs_core.cli.preview.figures import heights, length
 from mmrs_core.cli.preview.labels import shortened
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
-from mmrs_core.cli.preview.picture import Picture, RobotPicture
+from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH, TimeAxis
 
 _ROW = 92.0
@@ -60,6 +60,7 @@ def profile_markup(picture: Picture) -> str:
 
 def _range(picture: Picture) -> tuple[float, float]:
     ups = [up for robot in picture.robots for _, up in robot.heights] or [0.0]
+    ups += [point[2] for robot in picture.robots for leg in robot.legs if leg.aside for point in leg.points]
     if picture.surface is not None:
         ups.append(picture.surface)
     low, high = min(ups), max(ups)
@@ -79,6 +80,7 @@ def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
         _surface(picture, strip),
         _limits(robot, strip),
         _line(index, robot, axis, strip),
+        (_aside(leg, robot, axis, strip, style_of(index).colour) for leg in robot.legs if leg.aside),
         element("text", name, text(shortened(robot.name, _NAMES))),
     )
 
@@ -132,3 +134,11 @@ def _line(index: int, robot: RobotPicture, axis: TimeAxis, strip: _Strip) -> str
     dashes = {"stroke_dasharray": style.dashes or None}
     line = {"class": "height", "d": f"M{way}", "stroke": style.colour}
     return element("path", {**line, **dashes}, element("title", None, text(f"height of {robot.name}")))
+
+
+def _aside(leg: Leg, robot: RobotPicture, axis: TimeAxis, strip: _Strip, colour: str) -> str:
+    """Return the heights on a way of a choice that is not the longest."""
+    ends = ((axis.at(time), strip.at(up)) for time, (_, _, up) in corners(leg))
+    way = "L".join(f"{number(x)} {number(y)}" for x, y in ends)
+    line = {"class": "height aside", "d": f"M{way}", "stroke": colour}
+    return element("path", line, element("title", None, text(f"height of {robot.name}, {leg.note}")))

@@ -11,7 +11,9 @@ from mmrs_core.cli.preview.markup import number
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.scene import Point, Position
 
-_LONGEST_SIDE = 1000.0
+WIDTH = 1000.0
+_NARROWEST = 1.25
+_FLATTEST = 2.4
 _SMALLEST_EXTENT = 10.0
 _PADDING = 0.07
 _REACH = 0.35
@@ -67,22 +69,28 @@ class Projection:
 
 
 def projection_of(picture: Picture) -> Projection:
-    """Return a projection that shows all robots and tasks, and the zones as far as they are near."""
+    """Return a projection that shows all robots and tasks, and zones and things as far as they are near.
+
+    All maps are equally wide; a place that is higher than a page, or too flat, is shown with more ground.
+    """
     points = list(_points(picture)) or [(0.0, 0.0)]
     west, east = _span(p[0] for p in points)
     south, north = _span(p[1] for p in points)
     reach = _REACH * max(east - west, north - south)
     near = [
         (_clip(p[0], west - reach, east + reach), _clip(p[1], south - reach, north + reach))
-        for zone in picture.zones
-        for p in zone.shell
-        if _touches(zone.shell, west - reach, south - reach, east + reach, north + reach)
+        for shape in (*(zone.shell for zone in picture.zones), *(thing.points for thing in picture.things))
+        for p in shape
+        if _touches(shape, west - reach, south - reach, east + reach, north + reach)
     ]
     west, east = _span(chain((west, east), (p[0] for p in near)))
     south, north = _span(chain((south, north), (p[1] for p in near)))
     padding = _PADDING * max(east - west, north - south)
     west, south, east, north = west - padding, south - padding, east + padding, north + padding
-    return Projection(west, south, east, north, _LONGEST_SIDE / max(east - west, north - south))
+    more = max(_NARROWEST * (north - south) - (east - west), 0.0) / 2
+    west, east = west - more, east + more
+    more = max((east - west) / _FLATTEST - (north - south), 0.0) / 2
+    return Projection(west, south - more, east, north + more, WIDTH / (east - west))
 
 
 def _points(picture: Picture) -> Iterable[Point]:

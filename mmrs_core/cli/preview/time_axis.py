@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mmrs_core.cli.preview.figures import clock
 from mmrs_core.cli.preview.markup import element, text
 
-LEFT = 130.0
+LEFT = 172.0
 RIGHT = 24.0
 WIDTH = 1000.0
 _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 28800, 86400)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import accumulate
 
 from mmrs_core.cli.preview.figures import clock
 from mmrs_core.cli.preview.labels import shortened, width_of
+from mmrs_core.cli.preview.map_places import task_tip
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
-from mmrs_core.cli.preview.picture import Bar, Handover, Picture, RobotPicture, TaskPicture
+from mmrs_core.cli.preview.picture import Arm, Bar, Handover, Picture, RobotPicture, TaskPicture
 from mmrs_core.cli.preview.time_axis import LEFT, WIDTH, TimeAxis
 
 _ROW = 40.0
 _BAR = 22.0
+_ARM_ROW = 18.0
+_ARM_BAR = 12.0
 _TASK_ROW = 22.0
 _TASK_BAR = 12.0
 _GAP = 16.0
 _TOP = 8.0
-_NAMES = 20
+_NAMES = 22
 _BULGE = 26.0
 _WHATS = {
     "launch": "takes off",
@@ -27,6 +31,7 @@ _WHATS = {
     "wait": "waits",
     "hold": "holds",
     "recharge": "recharges",
+    "choice": "chooses",
 }
 
 
@@ -35,8 +40,9 @@ def timeline_markup(picture: Picture) -> str:
     axis = TimeAxis(picture.makespan or 1.0)
     tasks = [task for task in picture.tasks if task.begin is not None and task.end is not None]
     start = _TOP + len(tasks) * _TASK_ROW + (_GAP if tasks else 0)
-    bottom = start + len(picture.robots) * _ROW
-    rows = {robot.name: start + i * _ROW + _ROW / 2 for i, robot in enumerate(picture.robots)}
+    heights = (_ROW + len(robot.arms) * _ARM_ROW for robot in picture.robots)
+    *tops, bottom = accumulate(heights, initial=start)
+    rows = {robot.name: top + _ROW / 2 for robot, top in zip(picture.robots, tops, strict=True)}
     height = bottom + 26
     children = (
         element("title", None, "timeline"),
@@ -55,20 +61,22 @@ def timeline_markup(picture: Picture) -> str:
 def _task_row(task: TaskPicture, axis: TimeAxis, middle: float) -> str:
     begin, end = task.begin or 0.0, task.end or 0.0
     name = {"class": "task-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end"}
-    words = element("text", name, text(shortened(task.name, _NAMES)))
-    title = element("title", None, text(f"{task.name}: {task.kind}, {clock(begin)} to {clock(end)}"))
+    sign = element("tspan", {"class": "icon", "fill": task.symbol.colour}, text(task.symbol.icon + "\u00a0"))
+    words = element("text", name, sign if task.symbol.icon else "", text(shortened(task.name, _NAMES)))
+    title = element("title", None, text(task_tip(task)))
+    colour = {"fill": task.symbol.colour}
     left, right = axis.at(begin), axis.at(end)
     if right - left < 1:
         diamond = f"M{number(left)} {number(middle - 6)}l6 6l-6 6l-6-6Z"
-        return words + element("path", {"class": "task-mark", "d": diamond}, title)
+        return words + element("path", {"class": "task-mark", "d": diamond, **colour}, title)
     bar = {"x": left, "y": middle - _TASK_BAR / 2, "width": right - left, "height": _TASK_BAR, "rx": 3}
-    return words + element("rect", {"class": "task-bar", **bar}, title)
+    return words + element("rect", {"class": "task-bar", **bar, **colour}, title)
 
 
 def _row(index: int, robot: RobotPicture, axis: TimeAxis, middle: float) -> str:
     colour = style_of(index).colour
     name = {"class": "robot-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end", "fill": colour}
-    bars = (_bar(robot.name, bar, axis, middle) for bar in robot.bars)
+    bars = (_bar(robot.name, bar, axis, middle, _BAR) for bar in robot.bars)
     base = element("line", {"class": "row", "x1": LEFT, "x2": axis.at(axis.end), "y1": middle, "y2": middle})
     words = element("text", name, text(shortened(robot.name, _NAMES)))
     return element(
@@ -77,13 +85,34 @@ def _row(index: int, robot: RobotPicture, axis: TimeAxis, middle: float) -> str:
         words,
         base,
         bars,
-        task_words(robot, axis, middle),
+        task_words(robot.bars, axis, middle),
+        (_arm(robot.name, arm, axis, middle + _ROW / 2, i) for i, arm in enumerate(robot.arms)),
     )
 
 
-def _bar(robot: str, bar: Bar, axis: TimeAxis, middle: float) -> str:
+def _arm(robot: str, arm: Arm, axis: TimeAxis, below: float, index: int) -> str:
+    """Return one way of a choice: a row of its own beneath its robot's, joined to the choice by a frame."""
+    middle = below + (index + 0.5) * _ARM_ROW - _ARM_ROW / 4
+    left, right = axis.at(arm.begin), axis.at(arm.end)
+    name = {"class": "arm-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end"}
+    lead = "\u00b7 " * arm.level
+    tip = f"{robot} {arm.words}, {clock(arm.begin)} to {clock(arm.end)}"
+    tip += " (planned for)" if arm.longest else ""
+    top, bottom = middle - _ARM_ROW / 2, middle + _ARM_ROW / 2
+    frame = {"x": left, "y": top, "width": max(right - left, 0.8), "height": bottom - top}
+    return element(
+        "g",
+        {"class": "arm"},
+        element("text", name, text(lead + shortened(arm.words, _NAMES)), element("title", None, text(tip))),
+        element("rect", {"class": "arm-frame", **frame}, element("title", None, text(tip))),
+        (_bar(f"{robot}, {arm.words},", bar, axis, middle, _ARM_BAR) for bar in arm.bars),
+        task_words(arm.bars, axis, middle),
+    )
+
+
+def _bar(robot: str, bar: Bar, axis: TimeAxis, middle: float, highest: float) -> str:
     left, right = axis.at(bar.begin), axis.at(bar.end)
-    height = _BAR if bar.kind == "work" else _BAR * 0.55
+    height = highest if bar.kind in ("work", "choice") else highest * 0.55
     place = {"x": left, "y": middle - height / 2, "width": max(right - left, 0.8), "height": height}
     return element(
         "rect", {"class": f"bar {bar.kind}", **place}, element("title", None, text(bar_tip(robot, bar)))
@@ -97,11 +126,11 @@ def bar_tip(robot: str, bar: Bar) -> str:
     return f"{robot} " + ", ".join(part for part in parts if part)
 
 
-def stretches(robot: RobotPicture) -> Iterator[tuple[str, float, float]]:
-    """Yield (task, begin, end) of each stretch that a robot works on one task without a longer stop."""
+def stretches(bars: Iterable[Bar]) -> Iterator[tuple[str, float, float]]:
+    """Yield (task, begin, end) of each stretch of bars that serves one task without a longer stop."""
     task, begin, end = "", 0.0, 0.0
-    for bar in robot.bars:
-        if bar.kind in ("recharge", "wait") and task:
+    for bar in bars:
+        if bar.kind in ("recharge", "wait", "choice") and task:
             yield task, begin, end
             task = ""
         if bar.kind != "work":
@@ -116,9 +145,9 @@ def stretches(robot: RobotPicture) -> Iterator[tuple[str, float, float]]:
         yield task, begin, end
 
 
-def task_words(robot: RobotPicture, axis: TimeAxis, middle: float) -> Iterator[str]:
+def task_words(bars: Iterable[Bar], axis: TimeAxis, middle: float) -> Iterator[str]:
     """Yield the names of tasks over the stretches that are wide enough for them."""
-    for task, begin, end in stretches(robot):
+    for task, begin, end in stretches(bars):
         left, right = axis.at(begin), axis.at(end)
         fitting = int((right - left - 6) / width_of("m", 11.0))
         if fitting >= 4:

@@ -1,4 +1,4 @@
-"""What this plug-in contributes: six types of task, landmarks, what tasks are made of, what must hold, how all look."""
+"""What this plug-in contributes: six types of task and landmarks: their rules, constraints and looks."""
 
 from __future__ import annotations
 
@@ -48,6 +48,6 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
         MapSymbol(names.ROAD_TASK, "road", "#8a6d1f", "≋", ("altitude", "width", "inverted")),
         MapSymbol(names.OBSERVE_TASK, "observe", "#a0235d", "◉", ("duration", "deviceId", "altitude")),
         MapSymbol(names.MEASURE_TASK, "measure", "#2d7a3a", "✚", ("actionName", "spacing", "altitude")),
-        MapSymbol(names.APPROACH_TASK, "approach", "#37474f", "⌖", ("object", "distance", "tolerance")),
+        MapSymbol(names.APPROACH_TASK, "approach", "#37474f", "⊕", ("object", "distance", "tolerance")),
         MapSymbol(names.LANDMARK, "landmark", "#0e7490", "⚑", ("description",)),
     )

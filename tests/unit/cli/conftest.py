@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.cli.preview.from_plan import picture_of_plan
+from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import (
     ActionAt,
     Area,
@@ -36,6 +37,8 @@ from mmrs_core.scene import (
 SHELL = ((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (100.0, 60.0, 0.0), (0.0, 60.0, 0.0))
 SWATH = Stroke(((10.0, 5.0, 20.0), (10.0, 55.0, 20.0)), (ActionAt(0.0, "Sample"), ActionAt(25.0, "Sample")))
 ROAD = Stroke(((120.0, 0.0, 15.0), (160.0, 60.0, 15.0)))
+GRID = MapSymbol(("urn:mmrs:survey:1.0", "PhotoGridTask"), "photo grid", "#c2571a", "G", ("altitude",))
+SYMBOLS = {GRID.metaclass: GRID}
 HOMES = {"Alba": (-20.0, 0.0, 0.0), "Brezza": (-20.0, 10.0, 0.0)}
 
 
@@ -51,13 +54,13 @@ def plan() -> Plan:
 
 @pytest.fixture
 def picture(scene, plan):
-    return picture_of_plan(scene, plan)
+    return picture_of_plan(scene, plan, SYMBOLS)
 
 
 @pytest.fixture
 def picture_named():
     """Return a function: the same picture with other names."""
-    return lambda **names: picture_of_plan(scene_named(names), plan_named(names))
+    return lambda **names: picture_of_plan(scene_named(names), plan_named(names), SYMBOLS)
 
 
 def scene_named(names: dict[str, str]) -> Scene:

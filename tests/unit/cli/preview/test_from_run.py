@@ -4,14 +4,15 @@ import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram, Target, Transition
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.cli.preview.from_run import picture_of_run
+from mmrs_core.cli.preview.from_run import Surroundings, picture_of_run
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind
-from mmrs_core.scene import Area, AreaUse, Frame
+from mmrs_core.scene import Area, AreaUse, Frame, Part, RobotType
 
 GO, HOLD, START, STOP = ((BEHAVIOUR, name) for name in ("GoTo", "HoldPosition", "Start", "Stop"))
 UP = ("urn:test", "Up")
 UNICAST = ((BEHAVIOUR, "UnicastNotify"), (BEHAVIOUR, "Notify"), (BEHAVIOUR, "Action"))
+QUAD = RobotType("quad", (), (), 0.5, None, (), (), {}, Part((), {}))
 TELL = Action(UNICAST, sets=(("b", "go"),))
 SNAP = Action(((BEHAVIOUR, "DeviceAction"),), "Snap", "camera")
 KINDS = {
@@ -81,7 +82,7 @@ TRACKS = {
 def shown():
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
     tree = Area("tree", AreaUse.OBSTACLE, ((20.0, 0.0), (21.0, 0.0), (21.0, 1.0)), 0.0, 9.0, 1.0)
-    return picture_of_run(program, RECORDS, TRACKS, KINDS, [tree], [0.5])
+    return picture_of_run(program, RECORDS, TRACKS, KINDS, {}, Surroundings((tree,), types={"quad": QUAD}))
 
 
 def test_every_move_that_moves_is_a_leg(shown):
@@ -125,6 +126,6 @@ def test_the_run_ends_with_its_last_step(shown):
 
 def test_a_robot_without_track_still_has_its_times():
     program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
-    shown = picture_of_run(program, RECORDS, {}, KINDS)
+    shown = picture_of_run(program, RECORDS, {}, KINDS, {}, Surroundings())
     assert shown.robots[0].legs == ()
     assert len(shown.robots[0].bars) == 3

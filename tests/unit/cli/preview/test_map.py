@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from lxml import etree
 
-from mmrs_core.cli.preview.labels import Labels, width_of
+from mmrs_core.cli.preview.labels import Labels, around, width_of
 from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.picture import Leg, Picture, Zone
 from mmrs_core.cli.preview.projection import projection_of
@@ -95,7 +95,7 @@ def test_far_away_areas_do_not_shrink_the_map(picture):
 def test_words_do_not_cover_each_other():
     labels = Labels(400.0)
     for _ in range(4):
-        labels.put("a name", (200.0, 200.0), "name")
+        labels.put("a name", around((200.0, 200.0), 5.0), "name")
     at = [(float(e.get("x")), float(e.get("y"))) for e in etree.fromstring(f"<g>{labels.markup()}</g>")]
     wide = width_of("a name")
     pairs = [(a, b) for i, a in enumerate(at) for b in at[i + 1 :]]
