@@ -193,7 +193,9 @@ def render(
         areas=place.areas or (),
         policies=policies,
     )
-    return rendered(contributions.targets[target], given, allow_lossy=allow_lossy)
+    chosen = contributions.targets[target]
+    provider = contributions.distribution_of("targets", chosen)
+    return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider)
 
 
 def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:

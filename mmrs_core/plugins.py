@@ -67,7 +67,7 @@ def load_plugins(*, only_core: bool = False, extra: Mapping[str, object] | None 
     def declared(sort: str) -> tuple[tuple[str, Any], ...]:
         return tuple(_declared(manager, distributions, sort))
 
-    return Plugins(Contributions(declared), distributions, manager)
+    return Plugins(Contributions(declared, distributions), distributions, manager)
 
 
 def _found(only_core: bool, extra: Mapping[str, object]) -> Iterator[tuple[str, str, object]]:

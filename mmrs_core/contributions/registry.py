@@ -55,10 +55,12 @@ class Contributions:
 
     Args:
         declared: the (plug-in, descriptor) pairs of a sort, such as ``rules``, sorted by plug-in.
+        distributions: where each plug-in comes from.
     """
 
-    def __init__(self, declared: Declared) -> None:
+    def __init__(self, declared: Declared, distributions: Mapping[str, str] | None = None) -> None:
         self._declared = declared
+        self._distributions = distributions or {}
 
     @cached_property
     def metamodels(self) -> tuple[MetamodelSource, ...]:
@@ -129,6 +131,11 @@ class Contributions:
             for plugin, item in self._declared(sort)
         )
         return tuple(sorted(found, key=lambda each: (each.plugin, each.sort, each.name)))
+
+    def distribution_of(self, sort: str, item: object) -> str:
+        """Return the distribution whose plug-in contributed a descriptor; empty if none did."""
+        plugin = next((plugin for plugin, each in self._declared(sort) if each is item), "")
+        return self._distributions.get(plugin, "")
 
     def _by(self, sort: str, key: Callable[[Any], Key]) -> dict[Key, Any]:
         return by_key(sort, self._declared(sort), key)

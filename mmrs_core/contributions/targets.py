@@ -94,8 +94,9 @@ class Target:
             can be written even with losses.
         refusals: each thing of the input that the target cannot express, with robot and move; when
             there is any, nothing is rendered unless lossy output is allowed.
-        filters: Jinja2 filters beside the engine's own (``py``, ``py_lines``, ``json``,
-            ``comment``, ``cell``, ``identifier``, ``name``), by name: each encodes a value in the language that is written.
+        filters: Jinja2 filters beside the engine's own (``py``, ``py_lines``, ``json``, ``comment``,
+            ``cell``, ``identifier``, ``name``), by name: each encodes a value in the language that is
+            written.
     """
 
     name: str
