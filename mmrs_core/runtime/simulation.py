@@ -60,8 +60,12 @@ class SimulatedRobot:
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
         """Begin a movement."""
         self._catch_up(now)
-        self._move = move
         kind = self._kinds[move.id]
+        if self._state not in kind.needs:
+            needed = " or ".join(sorted(kind.needs))
+            self._fault = Fault("STATE", f"{move.kind} '{move.id}' needs it {needed}, it is {self._state}")
+            return
+        self._move = move
         if kind.leaves in ("airborne", "moving"):
             self._grounded = False
         here = self._legs[-1].finish
@@ -99,7 +103,7 @@ class SimulatedRobot:
         return True
 
     def fault(self, now: float) -> Fault | None:
-        """Return a battery that is empty or low, too much wind, or a silent device."""
+        """Return a battery that is empty or low, too much wind, a silent device, or a move out of place."""
         return self._fault or self._battery.fault(self._leg(now), now, self._flow())
 
     def next_event(self, now: float) -> float | None:
@@ -232,6 +236,13 @@ class SimulatedRobot:
             return None
         direction = bearing(position, look.target.position)
         return None if direction is None else (direction - look.angle_degrees) % 360.0
+
+    @property
+    def _state(self) -> str:
+        """Return the state that moves' needs are about."""
+        if not self._kinematics.launches:
+            return "moving"
+        return "grounded" if self._grounded else "airborne"
 
     def _flow(self) -> Flow:
         """Return the velocity of what the robot moves in: the air, the water, or neither."""

@@ -139,7 +139,7 @@ def test_a_battery_also_runs_out_in_a_wait(fly):
     run = fly(
         program(
             robot("r", [hold("h", 1.0)], waits={"h": ["s"]}),
-            robot("q", [rise(1.0), hold("h", 500.0, after=(notify("r.s"),))]),
+            robot("q", [rise(1.0), hold("h", 500.0, after=(notify("r.s"),)), SINK]),
         ),
         flyer(lifetime=800.0),
     )
@@ -152,6 +152,12 @@ def test_a_battery_also_runs_out_in_a_wait(fly):
         robot_type(lifetime=100.0),
     )
     assert {fault.which for fault in swimmer.ending.faults.values()} == {"BATTERY_EMPTY"}
+
+
+def test_a_move_that_the_robot_is_in_no_state_for_is_a_fault(fly):
+    run = fly(program(robot("r", [rise(1.0)])), flyer())
+    assert run.ending.faults["r"].which == "STATE"
+    assert run.ending.faults["r"].reason == "Stop 'stop' needs it grounded or moving, it is airborne"
 
 
 def test_a_recharge_fills_the_battery(fly):
