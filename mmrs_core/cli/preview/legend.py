@@ -70,7 +70,6 @@ def _signs() -> Iterator[Entry]:
     yield element("path", {"class": "zone obstacle", "d": "M0-7H34V7H0Z"}), "obstacle"
     yield element("path", {"class": "kept obstacle", "d": "M0-7H34V7H0Z"}), "kept clear"
     yield element("path", {"class": "zone emergency", "d": "M0-7H34V7H0Z"}), "emergency area"
-    yield element("path", {"class": "task area", "d": "M0-7H34V7H0Z"}), "task"
     yield element("path", {"class": "home", "d": "M10 7v-8l7-6l7 6v8Z", "fill": "#333"}), "home"
     yield element("circle", {"class": "stay", "cx": 17, "r": 5.5, "stroke": "#333"}), "stays"
 

@@ -31,13 +31,17 @@ def words(picture: Picture, projection: Projection) -> str:
         labels.keep_off(box)
     for line in _lines(picture):
         labels.avoid([projection.place(point) for point in line])
-    for name in chain(
-        _of_robots(picture, projection), _of_tasks(picture, projection), _of_things(picture, projection)
-    ):
+    kinds = (_of_tasks, _of_things, _of_zones)
+    names = chain.from_iterable(of_kind(picture, projection) for of_kind in kinds)
+    smallest_first = sorted(names, key=lambda name: _area(name.around))
+    for name in chain(_of_robots(picture, projection), smallest_first):
         labels.put(name.words, name.around, name.kind, colour=name.colour, tip=name.tip, icon=name.icon)
-    for name in _of_zones(picture, projection):
-        labels.put(name.words, name.around, name.kind)
     return labels.markup()
+
+
+def _area(box: Box) -> float:
+    left, top, right, bottom = box
+    return (right - left) * (bottom - top)
 
 
 def _marks(picture: Picture, projection: Projection) -> Iterator[Box]:

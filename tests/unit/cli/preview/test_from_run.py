@@ -1,5 +1,7 @@
 """The picture of a run shows what the log and the track say."""
 
+from dataclasses import replace
+
 import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram, Target, Transition
@@ -7,6 +9,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.preview.from_run import Surroundings, picture_of_run
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import Area, AreaUse, Frame, Part, RobotType
 
 GO, HOLD, START, STOP = ((BEHAVIOUR, name) for name in ("GoTo", "HoldPosition", "Start", "Stop"))
@@ -92,6 +95,24 @@ def test_every_move_that_moves_is_a_leg(shown):
         ("work", 5.0, 7.0, "move there"),
     ]
     assert legs[1].points == ((0.0, 0.0, 5.0), (10.0, 0.0, 5.0))
+
+
+def test_a_hold_is_a_place_at_which_the_robot_stays(shown):
+    (leg,) = shown.robots[1].legs
+    assert (leg.kind, leg.points, leg.begin, leg.end, leg.moves) == (
+        "hold", ((0.0, 0.0, 0.0),), 8.0, 10.0, "move stay",
+    )  # fmt: skip
+
+
+def test_robots_and_things_have_their_symbols():
+    drone = MapSymbol(("urn:test", "Quad"), "drone", "#1f6fb2", "D")
+    quad = replace(QUAD, metaclasses=(drone.metaclass,))
+    tree = Part((("urn:test", "OldTree"),), {"name": "oak", "position": (1.0, 2.0, 0.0)})
+    program = Program("relay", Frame("EPSG:4326", None, None), (A, B))
+    around = Surroundings((), (tree,), {"quad": quad})
+    shown = picture_of_run(program, RECORDS, TRACKS, KINDS, {drone.metaclass: drone}, around)
+    assert shown.robots[0].symbol == drone
+    assert [(thing.name, thing.symbol.label) for thing in shown.things] == [("oak", "old tree")]
 
 
 def test_actions_are_where_the_robot_was(shown):

@@ -116,3 +116,45 @@ def test_nothing_in_the_map_comes_from_elsewhere(picture):
     without_namespace = markup.replace('xmlns="http://www.w3.org/2000/svg"', "")
     assert "http" not in without_namespace
     assert "@import" not in without_namespace
+
+
+def test_a_task_is_drawn_as_its_symbol_says(picture):
+    root = parsed(picture)
+    (area,) = with_class(root, "area")
+    assert (area.get("stroke"), area.findtext(f"{SVG}title")) == (
+        "#c2571a",
+        "field: photo grid, 0:11 to 0:31",
+    )
+    assert [icon.text for icon in with_class(root, "icon") if icon.get("fill") == "#c2571a"] == ["G\u00a0"]
+
+
+def test_every_map_is_equally_wide_and_no_higher_than_a_page(picture):
+    for stretch in ((1.0, 1.0), (1.0, 50.0), (50.0, 1.0)):
+        robots = tuple(
+            replace(
+                robot,
+                legs=tuple(
+                    replace(leg, points=tuple((e * stretch[0], n * stretch[1], u) for e, n, u in leg.points))
+                    for leg in robot.legs
+                ),
+            )
+            for robot in picture.robots
+        )
+        shown = projection_of(replace(picture, robots=robots))
+        assert abs(shown.width - 1000.0) < 1e-6
+        assert 400.0 < shown.height <= 800.001
+
+
+def test_words_are_placed_off_a_line_where_there_is_room():
+    labels = Labels(400.0, 400.0)
+    labels.avoid([(0.0, 186.0), (400.0, 186.0)])
+    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    y = float(etree.fromstring(labels.markup()).get("y"))
+    assert not y - 12 < 186.0 < y + 3
+
+
+def test_words_are_placed_on_what_is_large_enough_for_them():
+    labels = Labels(1000.0, 1000.0)
+    labels.put("a name", (300.0, 300.0, 600.0, 500.0), "name")
+    at = etree.fromstring(labels.markup())
+    assert (float(at.get("x")), float(at.get("y"))) == (450.0, 404.0)
