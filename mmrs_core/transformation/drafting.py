@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import singledispatchmethod
 
 from mmrs_core.behaviour.program import BEHAVIOUR
@@ -57,18 +58,17 @@ class _Drafting:
 
     @add.register
     def _(self, step: Transit) -> None:
+        speed = self._commanded(step.speed)
         for spec in self._kind.travel(step.route):
-            self._add(spec, step.task, "transit")
+            self._add(spec if speed is None else replace(spec, speed=speed), step.task, "transit")
 
     @add.register
     def _(self, step: Serve) -> None:
         rule = self._rules.get(step.rule)
-        cruise = self._robot.kinematics.cruise if self._robot.kinematics else step.speed
-        speed = None if abs(step.speed - cruise) < 1e-9 else step.speed
         if rule is not None and rule.moves is not None:
             specs = rule.moves(step.stroke, self._robot)
         else:
-            specs = moves_of(step.stroke, self._kind, speed)
+            specs = moves_of(step.stroke, self._kind, self._commanded(step.speed))
         for spec in specs:
             self._add(spec, step.task, step.rule)
         if step.last:
@@ -116,6 +116,11 @@ class _Drafting:
         node = self.chain.add(spec, task, rule)
         node.before.extend(self._deed(action) for action in spec.before)
         node.after.extend(self._deed(action) for action in spec.after)
+
+    def _commanded(self, speed: float | None) -> float | None:
+        """Return a speed to be commanded; None where it is the robot's cruise."""
+        cruise = self._robot.kinematics.cruise if self._robot.kinematics else speed
+        return None if speed is None or cruise is None or abs(speed - cruise) < 1e-9 else speed
 
     def _deed(self, action: ActionAt) -> UseDevice:
         device = action.device or self._only_device(action.action)

@@ -9,6 +9,7 @@ from mmrs_core.contributions.rules import RobotKind, Rule, most_specific, robot_
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Device, Kinematics, Name, Robot, Scene, Task, Work
 from mmrs_core.transformation.fitness import out_of_reach, unfit
+from mmrs_core.transformation.soundness import work_of
 
 CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
@@ -75,7 +76,7 @@ def _work(task: Task, robot: Robot, scene: Scene, rule: Rule) -> Work | str:
     if missing:
         return missing
     try:
-        return rule.work(task, robot, scene)
+        return work_of(rule, task, robot, scene)
     except InfeasibleError as error:
         return "; ".join(error.reasons)
 
