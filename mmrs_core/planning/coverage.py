@@ -7,22 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import ceil, floor
-from typing import TypeAlias
+from math import floor
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.geometry.clearance import grow
 from mmrs_core.geometry.polygons import parts, polygon, rings
-from mmrs_core.planning.strips import Swath
-from mmrs_core.planning.swaths import GRID, swaths
+from mmrs_core.planning.footprints import GRID
+from mmrs_core.planning.lines import Swath
+from mmrs_core.planning.swaths import swaths
 from mmrs_core.scene import ActionAt, Area, Coverage, Look, Point, Ring, Robot, Scene, Stroke, Work
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
@@ -56,14 +54,17 @@ def work_over(
     """Return the work that covers a polygon at one height: strokes in a good order, and the coverage.
 
     What is covered is the shell less its holes less what the robot's clearance forbids it at that
-    height. Strokes stay inside that. With an `action`, it is done along the strokes so that rectangles
-    `length` along and `width` across the stroke, centred on the actions' points, cover the same.
+    height. Strokes keep out of the latter, but may leave the shell or cross a narrow hole where that is
+    shorter. With an `action`, it is done along the strokes so that rectangles `length` along and
+    `width` across the stroke, centred on the actions' points, cover the same; the strokes then go no
+    further than their first and last action, and one with a single action may be a single point, about
+    which all that is asked for lies within half of `length` and of `width`, whichever way the robot faces.
 
     Args:
         scene: for its areas.
         robot: for its clearance. Robots of one clearance get equal works and so can share them.
         shell: of the polygon, (east, north) in metres.
-        holes: of the polygon; strokes keep out of them, hops may cross them.
+        holes: of the polygon.
         altitude: height above the origin, metres.
         width: of the strip that a stroke covers, metres, overlap taken off.
         rule: name of the rule that asks.
@@ -90,10 +91,17 @@ def work_over(
     area = sum(piece.area for piece in target)
     if not target:
         raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
-    lines = swaths(_worth(target, scene, robot, altitude), width, angle=angle, start=start)
+    closed = _closed(scene, robot, altitude)
+    lines = swaths(
+        _worth(target, closed),
+        width,
+        length=length if action is not None else 0.0,
+        closed=closed,
+        angle=angle,
+        start=start,
+    )
     strokes = tuple(
-        _stroke(line, altitude, width, length, action, device, parameters, speed, slow_down, look)
-        for line in lines
+        _stroke(line, altitude, width, action, device, parameters, speed, slow_down, look) for line in lines
     )
     covered = Coverage(
         shell=tuple(shell),
@@ -135,10 +143,13 @@ def _union(holes: Sequence[Ring]) -> shapely.Geometry:
     return shapely.union_all([polygon(hole) for hole in holes], grid_size=GRID)
 
 
-def _worth(target: tuple[Polygon, ...], scene: Scene, robot: Robot, altitude: float) -> tuple[Polygon, ...]:
-    """Return the target without tiny pockets between grown areas, which no way leads into."""
+def _closed(scene: Scene, robot: Robot, altitude: float) -> BaseGeometry:
+    return shapely.union_all(grown_areas(scene, robot, altitude), grid_size=GRID)
+
+
+def _worth(target: tuple[Polygon, ...], closed: BaseGeometry) -> tuple[Polygon, ...]:
+    """Return the target without tiny pockets between closed areas, which no way leads into."""
     whole = sum(piece.area for piece in target)
-    closed = shapely.union_all(grown_areas(scene, robot, altitude), grid_size=GRID)
     pockets = [Polygon(hole) for part in parts(closed) for hole in part.interiors]
     walled = [piece for piece in target if any(pocket.covers(piece) for pocket in pockets)]
     if sum(piece.area for piece in walled) > _POCKETS * whole:
@@ -150,7 +161,6 @@ def _stroke(
     line: Swath,
     altitude: float,
     width: float,
-    length: float,
     action: str | None,
     device: str,
     parameters: tuple[tuple[str, str], ...],
@@ -158,7 +168,7 @@ def _stroke(
     slow_down: float | None,
     look: Look | None,
 ) -> Stroke:
-    at = positions_along(line, length) if action is not None else []
+    at = line.spots
     return Stroke(
         points=tuple((float(east), float(north), altitude) for east, north in line.points),
         actions=tuple(ActionAt(where, action, device, parameters) for where in at) if action else (),
@@ -168,23 +178,6 @@ def _stroke(
         cuts=_between(at) if action is not None else _even(line.length, width),
         reversible=True,
     )
-
-
-def positions_along(line: Swath, length: float) -> list[float]:
-    """Return arc lengths such that stretches of `length` metres centred on them cover the swath.
-
-    Each leg that covers has its own positions, in its inside, so that the direction of travel at a
-    position is that of the leg.
-    """
-    legs = np.hypot(*np.diff(line.points, axis=0).T).tolist()
-    positions: list[float] = []
-    done = 0.0
-    for leg, covers in zip(legs, line.covers.tolist(), strict=True):
-        if covers:
-            count = max(1, ceil(leg / length - 1e-9))
-            positions += [done + (i + 0.5) * leg / count for i in range(count)]
-        done += leg
-    return positions
 
 
 def _between(at: Sequence[float]) -> tuple[float, ...]:

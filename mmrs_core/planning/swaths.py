@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 from typing import TypeAlias
 
@@ -14,13 +15,12 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.geometry.polygons import parts
-from mmrs_core.planning.strips import Swath, swaths_along_x
+from mmrs_core.planning.footprints import left_out
+from mmrs_core.planning.lines import Swath
+from mmrs_core.planning.strips import swaths_along_x
 from mmrs_core.planning.tours import hop_length, tour
 
 Floats: TypeAlias = NDArray[np.float64]
-
-GRID = 1e-6
-"""Metres to which overlays are rounded: unions of abutting strips lose area without it."""
 
 _ANGLES = 8
 _REPAIRS = 4
@@ -28,23 +28,36 @@ _LEFT_OUT = 1e-5
 """Share of the target that swaths may leave out: a hundredth of what is promised."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Reach:
+    """What swaths have to do with: what they cover across and along, and where they may not go."""
+
+    width: float
+    length: float
+    closed: BaseGeometry
+
+
 def swaths(
     target: Sequence[Polygon],
     width: float,
     *,
+    length: float = 0.0,
+    closed: BaseGeometry | None = None,
     angle: float | None = None,
     start: tuple[float, float] | None = None,
 ) -> list[Swath]:
-    """Return swaths inside the target, in a good order, whose footprints cover the target.
+    """Return swaths in a good order whose footprints cover the target.
 
-    The footprint of a swath is the union, over its covering legs, of rectangles as long as the leg and
-    `width` wide. The way to sweep is the best of the directions of the target's edges (the number
-    of swaths is least at one of them) and of the axes, by the length of swaths and hops and
-    the number of turns.
+    The footprint of a swath is the union, over its legs, of rectangles as long as the leg and `width`
+    wide; with a `length`, the union, over its spots, of rectangles `length` along and `width` across
+    the leg. The way to sweep is the best of promising directions, by the metres of swaths and hops and
+    the numbers of turns and actions.
 
     Args:
         target: polygons that do not overlap; concave ones and holes are welcome.
         width: metres, positive.
+        length: of what an action covers along the swath, metres; 0: the swath itself covers.
+        closed: where swaths may not go, its edge excepted; None: nowhere. Anywhere else they may.
         angle: direction of the swaths, radians from east to north; None: the best.
         start: where the first swath should be near; None: anywhere.
 
@@ -56,15 +69,16 @@ def swaths(
     pieces = [piece for piece in target if piece.area > 0.0]
     if not pieces:
         return []
-    angles = [angle] if angle is not None else sweep_angles(pieces, width)
-    sweeps = [_sweep(pieces, width, direction) for direction in angles]
-    lines = min(sweeps, key=lambda sweep: _cost(sweep, width, start)) if len(sweeps) > 1 else sweeps[0]
-    lines = _repaired(pieces, lines, width)
+    reach = _Reach(width, length, _near(closed, pieces, width))
+    angles = [angle] if angle is not None else sweep_angles(pieces)
+    sweeps = [_sweep(pieces, reach, direction) for direction in angles]
+    lines = min(sweeps, key=lambda sweep: _cost(sweep, reach, start)) if len(sweeps) > 1 else sweeps[0]
+    lines = _repaired(pieces, lines, reach)
     begins, ends = _ends(lines)
     return [lines[i].reversed() if back else lines[i] for i, back in tour(begins, ends, start)]
 
 
-def sweep_angles(pieces: Sequence[Polygon], width: float, count: int = _ANGLES) -> list[float]:
+def sweep_angles(pieces: Sequence[Polygon], count: int = _ANGLES) -> list[float]:
     """Return the most promising directions, radians in [0, pi), best first.
 
     The number of swaths at a direction u is about half the sum of |edge x u| over the width
@@ -85,57 +99,51 @@ def sweep_angles(pieces: Sequence[Polygon], width: float, count: int = _ANGLES) 
     return list(dict.fromkeys([*best, 0.0, pi / 2]))
 
 
-def footprint(lines: Sequence[Swath], width: float) -> BaseGeometry:
-    """Return the union of rectangles about the covering legs, as long as the legs and `width` wide."""
-    rectangles = [_rectangles(line, width) for line in lines]
-    return shapely.union_all(np.concatenate(rectangles), grid_size=GRID) if rectangles else Polygon()
+def _near(closed: BaseGeometry | None, pieces: Sequence[Polygon], width: float) -> BaseGeometry:
+    """Return what is closed about the pieces."""
+    if closed is None:
+        return Polygon()
+    left, bottom, right, top = shapely.total_bounds(pieces).tolist()
+    about = shapely.box(left - width, bottom - width, right + width, top + width)
+    near: BaseGeometry = shapely.intersection(closed, about)
+    return near
 
 
-def left_out(pieces: Sequence[Polygon], lines: Sequence[Swath], width: float) -> BaseGeometry:
-    """Return what no line's footprint covers."""
-    whole = shapely.union_all(list(pieces), grid_size=GRID)
-    return shapely.difference(whole, footprint(lines, width), grid_size=GRID)
-
-
-def _rectangles(line: Swath, width: float) -> NDArray[np.object_]:
-    way = np.diff(line.points, axis=0)
-    length = np.hypot(way[:, 0], way[:, 1])
-    whole = line.covers & (length > 1e-9)
-    begin, way, length = line.points[:-1][whole], way[whole], length[whole]
-    side = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None] * (width / 2)
-    corners = np.stack([begin - side, begin + way - side, begin + way + side, begin + side], axis=1)
-    return np.asarray(shapely.polygons(corners), dtype=np.object_).reshape(-1)
-
-
-def _sweep(pieces: Sequence[Polygon], width: float, angle: float) -> list[Swath]:
-    turned = [affinity.rotate(piece, -angle, origin=(0.0, 0.0), use_radians=True) for piece in pieces]
+def _sweep(pieces: Sequence[Polygon], reach: _Reach, angle: float) -> list[Swath]:
+    turned = [_turned(piece, angle) for piece in pieces]
+    closed = _turned(reach.closed, angle)
     back = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
-    return [Swath(line.points @ back, line.covers) for line in swaths_along_x(turned, width)]
+    lines = swaths_along_x(turned, reach.width, length=reach.length, closed=closed)
+    return [replace(line, points=line.points @ back) for line in lines]
+
+
+def _turned(shape: BaseGeometry, angle: float) -> BaseGeometry:
+    return affinity.rotate(shape, -angle, origin=(0.0, 0.0), use_radians=True)
 
 
 def _ends(lines: Sequence[Swath]) -> tuple[Floats, Floats]:
     return np.array([line.points[0] for line in lines]), np.array([line.points[-1] for line in lines])
 
 
-def _cost(lines: Sequence[Swath], width: float, start: tuple[float, float] | None) -> float:
-    """Return the metres of lines and hops in a quickly made order, and a width for each line's turns."""
+def _cost(lines: Sequence[Swath], reach: _Reach, start: tuple[float, float] | None) -> float:
+    """Return the metres of lines and hops in a quickly made order, with some for each turn and action."""
     if not lines:
         return float("inf")
     along = sum(line.length for line in lines)
+    stops = reach.width * len(lines) + reach.length * sum(len(line.spots) for line in lines)
     begins, ends = _ends(lines)
-    return (
-        along + width * len(lines) + hop_length(begins, ends, tour(begins, ends, start, improve=False), start)
-    )
+    order = tour(begins, ends, start, improve=False)
+    return along + stops + hop_length(begins, ends, order, start)
 
 
-def _repaired(pieces: Sequence[Polygon], lines: list[Swath], width: float) -> list[Swath]:
+def _repaired(pieces: Sequence[Polygon], lines: list[Swath], reach: _Reach) -> list[Swath]:
     """Add lines through what the lines leave out, until next to nothing is left."""
     area = sum(piece.area for piece in pieces)
     for _ in range(_REPAIRS):
-        rest = parts(left_out(pieces, lines, width), smallest=1e-7 * area)
+        rest = parts(left_out(pieces, lines, reach.width, reach.length), smallest=1e-7 * area)
         if sum(piece.area for piece in rest) <= _LEFT_OUT * area:
             return lines
-        lines = lines + [line for piece in rest for line in _sweep([piece], width, _long_side(piece))]
+        lines = lines + [line for piece in rest for line in _sweep([piece], reach, _long_side(piece))]
     return lines
 
 

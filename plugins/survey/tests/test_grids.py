@@ -26,7 +26,7 @@ def squares(work):
     for stroke in work.strokes:
         line = shapely.LineString([point[:2] for point in stroke.points])
         for action in stroke.actions:
-            a = line.interpolate(action.at - 1e-3)
+            a = line.interpolate(max(action.at - 1e-3, 0.0))
             b = line.interpolate(action.at + 1e-3)
             angle = shapely.LineString([a, b])
             (ax, ay), (bx, by) = angle.coords

@@ -37,6 +37,24 @@ def covered(work):
     return shapely.intersection(target, union, grid_size=1e-6).area / target.area
 
 
+def seen(stroke, side):
+    """The squares that the actions of a stroke cover, along the leg on which each is first met."""
+    waiting = [action.at for action in stroke.actions]
+    if len(stroke.points) == 1:
+        yield shapely.Point(stroke.points[0][:2]).buffer(side / 2)
+        return
+    done = 0.0
+    for one, two in zip(stroke.points[:-1], stroke.points[1:], strict=True):
+        line = shapely.LineString([one[:2], two[:2]])
+        while waiting and waiting[0] <= done + line.length + 1e-6:
+            share = (waiting.pop(0) - done) / line.length
+            east, north = (a + share * (b - a) for a, b in zip(one[:2], two[:2], strict=True))
+            ahead = [(b - a) / line.length * side / 2 for a, b in zip(one[:2], two[:2], strict=True)]
+            along = [(east - ahead[0], north - ahead[1]), (east + ahead[0], north + ahead[1])]
+            yield shapely.buffer(shapely.LineString(along), side / 2, cap_style="flat")
+        done += line.length
+
+
 def test_a_free_square_is_covered_whole_by_as_few_strokes_as_fit():
     work = work_over(scene(), robot(), SQUARE, altitude=20.0, width=20.0, rule="test")
     assert len(work.strokes) == 5
@@ -100,17 +118,7 @@ def test_actions_tile_the_target():
         action="sample",
         rule="test",
     )
-    tiles = []
-    for stroke in work.strokes:
-        line = shapely.LineString([p[:2] for p in stroke.points])
-        for action in stroke.actions:
-            ahead = shapely.LineString(
-                [line.interpolate(action.at - 1e-4), line.interpolate(action.at + 1e-4)]
-            )
-            here, (one, two) = line.interpolate(action.at), ahead.coords
-            east, north = (two[0] - one[0]) / 2e-4 * 6.0, (two[1] - one[1]) / 2e-4 * 6.0
-            along = shapely.LineString([(here.x - east, here.y - north), (here.x + east, here.y + north)])
-            tiles.append(shapely.buffer(along, 6.0, cap_style="flat"))
+    tiles = [each for stroke in work.strokes for each in seen(stroke, 12.0)]
     target = shapely.union_all([shapely.Polygon(*piece) for piece in work.coverage.target], grid_size=1e-6)
     union = shapely.union_all(tiles, grid_size=1e-6)
     assert shapely.intersection(target, union, grid_size=1e-6).area / target.area >= 0.9999

@@ -1,0 +1,67 @@
+"""What swaths cover, as rectangles in the plane, and what they leave out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from mmrs_core.planning.lines import Swath
+
+Floats: TypeAlias = NDArray[np.float64]
+
+GRID = 1e-6
+"""Metres to which overlays are rounded: unions of abutting strips lose area without it."""
+
+
+def footprint(lines: Sequence[Swath], width: float, length: float = 0.0) -> BaseGeometry:
+    """Return what swaths cover.
+
+    Without a `length`, that is the union of rectangles about the legs, as long as the legs and `width`
+    wide; else of rectangles `length` along and `width` across the leg, about each spot. About a single
+    point it is the circle that is covered whichever way the robot faces.
+    """
+    shapes = [_along(line, width) if length <= 0.0 else _about(line, width, length) for line in lines]
+    return shapely.union_all(np.concatenate(shapes), grid_size=GRID) if shapes else Polygon()
+
+
+def left_out(
+    pieces: Sequence[Polygon], lines: Sequence[Swath], width: float, length: float = 0.0
+) -> BaseGeometry:
+    """Return what no swath covers of the pieces."""
+    whole = shapely.union_all(list(pieces), grid_size=GRID)
+    return shapely.difference(whole, footprint(lines, width, length), grid_size=GRID)
+
+
+def _along(line: Swath, width: float) -> NDArray[np.object_]:
+    way = np.diff(line.points, axis=0)
+    return _rectangles((line.points[:-1] + line.points[1:]) / 2, way, np.hypot(way[:, 0], way[:, 1]), width)
+
+
+def _about(line: Swath, width: float, length: float) -> NDArray[np.object_]:
+    if len(line.points) == 1:
+        return np.array([Point(line.points[0]).buffer(min(width, length) / 2)], dtype=object)
+    way = np.diff(line.points, axis=0)
+    far = np.hypot(way[:, 0], way[:, 1])
+    done = np.concatenate([[0.0], np.cumsum(far)])
+    spots = np.array(line.spots)
+    leg = np.clip(np.searchsorted(done, spots - 1e-9) - 1, 0, len(way) - 1)
+    centres = line.points[leg] + way[leg] * ((spots - done[leg]) / far[leg])[:, None]
+    return _rectangles(centres, way[leg], np.full(len(spots), length), width)
+
+
+def _rectangles(centres: Floats, ways: Floats, lengths: Floats, width: float) -> NDArray[np.object_]:
+    """Return rectangles about centres, along ways; none where there is no way."""
+    far = np.hypot(ways[:, 0], ways[:, 1])
+    there = far > 1e-9
+    ahead = ways[there] / far[there, None]
+    aside = np.column_stack([-ahead[:, 1], ahead[:, 0]]) * (width / 2)
+    ahead = ahead * (lengths[there, None] / 2)
+    middle = centres[there]
+    corners = [middle - ahead - aside, middle + ahead - aside, middle + ahead + aside, middle - ahead + aside]
+    return np.asarray(shapely.polygons(np.stack(corners, axis=1)), dtype=np.object_).reshape(-1)

@@ -1,0 +1,135 @@
+"""Cuts a strip of a polygon into upright slabs: what is to be covered there, and where a robot may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+Floats: TypeAlias = NDArray[np.float64]
+Side: TypeAlias = tuple[float, float]
+"""Heights of a slanted line at the left and at the right side of a slab."""
+
+TINY = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """What lies between two lines in a slab."""
+
+    low: Side
+    high: Side
+
+    def between(self, begin: float, end: float) -> Band:
+        """Return the band between two shares (0 to 1) of the way from its left to its right side."""
+        return Band(_part(self.low, begin, end), _part(self.high, begin, end))
+
+    def around(self, other: Band) -> Band:
+        """Return the band from the lower band's lower line to the upper band's upper line."""
+        below, above = (self, other) if sum(self.low) <= sum(other.low) else (other, self)
+        return Band(below.low, above.high)
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A trapezoid between x = left and right in which a robot may be, and what is to be covered in it."""
+
+    left: float
+    right: float
+    room: Band
+    need: Band | None
+
+    def cut(self, x: float) -> tuple[Cell, Cell]:
+        """Return the parts of the cell left and right of x."""
+        share = (x - self.left) / (self.right - self.left)
+        need = self.need
+        return (
+            Cell(self.left, x, self.room.between(0.0, share), need and need.between(0.0, share)),
+            Cell(x, self.right, self.room.between(share, 1.0), need and need.between(share, 1.0)),
+        )
+
+
+def cells(target: shapely.Geometry, free: shapely.Geometry) -> list[list[Cell]]:
+    """Return the cells of a strip, by slab from left to right, from the target's one end to its other.
+
+    A cell is as high as the free space. Whatever of the target is not inside of it (by rounding) makes a
+    cell of its own. Slabs without any target are among those returned.
+
+    Args:
+        target: what is to be covered of the strip.
+        free: where a robot may be; includes the target.
+    """
+    wanted, open_space = _edges(target), _edges(free)
+    if not len(wanted):
+        return []
+    sides = np.unique(np.concatenate([wanted[:, [0, 2]].ravel(), open_space[:, [0, 2]].ravel()]))
+    sides = sides[(sides >= wanted[:, 0].min()) & (sides <= wanted[:, 2].max())]
+    sides = sides[np.concatenate([[True], np.diff(sides) > TINY])]
+    return [
+        _slab(float(left), float(right), rooms, needs)
+        for left, right, rooms, needs in zip(
+            sides[:-1], sides[1:], _bands(open_space, sides), _bands(wanted, sides), strict=True
+        )
+    ]
+
+
+def _slab(left: float, right: float, rooms: list[Band], needs: list[Band]) -> list[Cell]:
+    """Return the cells of a slab, upwards."""
+    found: list[Band | None] = [None] * len(rooms)
+    alone: list[Cell] = []
+    for need in needs:
+        middle = sum(need.low + need.high) / 4
+        place = next((i for i, room in enumerate(rooms) if _holds(room, middle)), None)
+        if place is None:
+            alone.append(Cell(left, right, need, need))
+        else:
+            before = found[place]
+            found[place] = need if before is None else before.around(need)
+    inside = [Cell(left, right, room, need) for room, need in zip(rooms, found, strict=True)]
+    return sorted([*inside, *alone], key=lambda cell: sum(cell.room.low))
+
+
+def _holds(room: Band, height: float) -> bool:
+    return sum(room.low) / 2 <= height <= sum(room.high) / 2
+
+
+def _bands(edges: Floats, sides: Floats) -> list[list[Band]]:
+    """Return what lies between the edges in each slab, upwards."""
+    left, right = sides[:-1, None], sides[1:, None]
+    centre = (left + right) / 2
+    spans = (edges[:, 0] < centre) & (edges[:, 2] > centre)
+    slope = (edges[:, 3] - edges[:, 1]) / (edges[:, 2] - edges[:, 0])
+    at = np.stack([edges[:, 1] + (x - edges[:, 0]) * slope for x in (left, centre, right)])
+    slabs = []
+    for i in range(len(sides) - 1):
+        across = np.flatnonzero(spans[i])
+        across = across[np.argsort(at[1, i, across], kind="stable")]
+        lines = list(zip(at[0, i, across].tolist(), at[2, i, across].tolist(), strict=True))
+        slabs.append([Band(*pair) for pair in zip(lines[::2], lines[1::2], strict=False)])
+    return slabs
+
+
+def _edges(shape: shapely.Geometry) -> Floats:
+    """Return (n, 4) edges (x1, y1, x2, y2) of all rings with x1 < x2; upright edges are left out."""
+    rings = [
+        shapely.get_coordinates(ring)
+        for piece in shapely.get_parts(shape)
+        if isinstance(piece, Polygon)
+        for ring in (piece.exterior, *piece.interiors)
+    ]
+    if not rings:
+        return np.empty((0, 4))
+    edges = np.concatenate([np.hstack([ring[:-1], ring[1:]]) for ring in rings])
+    backwards = edges[:, 0] > edges[:, 2]
+    edges[backwards] = edges[backwards][:, [2, 3, 0, 1]]
+    slanted: Floats = edges[edges[:, 2] - edges[:, 0] > TINY]
+    return slanted
+
+
+def _part(side: Side, begin: float, end: float) -> Side:
+    rise = side[1] - side[0]
+    return side[0] + begin * rise, side[0] + end * rise
