@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import keyword
 import re
+import unicodedata
 from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 
 _FOREIGN = re.compile(r"\W")
+_TURNS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""What changes the direction of the text around it (Unicode 15.1, annex 9), so that messages lie."""
+_NEVER_IN_NAMES = frozenset(("Cc", "Cs", "Zl", "Zp"))
+"""General categories: controls, which tabs and line breaks are, and what separates lines."""
+_UNSEEN = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp", "Zs"))
 
 
 def python_name(name: str, taken: Collection[str] = ()) -> str:
@@ -37,3 +43,19 @@ def nearest(name: str, known: Iterable[str]) -> str:
     folded = {choice.casefold(): choice for choice in choices}
     found = get_close_matches(name.casefold(), folded, n=1, cutoff=0.6)
     return f"did you mean {folded[found[0]]}?" if found else ""
+
+
+def unreadable(name: str) -> str:
+    r"""Return what people could not read a name by, in words; empty for a good name.
+
+    Letters and marks of any script are good, with the joiners that Persian, Indic scripts and emoji need.
+    Names that are good make good names when they are put together.
+
+    >>> unreadable("پایگاه\N{ZERO WIDTH NON-JOINER}ها"), unreadable("a\tb"), unreadable(" ")
+    ('', 'holds the character U+0009', 'is blank')
+    """
+    bad = next((c for c in name if c in _TURNS or unicodedata.category(c) in _NEVER_IN_NAMES), None)
+    if bad is not None:
+        return f"holds the character U+{ord(bad):04X}"
+    blank = all(unicodedata.category(each) in _UNSEEN for each in name)
+    return "is blank" if blank else ""

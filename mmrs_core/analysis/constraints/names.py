@@ -17,6 +17,7 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding_values import children, text
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.naming import unreadable
 
 
 def _tasks(mission: Element, models: ModelSet) -> Iterator[Finding]:
@@ -75,13 +76,14 @@ def _policies(owner: Element, models: ModelSet) -> Iterator[Finding]:
         seen.add(event)
 
 
-def _printable(element: Element, models: ModelSet) -> Iterator[Finding]:
+def _legible(element: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(element, "name")
-    if name and (not name.strip() or not name.isprintable()):
-        yield finding(element, "the name is blank or holds characters that cannot be seen")
+    if name and (fault := unreadable(name)):
+        yield finding(element, f"the name {fault}")
 
 
 _RENAME = "give each its own name"
+_READABLE = "write a name with something to see, on one line, without tabs or marks that turn the text round"
 _ONE_POLICY = "keep one policy for each event"
 
 CONSTRAINTS = (
@@ -98,9 +100,8 @@ CONSTRAINTS = (
         "MML011",
         "Names can be read by people.",
         (MISSION, "NamedElement"),
-        _printable,
-        "name it with letters, digits and blanks",
-        Severity.WARNING,
+        _legible,
+        _READABLE,
     ),
     Constraint(
         "CTX002",
@@ -157,6 +158,9 @@ CONSTRAINTS = (
         (BEHAVIOUR, "Robot"),
         _policies,
         _ONE_POLICY,
+    ),
+    Constraint(
+        "BL034", "The name of a slot can be read by people.", (BEHAVIOUR, "Slot"), _legible, _READABLE
     ),
     Constraint(
         "BL041",

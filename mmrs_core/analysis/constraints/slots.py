@@ -45,12 +45,6 @@ def _useless(behaviour: Element, models: ModelSet) -> Iterator[Finding]:
                 yield finding(slot, f"{called(robot)} never waits for it")
 
 
-def _blank(slot: Element, models: ModelSet) -> Iterator[Finding]:
-    name = text(slot, "name")
-    if name and (not name.strip() or not name.isprintable()):
-        yield finding(slot, "its name is blank or holds characters that cannot be seen")
-
-
 def _notifies(behaviour: Element) -> Iterator[Element]:
     return (each for each in descendants(behaviour) if is_kind(each, BEHAVIOUR, "Notify"))
 
@@ -82,12 +76,5 @@ CONSTRAINTS = (
         _useless,
         "let a transition wait for it, or take the slot away",
         Severity.WARNING,
-    ),
-    Constraint(
-        "BL034",
-        "The name of a slot can be read by people.",
-        (BEHAVIOUR, "Slot"),
-        _blank,
-        "name it with letters and digits",
     ),
 )
