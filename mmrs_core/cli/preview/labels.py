@@ -14,6 +14,7 @@ FONT = 12.0
 _WIDTH_OF_A_LETTER = 0.58
 _LONGEST = 34
 _STEP = FONT * 1.25
+_GAP = 7.0
 _SAMPLE = 10.0
 _FARTHEST = 4
 _SHARES = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)
@@ -82,7 +83,7 @@ class Labels:
         half = width_of(before + shown) / 2
         places = [(rank, self._inside(place, half)) for rank, place in _places(around, half)]
         _, (x, y) = min((self._cost(rank, place, half), place) for rank, place in places)
-        self._taken.append(_box((x, y), half))
+        self._taken.append(_box((x, y), half + _GAP))
         attributes = {"class": f"label {kind}", "x": x, "y": y, "fill": colour, "text_anchor": "middle"}
         sign = element("tspan", {"class": "icon", "fill": icon[1]}, text(before)) if before else ""
         self._markup.append(element("text", attributes, sign, text(shown), title(tip) if tip else ""))

@@ -9,7 +9,7 @@ from shapely.geometry import Polygon
 from mmrs_core.cli.preview.crossings import crossings
 from mmrs_core.cli.preview.legend import legend_height, legend_markup
 from mmrs_core.cli.preview.map_furniture import furniture, grid, patterns
-from mmrs_core.cli.preview.map_places import kept_shape, task_shape, thing_shape, zone_shape
+from mmrs_core.cli.preview.map_places import kept_shape, task_shapes, thing_shape, zone_shape
 from mmrs_core.cli.preview.map_ways import coverage, home, robot_way
 from mmrs_core.cli.preview.map_words import words
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
@@ -40,7 +40,7 @@ def _layers(picture: Picture, projection: Projection) -> Iterator[str]:
     yield element("rect", {"class": "ground", "width": projection.width, "height": projection.height})
     yield _layer("grid", grid(projection))
     yield _layer("emergency", (zone_shape(z, projection) for z in _with_use(picture, AreaUse.EMERGENCY)))
-    yield _layer("tasks", (task_shape(task, projection) for task in picture.tasks))
+    yield _layer("tasks", task_shapes(picture.tasks, projection))
     yield _layer("coverage", coverage(picture, projection))
     yield _layer("clearance", (kept_shape(zone, projection) for zone in picture.zones))
     yield _layer("areas", _barriers(picture, projection))

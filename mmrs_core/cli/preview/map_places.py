@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from math import dist
+
 from mmrs_core.cli.preview.figures import clock, heights, length
 from mmrs_core.cli.preview.markup import element, number, text, title
 from mmrs_core.cli.preview.picture import Details, TaskPicture, Thing, Zone
@@ -37,8 +40,28 @@ def kept_shape(zone: Zone, projection: Projection) -> str:
     return element("path", attributes, title(tip)) if zone.kept else ""
 
 
-def task_shape(task: TaskPicture, projection: Projection) -> str:
-    """Return a task: its area, line or point; empty for one without a place."""
+def badge_places(tasks: Iterable[TaskPicture], projection: Projection) -> dict[str, Point]:
+    """Return the pixels of the badges of tasks at points, by task: side by side where they share a point."""
+    taken: list[Point] = []
+    places: dict[str, Point] = {}
+    for task in tasks:
+        if task.point is not None and not (task.rings or task.line):
+            x, y = projection.place(task.point)
+            while any(dist((x, y), other) < BADGE for other in taken):
+                x += 2 * BADGE + 1
+            taken.append((x, y))
+            places[task.name] = (x, y)
+    return places
+
+
+def task_shapes(tasks: Iterable[TaskPicture], projection: Projection) -> Iterator[str]:
+    """Yield every task that has a place: its area, line or point."""
+    shown = tuple(tasks)
+    places = badge_places(shown, projection)
+    return (_task_shape(task, projection, places.get(task.name)) for task in shown)
+
+
+def _task_shape(task: TaskPicture, projection: Projection, at: Point | None) -> str:
     tip = title(task_tip(task))
     colour = task.symbol.colour
     if task.rings:
@@ -47,7 +70,7 @@ def task_shape(task: TaskPicture, projection: Projection) -> str:
     if task.line:
         line = {"class": "task line", "d": f"M{projection.line(task.line)}", "stroke": colour}
         return element("path", line, tip)
-    return badge(task.symbol, projection.place(task.point), tip) if task.point is not None else ""
+    return badge(task.symbol, at, tip) if at is not None else ""
 
 
 def task_tip(task: TaskPicture) -> str:

@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from mmrs_core.cli.preview.figures import heights
 from mmrs_core.cli.preview.labels import Box, Labels, around
 from mmrs_core.cli.preview.map_furniture import furniture_places
-from mmrs_core.cli.preview.map_places import BADGE, STEM, task_tip, thing_tip
+from mmrs_core.cli.preview.map_places import BADGE, STEM, badge_places, task_tip, thing_tip
 from mmrs_core.cli.preview.map_ways import STAY, STAYING
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture, TaskPicture, Zone
@@ -50,9 +50,8 @@ def _marks(picture: Picture, projection: Projection) -> Iterator[Box]:
         yield around(projection.place(robot.home), _HOME)
         stays = (leg.points[0] for leg in robot.legs if leg.stays and leg.kind in STAYING)
         yield from (around(projection.place(at), STAY) for at in stays)
-    for task in picture.tasks:
-        if task.point is not None:
-            yield around(projection.place(task.point), BADGE)
+    for at in badge_places(picture.tasks, projection).values():
+        yield around(at, BADGE)
     for thing in picture.things:
         yield from (around(projection.place(mark), BADGE, STEM) for mark in thing.marks)
 
@@ -84,12 +83,13 @@ def _of_robots(picture: Picture, projection: Projection) -> Iterator[_Name]:
 
 
 def _of_tasks(picture: Picture, projection: Projection) -> Iterator[_Name]:
+    places = badge_places(picture.tasks, projection)
     for task in picture.tasks:
-        shape = _shape(task)
-        if shape is not None:
-            icon = (task.symbol.icon if task.point is None else "", task.symbol.colour)
-            box = _box(shape, projection, BADGE if task.point else 0.0)
-            yield _Name(task.name, box, "of-task", tip=task_tip(task), icon=icon)
+        shape, icon = _shape(task), (task.symbol.icon, task.symbol.colour)
+        if task.name in places:
+            yield _Name(task.name, around(places[task.name], BADGE), "of-task", tip=task_tip(task))
+        elif shape is not None:
+            yield _Name(task.name, _box(shape, projection), "of-task", tip=task_tip(task), icon=icon)
 
 
 def _shape(task: TaskPicture) -> BaseGeometry | None:
@@ -97,7 +97,7 @@ def _shape(task: TaskPicture) -> BaseGeometry | None:
         return _polygon(task.rings[0])
     if task.line:
         return shapely.Point(task.line[len(task.line) // 2])
-    return shapely.Point(task.point) if task.point is not None else None
+    return None
 
 
 def _of_things(picture: Picture, projection: Projection) -> Iterator[_Name]:

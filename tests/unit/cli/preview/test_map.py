@@ -158,3 +158,11 @@ def test_words_are_placed_on_what_is_large_enough_for_them():
     labels.put("a name", (300.0, 300.0, 600.0, 500.0), "name")
     at = etree.fromstring(labels.markup())
     assert (float(at.get("x")), float(at.get("y"))) == (450.0, 404.0)
+
+
+def test_tasks_at_one_point_stand_side_by_side(picture):
+    point = {"rings": (), "line": (), "point": (30.0, 30.0)}
+    tasks = tuple(replace(picture.tasks[0], name=name, **point) for name in ("first", "second"))
+    badges = with_class(parsed(replace(picture, tasks=tasks)), "badge")
+    assert [badge.findtext(f"{SVG}title").split(":")[0] for badge in badges] == ["first", "second"]
+    assert badges[0].get("transform") != badges[1].get("transform")
