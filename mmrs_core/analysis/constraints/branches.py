@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding, listed
 from mmrs_core.analysis.constraints.order import Order
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.languages.element import Element, is_kind, label_of, path_of
 from mmrs_core.languages.grounding_values import child, number, text
@@ -25,19 +26,6 @@ def _is_choice(fork: Element, order: Order) -> bool:
     return any(text(way, "condition") for way in order.ways.get(fork, ()))
 
 
-def _closing(fork: Element, order: Order) -> Element | None:
-    """Return the nearest Join that every way out of the Fork leads to, whatever is taken; None if none is."""
-    heads = tuple(order.after[fork])
-    for join in order.sorted():
-        if not is_kind(join, MISSION, "Join"):
-            continue
-        between = order.beyond(heads, join)
-        reached = join in heads or any(join in order.after[task] for task in between)
-        if reached and fork not in between and all(order.after[task] for task in between):
-            return join
-    return None
-
-
 def _arms(fork: Element, join: Element, order: Order) -> tuple[_Arm, ...]:
     heads = ((way, child(way, "to")) for way in order.ways[fork])
     return tuple(_Arm(way, frozenset(order.beyond([head], join))) for way, head in heads if head is not None)
@@ -50,13 +38,13 @@ def _only_forks(dependency: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _no_else(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    order = Order(models.mission)
+    order = sketch_of(models).order
     if _is_choice(fork, order) and all(text(way, "condition") for way in order.ways[fork]):
         yield finding(fork, "every way out has a condition: none is left when no condition holds")
 
 
 def _two_elses(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    order = Order(models.mission)
+    order = sketch_of(models).order
     free = [way for way in order.ways.get(fork, ()) if not text(way, "condition")]
     if _is_choice(fork, order) and len(free) > 1:
         yield finding(fork, f"{len(free)} of its ways out have no condition: which is taken is open")
@@ -64,7 +52,7 @@ def _two_elses(fork: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _same_condition(fork: Element, models: ModelSet) -> Iterator[Finding]:
     seen: set[str] = set()
-    for way in Order(models.mission).ways.get(fork, ()):
+    for way in sketch_of(models).order.ways.get(fork, ()):
         condition = text(way, "condition")
         if condition and condition in seen:
             yield finding(way, f"the condition {condition!r} already opens another way out of {called(fork)}")
@@ -72,13 +60,13 @@ def _same_condition(fork: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _never_closed(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    order = Order(models.mission)
-    if order.is_circular():
+    order = sketch_of(models).order
+    if order.is_circular:
         return  # the way on is open until the circle is gone, which is a breach of its own
-    if _is_choice(fork, order) and _closing(fork, order) is None:
+    if _is_choice(fork, order) and order.meeting(fork) is None:
         ends = sorted(
             label_of(task) or path_of(task)
-            for task in order.beyond(tuple(order.after[fork]), fork)
+            for task in order.beyond(order.after[fork], fork)
             if task is not fork and not order.after[task]
         )
         yield finding(
@@ -87,8 +75,8 @@ def _never_closed(fork: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _entered(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    order = Order(models.mission)
-    join = _closing(fork, order) if _is_choice(fork, order) else None
+    order = sketch_of(models).order
+    join = order.meeting(fork) if _is_choice(fork, order) else None
     if join is None:
         return
     arms = _arms(fork, join, order)
@@ -106,8 +94,8 @@ def _entered(fork: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _several(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    order = Order(models.mission)
-    join = _closing(fork, order) if _is_choice(fork, order) else None
+    order = sketch_of(models).order
+    join = order.meeting(fork) if _is_choice(fork, order) else None
     for arm in _arms(fork, join, order) if join is not None else ():
         for task in sorted(arm.tasks, key=path_of):
             wanted = number(task, "robotsWanted")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
+from mmrs_core.analysis.constraints.circles import circles_in
 from mmrs_core.analysis.constraints.findings import MISSION, called, finding
-from mmrs_core.analysis.constraints.order import Order
+from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, label_of, path_of
@@ -15,36 +15,9 @@ from mmrs_core.languages.modelset import ModelSet
 
 
 def _circles(mission: Element, models: ModelSet) -> Iterator[Finding]:
-    following = {task: set(after) - {task} for task, after in Order(mission).after.items()}
-    while circle := _circle(following):
+    for circle in circles_in(sketch_of(models).order.after):
         way = " → ".join(label_of(task) or path_of(task) for task in (*circle, circle[0]))
         yield finding(circle[0], f"waits for itself: {way}")
-        for task in circle:
-            following.pop(task)
-        following = {task: after & following.keys() for task, after in following.items()}
-
-
-def _circle(following: Mapping[Element, set[Element]]) -> tuple[Element, ...]:
-    """Return a shortest circle through the first task that is on one; empty if there is none."""
-    for start in following:
-        came_from: dict[Element, Element] = {}
-        pending = deque([start])
-        while pending and start not in came_from:
-            task = pending.popleft()
-            for each in following[task]:
-                if each not in came_from:
-                    came_from[each] = task
-                    pending.append(each)
-        if start in came_from:
-            return _back(start, came_from)
-    return ()
-
-
-def _back(start: Element, came_from: Mapping[Element, Element]) -> tuple[Element, ...]:
-    way = [start]
-    while (task := came_from[way[-1]]) is not start:
-        way.append(task)
-    return (start, *reversed(way[1:]))
 
 
 def _itself(dependency: Element, models: ModelSet) -> Iterator[Finding]:
@@ -72,13 +45,13 @@ def _elsewhere(mission: Element, models: ModelSet) -> Iterator[Finding]:
 
 
 def _one_way_out(fork: Element, models: ModelSet) -> Iterator[Finding]:
-    ways = len(Order(models.mission).after.get(fork, ()))
+    ways = len(sketch_of(models).order.after.get(fork, ()))
     if ways < 2:
         yield finding(fork, f"has {ways or 'no'} way out, at least 2 are needed")
 
 
 def _one_way_in(join: Element, models: ModelSet) -> Iterator[Finding]:
-    ways = len(Order(models.mission).before.get(join, ()))
+    ways = len(sketch_of(models).order.before.get(join, ()))
     if ways < 2:
         yield finding(join, f"has {ways or 'no'} way in, at least 2 are needed")
 
@@ -91,9 +64,9 @@ def _window(task: Element, models: ModelSet) -> Iterator[Finding]:
 
 def _late(mission: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield tasks whose deadline passes before what they wait for may even begin."""
-    order = Order(mission)
+    order = sketch_of(models).order
     earliest: dict[Element, tuple[float, Element]] = {}
-    for task in order.sorted():
+    for task in order.ranks:
         behind = [earliest[each] for each in order.before[task] if each in earliest]
         start, cause = max(behind, key=lambda each: each[0], default=(0.0, task))
         deadline, own = number(task, "deadline"), number(task, "earliestStart") or 0.0

@@ -17,9 +17,9 @@ BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 def called(element: Element) -> str:
     """Return what messages call an element: its class, and its name or where it stands in its model."""
     kind = "element" if isinstance(element, Unknown) else metaclass_of(element).name
-    name, path = label_of(element), path_of(element).lstrip("/")
-    if name:
+    if name := label_of(element):
         return f"{kind} {name!r}"
+    path = path_of(element).lstrip("/")
     return path if path.lower().endswith(kind.lower()) else f"{kind} {path}".rstrip()
 
 

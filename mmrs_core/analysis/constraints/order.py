@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections import deque
+from collections.abc import Collection, Mapping
+from functools import cached_property
+from heapq import heappop, heappush
 
-from mmrs_core.languages.element import Element
+from mmrs_core.analysis.constraints.findings import MISSION
+from mmrs_core.languages.element import Element, is_kind
 from mmrs_core.languages.grounding_values import child, children
 
 
@@ -29,21 +33,49 @@ class Order:
                 self.before[after][before] = None
                 self.ways[before].append(dependency)
 
-    def sorted(self) -> Iterator[Element]:
-        """Yield tasks after all that they wait for; those on or behind a circle are left out."""
+    @cached_property
+    def ranks(self) -> Mapping[Element, int]:
+        """Tasks with numbers that grow along the way; those on or behind a circle are left out."""
         waiting = {task: len(before) for task, before in self.before.items()}
-        ready = [task for task, count in waiting.items() if count == 0]
+        ready = deque(task for task, count in waiting.items() if count == 0)
+        ranks: dict[Element, int] = {}
         while ready:
-            task = ready.pop(0)
-            yield task
+            task = ready.popleft()
+            ranks[task] = len(ranks)
             for each in self.after[task]:
                 waiting[each] -= 1
                 if waiting[each] == 0:
                     ready.append(each)
+        return ranks
 
+    @property
     def is_circular(self) -> bool:
-        """Return whether tasks wait for each other in a circle."""
-        return sum(1 for _ in self.sorted()) < len(self.after)
+        """Whether tasks wait for each other in a circle."""
+        return len(self.ranks) < len(self.after)
+
+    def meeting(self, fork: Element) -> Element | None:
+        """Return the nearest Join that every way out of a Fork leads to; None where one ends elsewhere.
+
+        Goes over the tasks between the two only.
+        """
+        ahead: list[tuple[int, Element]] = []
+        seen: set[Element] = set()
+        following = self.after[fork]
+        while True:
+            for each in following:
+                if each not in self.ranks:
+                    return None
+                if each not in seen:
+                    seen.add(each)
+                    heappush(ahead, (self.ranks[each], each))
+            if not ahead:
+                return None
+            _, task = heappop(ahead)
+            if not ahead and is_kind(task, MISSION, "Join"):
+                return task
+            following = self.after[task]
+            if not following:
+                return None
 
     def beyond(self, starts: Collection[Element], stop: Element) -> set[Element]:
         """Return the starts and all tasks that wait for them, without going through `stop`."""

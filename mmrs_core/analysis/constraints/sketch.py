@@ -1,4 +1,4 @@
-"""What of a mission can be drawn: the places of its coordinates, areas and robots, as far as they are known.
+"""What of a mission can be drawn: places, areas, robots and the order of tasks, as far as they are known.
 
 Models are checked before they are whole, so that everything here may be missing, and what is missing is
 left out: some other constraint or the metamodel says so.
@@ -16,6 +16,7 @@ from math import hypot, sqrt
 import shapely
 from shapely.geometry import Polygon
 
+from mmrs_core.analysis.constraints.order import Order
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding_coordinates import Ground, ground_of
 from mmrs_core.languages.grounding_parts import heights_of, ring_of, use_of
@@ -74,6 +75,11 @@ class Sketch:
     def ground(self) -> Ground:
         """Where the coordinates lie."""
         return ground_of(self._models.mission, self._models.context)
+
+    @cached_property
+    def order(self) -> Order:
+        """What tasks wait for."""
+        return Order(self._models.mission)
 
     @cached_property
     def areas(self) -> tuple[DrawnArea, ...]:
