@@ -457,9 +457,13 @@ class Launch(Step):
 
 @dataclass(frozen=True, slots=True)
 class Transit(Step):
-    """Travels along straight legs; `route` begins where the robot is, at least two points."""
+    """Travels along straight legs; `route` begins where the robot is, at least two points.
+
+    `speed`: commanded, metres per second; None: the robot's cruise.
+    """
 
     route: tuple[Position, ...]
+    speed: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

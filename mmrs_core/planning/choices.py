@@ -8,7 +8,7 @@ from dataclasses import replace
 from mmrs_core.planning.jobs import Choice
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import Run
-from mmrs_core.planning.sorties import Pilot, Ready, State
+from mmrs_core.planning.sorties import Approach, Pilot, Ready, State
 from mmrs_core.scene import Branch, Position
 
 MaterialOf = Callable[[str], "Material | None"]
@@ -28,13 +28,13 @@ def carry_out(
     begin = _begin(choice, material_of)
     if begin is None:
         return None
-    there = pilot.reach(state, (begin,), pilot.exit_seconds(begin), ready, choice.name)
+    there = pilot.reach(state, begin, pilot.exit_seconds(begin.via[-1]), ready, choice.name)
     return None if there is None else _branched(pilot, choice, material_of, there, record)
 
 
-def _begin(choice: Choice, material_of: MaterialOf) -> Position | None:
-    """Return where the first task of the longest arm begins; None if some task cannot be done."""
-    best: tuple[float, Position] | None = None
+def _begin(choice: Choice, material_of: MaterialOf) -> Approach | None:
+    """Return the way to where the longest arm's first task begins; None if some task cannot be done."""
+    best: tuple[float, Approach] | None = None
     for _, items in choice.arms:
         tasks = [task for item in items for task in _tasks(item)]
         materials = [material_of(task) for task in tasks]
@@ -43,7 +43,8 @@ def _begin(choice: Choice, material_of: MaterialOf) -> Position | None:
             return None
         seconds = sum(material.seconds(0, len(material) - 1) for material in known)
         if known and (best is None or seconds > best[0]):
-            best = (seconds, known[0].via(0)[0])
+            first = known[0].approach(0)
+            best = (seconds, Approach(first.via[:1], first.speed))
     return None if best is None else best[1]
 
 
@@ -90,7 +91,8 @@ def _arm(
 
 def _joined(pilot: Pilot, ends: Sequence[State], place: Position, name: str) -> list[State] | None:
     """Return the arms' ends once all have come to one place; None if one cannot."""
-    there = [pilot.reach(end, (place,), pilot.exit_seconds(place), _NOTHING, name) for end in ends]
+    need = pilot.exit_seconds(place)
+    there = [pilot.reach(end, Approach((place,)), need, _NOTHING, name) for end in ends]
     found = [end for end in there if end is not None]
     return found if len(found) == len(ends) else None
 

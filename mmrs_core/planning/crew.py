@@ -26,6 +26,7 @@ class Crew:
         scene: expanded.
         fine: whether works are divided as finely as can be.
         stacked: whether robots have transit altitudes of their own.
+        homing: whether robots that need not return always keep enough to go home.
         pilots: by name of robot, in the scene's order.
         teams: by name of task: robots that may share it, by sort of work; robots of different sorts
             (such as cameras with different footprints) cannot.
@@ -33,21 +34,29 @@ class Crew:
     """
 
     def __init__(
-        self, scene: Scene, *, fine: bool = False, altitudes: Mapping[str, float] | None = None
+        self,
+        scene: Scene,
+        *,
+        fine: bool = False,
+        homing: bool = False,
+        altitudes: Mapping[str, float] | None = None,
     ) -> None:
         """Lay everything out.
 
         Args:
             scene: expanded.
             fine: whether works are divided as finely as can be, for missions that barely fit.
+            homing: whether robots that need not return always keep enough to go home, for recharging.
             altitudes: of transit, by robot; None: the scene's for all.
         """
-        self.scene, self.fine, self.stacked = scene, fine, altitudes is not None
+        self.scene, self.fine, self.stacked, self.homing = scene, fine, altitudes is not None, homing
         spaces, slack = Spaces(scene), _slack(scene)
         aloft = altitudes or {}
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
-                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude)), slack
+                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude)),
+                slack,
+                homing=homing,
             )
             for robot in scene.robots
         }

@@ -8,8 +8,9 @@ from itertools import pairwise
 from math import inf
 
 from mmrs_core.errors import UnreachableError
-from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.sorties import Approach, Pilot
 from mmrs_core.planning.strokes import (
+    approach_speed,
     can_turn,
     commanded_speed,
     joined,
@@ -37,6 +38,7 @@ class Material:
         portions: strokes of each portion; robots take runs of portions.
         begins, ends: seconds at which each portion begins and ends when one robot does them all.
         entry: where whoever does the first portion goes first; None: nowhere.
+        speeds: by portion: at which the robot goes to it, metres per second; None: its cruise.
         whole: whether one robot must do all of it in one sortie.
     """
 
@@ -46,6 +48,7 @@ class Material:
     begins: tuple[float, ...]
     ends: tuple[float, ...]
     entry: Position | None
+    speeds: tuple[float | None, ...]
     whole: bool
 
     def __len__(self) -> int:
@@ -63,11 +66,11 @@ class Material:
         """Return the seconds from the beginning of one portion to the end of another, hops included."""
         return self.ends[end] - self.begins[begin]
 
-    def via(self, index: int) -> tuple[Position, ...]:
-        """Return the places that whoever begins with a portion goes to."""
+    def approach(self, index: int) -> Approach:
+        """Return how whoever begins with a portion comes there."""
         if index == 0 and self.entry is not None and self.entry != self.first(0):
-            return (self.entry, self.first(0))
-        return (self.first(index),)
+            return Approach((self.entry, self.first(0)), self.speeds[0])
+        return Approach((self.first(index),), self.speeds[index])
 
     def strokes(self, begin: int, end: int) -> tuple[Stroke, ...]:
         """Return the strokes of a run of portions, parts of one stroke put together again."""
@@ -137,15 +140,23 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
     here: Position | None = None
     for portion in portions:
         for i, stroke in enumerate(portion):
-            if here is not None and here != stroke.points[0]:
-                now += pilot.travel.hop(here, stroke.points[0]).seconds
+            if here is not None:
+                now += pilot.hop_seconds(here, stroke)
             if i == 0:
                 begins.append(now)
             now += serve_seconds(stroke, pilot.robot, pilot.kinematics)
             here = stroke.points[-1]
         ends.append(now)
-    entry = _entry(work, pilot)
-    return Material(task, work.rule, portions, tuple(begins), tuple(ends), entry, not work.divisible)
+    return Material(
+        task=task,
+        rule=work.rule,
+        portions=portions,
+        begins=tuple(begins),
+        ends=tuple(ends),
+        entry=_entry(work, pilot),
+        speeds=tuple(approach_speed(portion[0], pilot.kinematics) for portion in portions),
+        whole=not work.divisible,
+    )
 
 
 def _entry(work: Work, pilot: Pilot) -> Position | None:
@@ -196,8 +207,12 @@ def _speed_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:
     if allowed is not None and allowed < pilot.kinematics.slowest:
         slowest = pilot.kinematics.slowest
         yield f"it cannot go slower than {slowest:g} m/s, at most {allowed:g} m/s are allowed"
-    still = min(commanded_speed(stroke, pilot.kinematics) for stroke in strokes)
-    if still <= 0.0 and any(length_of(stroke.points) > 0.0 for stroke in strokes):
+    moving = [
+        commanded_speed(stroke, pilot.kinematics)
+        for stroke in strokes
+        if length_of(stroke.points) > 0.0 or approach_speed(stroke, pilot.kinematics) is not None
+    ]
+    if min(moving, default=1.0) <= 0.0:
         yield "its speed there is zero"
 
 
@@ -224,8 +239,9 @@ def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
 
 def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:
     """Return the seconds of a sortie for one portion."""
-    places = material.via(index)
-    out = pilot.travel.leave(places[0]).seconds
-    out += sum(pilot.travel.go(one, two).seconds for one, two in pairwise(places))
+    approach = material.approach(index)
+    ways = [pilot.travel.leave(approach.via[0])]
+    ways += [pilot.travel.hop(one, two) for one, two in pairwise(approach.via)]
+    out = sum(pilot.travel.at_speed(way, approach.speed).seconds for way in ways)
     back = pilot.way_out(material.last(index)).seconds
     return out + material.seconds(index, index) + back

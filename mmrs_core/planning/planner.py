@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.assembly import assemble
@@ -10,7 +10,7 @@ from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job, jobs_of
 from mmrs_core.planning.schedule import Decisions, Shortfall, schedule
 from mmrs_core.planning.search import broken_times, find_decisions
-from mmrs_core.planning.separation import separated, stacked_altitudes
+from mmrs_core.planning.separation import TooNearError, separated, stacked_altitudes
 from mmrs_core.scene import Plan, Scene
 
 
@@ -31,35 +31,60 @@ def plan(scene: Scene, *, seed: int = 0) -> Plan:
     jobs = jobs_of(scene)
     crew = Crew(scene)
     _refuse([*crew.shortfalls(), *_shared_choices(scene, jobs)], "no plan")
-    try:
-        return _plan_with(crew, jobs, seed)
-    except _TooCoarseError:
-        return _plan_with(Crew(scene, fine=True), jobs, seed)
+    shortage = InfeasibleError("no plan")
+    for each in _crews(crew):
+        try:
+            return _plan_with(each, jobs, seed)
+        except _ShortError as error:
+            shortage = InfeasibleError(str(error), error.reasons)
+    raise shortage
 
 
-class _TooCoarseError(Exception):
-    """Nobody is left to do some job, perhaps only because its portions are too large."""
+class _ShortError(InfeasibleError):
+    """Nobody is left to do some job, perhaps only because of how the crew was told to go about it."""
+
+
+def _crews(crew: Crew) -> Iterator[Crew]:
+    """Yield a crew, and what it may be replaced by where somebody is missing for some job."""
+    scene = crew.scene
+    yield crew
+    if any(not pilot.robot.return_home and pilot.kinematics.recharge for pilot in crew.pilots.values()):
+        yield Crew(scene, homing=True)
+        yield Crew(scene, homing=True, fine=True)
+    yield Crew(scene, fine=True)
 
 
 def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
-    decisions, found = find_decisions(crew, jobs, seed)
-    if isinstance(found, Shortfall):
-        if not crew.fine:
-            raise _TooCoarseError
-        _refuse(_reasons(crew, jobs, found), "no plan")
-    else:
-        _refuse([reason for reason, _ in broken_times(crew, found.spans)], "no plan keeps all times")
+    """Return a plan of a crew; where robots come too near to each other, of the crew told otherwise."""
     try:
-        made = separated(crew.scene, decisions, lambda decided: _planned(crew, jobs, decided))
-    except InfeasibleError:
-        altitudes = stacked_altitudes(crew.scene)
-        if crew.stacked or not altitudes:
-            raise
-    else:
-        spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
-        _refuse([reason for reason, _ in broken_times(crew, spans)], "no plan keeps all times")
-        return made
-    return _plan_with(Crew(crew.scene, fine=crew.fine, altitudes=altitudes), jobs, seed)
+        return _plan_of(crew, jobs, seed)
+    except TooNearError as error:
+        for told, in_turns in _told_otherwise(crew):
+            try:
+                return _plan_of(told, jobs, seed, in_turns=in_turns)
+            except InfeasibleError:
+                continue
+        raise InfeasibleError(str(error), error.reasons) from error
+
+
+def _told_otherwise(crew: Crew) -> Iterator[tuple[Crew, bool]]:
+    """Yield (crew, whether its robots fly one after the other) that may help where robots come too near."""
+    altitudes = stacked_altitudes(crew.scene)
+    if altitudes:
+        yield Crew(crew.scene, fine=crew.fine, homing=crew.homing, altitudes=altitudes), False
+    yield Crew(crew.scene, fine=crew.fine, homing=True), True
+
+
+def _plan_of(crew: Crew, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> Plan:
+    decisions, found = find_decisions(crew, jobs, seed, in_turns=in_turns)
+    if isinstance(found, Shortfall):
+        reasons = _reasons(crew, jobs, found)
+        raise _ShortError(_words("no plan", reasons), reasons)
+    _refuse([reason for reason, _ in broken_times(crew, found.spans)], "no plan keeps all times")
+    made = separated(crew.scene, decisions, lambda decided: _planned(crew, jobs, decided))
+    spans = {name: (begin, made.ends[name]) for name, begin in made.begins.items()}
+    _refuse([reason for reason, _ in broken_times(crew, spans)], "no plan keeps all times")
+    return made
 
 
 def _shared_choices(scene: Scene, jobs: Sequence[Job]) -> list[str]:
@@ -85,8 +110,12 @@ def _planned(crew: Crew, jobs: Sequence[Job], decisions: Decisions) -> Plan | No
 def _refuse(reasons: Sequence[str], what: str) -> None:
     """Raise an InfeasibleError with all reasons, if there are any."""
     if reasons:
-        more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
-        raise InfeasibleError(f"{what}: {reasons[0]}{more}", reasons)
+        raise InfeasibleError(_words(what, reasons), reasons)
+
+
+def _words(what: str, reasons: Sequence[str]) -> str:
+    more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
+    return f"{what}: {reasons[0]}{more}"
 
 
 def _reasons(crew: Crew, jobs: Sequence[Job], found: Shortfall) -> list[str]:

@@ -14,10 +14,15 @@ _ANY_TIME = Ready()
 
 @dataclass(frozen=True, slots=True)
 class _Sortie:
-    """Portions first to last at most, begun in a state in which the robot is at the first one."""
+    """Portions first to last at most, begun in a state in which the robot is at the first one.
+
+    `turn`: the last portion after which the robot still gets home for another sortie; one before the
+    first: none. It is before `last` only for a robot that need not return in the end.
+    """
 
     first: int
     last: int
+    turn: int
     state: State
 
 
@@ -41,7 +46,7 @@ class Run:
             ready: what the work waits for.
             record: whether states carry all steps, or only those that lead to the work.
         """
-        self._pilot, self._material, self._record = pilot, material, record
+        self._pilot, self.material, self._record = pilot, material, record
         self.begin = begin
         self._sorties: list[_Sortie] = []
         self._stuck = False
@@ -49,30 +54,47 @@ class Run:
 
     def _add(self, state: State, first: int, ready: Ready) -> None:
         """Add the sortie that begins with a portion, if there is one."""
-        pilot, material = self._pilot, self._material
+        pilot, material = self._pilot, self.material
         need = material.seconds(first, first) + pilot.exit_seconds(material.last(first))
-        there = pilot.reach(state, material.via(first), need, ready, material.task)
+        there = pilot.reach(state, material.approach(first), need, ready, material.task)
         if there is None:
             self._stuck = True
             return
         last = _largest(first, len(material) - 1, lambda j: self._fits(there, first, j))
-        self._sorties.append(_Sortie(first, last, there))
+        turn = last if pilot.homebound else self._turn(there, first, last)
+        self._sorties.append(_Sortie(first, last, turn, there))
 
     def _fits(self, state: State, first: int, last: int) -> bool:
-        seconds = self._material.seconds(first, last)
-        return self._pilot.affords(state, seconds, self._material.last(last))
+        seconds = self.material.seconds(first, last)
+        return self._pilot.affords(state, seconds, self.material.last(last))
+
+    def _turn(self, state: State, first: int, last: int) -> int:
+        """Return the last portion after which the robot gets home; the one before the first if none."""
+
+        def returns(portion: int) -> bool:
+            seconds = self.material.seconds(first, portion)
+            return self._pilot.affords_home(state, seconds, self.material.last(portion))
+
+        return _largest(first, last, returns) if returns(first) else first - 1
 
     def _extend(self) -> bool:
         """Go on with one more sortie; return whether there is one."""
-        if self._stuck or not self._sorties or self._sorties[-1].last == len(self._material) - 1:
+        if self._stuck or not self._sorties or self._end == len(self.material) - 1:
             return False
         full = self._sorties[-1]
-        self._add(self._after(full, full.last, final=False), full.last + 1, _ANY_TIME)
+        if full.turn < full.first:
+            return False
+        self._add(self._after(full, full.turn, final=False), full.turn + 1, _ANY_TIME)
         return not self._stuck
+
+    @property
+    def _end(self) -> int:
+        """The last portion that some sortie gets to."""
+        return max(sortie.last for sortie in self._sorties)
 
     def can_do(self, portion: int) -> bool:
         """Return whether the robot can do all portions from the first to this one."""
-        while not self._sorties or self._sorties[-1].last < portion:
+        while not self._sorties or self._end < portion:
             if not self._extend():
                 return False
         return True
@@ -87,19 +109,19 @@ class Run:
     def ended(self, portion: int) -> float:
         """Return when a portion that can be done ends."""
         sortie = self._sortie_of(portion)
-        return sortie.state.time + self._material.seconds(sortie.first, portion)
+        return sortie.state.time + self.material.seconds(sortie.first, portion)
 
     def back(self, portion: int) -> float:
         """Return when the robot is back if it ends with a portion; inf if it cannot do that."""
         if not self.can_do(portion):
             return inf
-        return self.ended(portion) + self._pilot.exit_seconds(self._material.last(portion))
+        return self.ended(portion) + self._pilot.exit_seconds(self.material.last(portion))
 
     def until(self, time: float) -> int:
         """Return the last portion after which the robot is back by a time; the one before `begin` if none."""
-        while self._sorties and self.back(self._sorties[-1].last) <= time:
+        while self._sorties and self.back(self._end) <= time:
             if not self._extend():
-                return self._sorties[-1].last
+                return self._end
         for sortie in reversed(self._sorties):
             if self.back(sortie.first) <= time:
                 return _largest(sortie.first, sortie.last, lambda j: self.back(j) <= time)
@@ -110,13 +132,13 @@ class Run:
         return self._after(self._sortie_of(portion), portion, final=True)
 
     def _after(self, sortie: _Sortie, portion: int, *, final: bool) -> State:
-        material, state = self._material, sortie.state
+        material, state = self.material, sortie.state
         if not self._record:
             seconds = material.seconds(sortie.first, portion)
             return self._pilot.skip(state, seconds, 0.0, material.last(portion))
         strokes = material.strokes(sortie.first, portion)
         for i, stroke in enumerate(strokes):
-            state = self._pilot.hop(state, stroke.points[0], material.task)
+            state = self._pilot.hop(state, stroke, material.task)
             first = i == 0 and sortie.first == self.begin
             last = final and i == len(strokes) - 1
             state = self._pilot.serve(state, stroke, material.task, material.rule, first, last)

@@ -13,6 +13,7 @@ from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.runs import Run
 from mmrs_core.planning.sharing import Candidate, Sharing, share_out
 from mmrs_core.planning.sorties import Ready, State
+from mmrs_core.planning.turns import Done, Part, States, in_turns, turn_of
 from mmrs_core.scene import Task
 
 _SOME_SIZES = (1, 2, 3, 5, 8, 13, 21)
@@ -26,11 +27,13 @@ class Decisions:
         order: names of jobs; of those that may begin, the first in this order is scheduled next.
         teams: by job: how many robots share it, or which ones; missing: as many as help most.
         delays: by robot: seconds after the mission's start before which it does not leave home.
+        in_turns: whether a robot leaves home only when all others are back there.
     """
 
     order: tuple[str, ...]
     teams: Mapping[str, int | tuple[str, ...]] = field(default_factory=dict)
     delays: Mapping[str, float] = field(default_factory=dict)
+    in_turns: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +94,7 @@ class _Scheduling:
     def __init__(self, crew: Crew, decisions: Decisions, record: bool) -> None:
         self._crew, self._decisions, self._record = crew, decisions, record
         self._tasks = {task.name: task for task in crew.scene.tasks}
-        self._states = {
+        self._states: States = {
             name: pilot.start(decisions.delays.get(name, 0.0)) for name, pilot in crew.pilots.items()
         }
         self._ends: dict[str, Mapping[str, float]] = {}
@@ -120,24 +123,38 @@ class _Scheduling:
                 name: end for before in job.after for name, end in self._ends[before].items()
             }
             return True
-        if job.choice is not None:
-            return self._choose(job)
-        sharing = self._best_sharing(job)
-        if sharing is None:
+        done = self._chosen(job) if job.choice is not None else self._shared(job)
+        if done is None:
             return False
-        ends = {}
-        for share in sharing.shares:
-            name = share.candidate.pilot.robot.name
-            self._states[name] = share.run.state(share.end)
-            ends[name] = self._states[name].time
-        begin = min(share.run.started() for share in sharing.shares)
-        self._note(job, ends, begin)
+        self._states = done.states
+        self._ends[job.name] = done.ends
+        self._spans[job.name] = (done.begin, max(done.ends.values()))
+        self._busy |= done.ends.keys()
         return True
 
-    def _note(self, job: Job, ends: Mapping[str, float], begin: float) -> None:
-        self._ends[job.name] = ends
-        self._spans[job.name] = (begin, max(ends.values()))
-        self._busy |= ends.keys()
+    def _shared(self, job: Job) -> Done | None:
+        """Share a task out as well as can be."""
+        if self._decisions.in_turns:
+            tried = [self._in_turns(each) for each in self._sharings(job)]
+            return min((each for each in tried if each is not None), key=lambda each: each.back, default=None)
+        best: Sharing | None = None
+        for each in self._sharings(job):
+            if best is None or each.back < best.back - 1e-6:
+                best = each
+        return None if best is None else self._at_once(best)
+
+    def _at_once(self, sharing: Sharing) -> Done:
+        after = {share.candidate.pilot.robot.name: share.run.state(share.end) for share in sharing.shares}
+        ends = {name: state.time for name, state in after.items()}
+        begin = min(share.run.started() for share in sharing.shares)
+        return Done({**self._states, **after}, begin, ends, sharing.back)
+
+    def _in_turns(self, sharing: Sharing) -> Done | None:
+        parts = [
+            Part(each.candidate.pilot, each.run.material, each.run.begin, each.end, each.candidate.ready)
+            for each in sharing.shares
+        ]
+        return in_turns(parts, self._states, self._crew.pilots, record=self._record)
 
     def _ready(self, job: Job, robot: str, earliest: float | None) -> Ready:
         """Return what a robot's share of a job waits for: every other robot's share of those before."""
@@ -149,27 +166,29 @@ class _Scheduling:
         }
         return Ready(max(others.values(), default=0.0), tuple(others), earliest)
 
-    def _choose(self, job: Job) -> bool:
+    def _chosen(self, job: Job) -> Done | None:
         """Give a choice to the robot that is back first after its longest arm."""
-        choice = job.choice
-        if choice is None:
-            return False
-        best: tuple[float, str, State] | None = None
+        best: Done | None = None
         for name in self._allowed(job):
-            pilot, state = self._crew.pilots[name], self._states[name]
-            ready = self._ready(job, name, self._earliest(job))
-            materials = partial(self._crew.forwards, robot=name)
-            end = carry_out(pilot, choice, materials, state, ready, record=self._record)
-            back = inf if end is None else end.time + pilot.exit_seconds(end.at)
-            if end is not None and back < inf and (best is None or back < best[0] - 1e-9):
-                best = (back, name, end)
-        if best is None:
-            return False
-        _, name, end = best
+            done = self._chosen_by(job, name)
+            if done is not None and done.back < (inf if best is None else best.back - 1e-9):
+                best = done
+        return best
+
+    def _chosen_by(self, job: Job, name: str) -> Done | None:
+        pilot = self._crew.pilots[name]
+        turns = self._decisions.in_turns
+        states = turn_of(name, self._states, self._crew.pilots, job.name) if turns else self._states
+        if job.choice is None or states is None:
+            return None
+        ready = self._ready(job, name, self._earliest(job))
+        materials = partial(self._crew.forwards, robot=name)
+        end = carry_out(pilot, job.choice, materials, states[name], ready, record=self._record)
+        if end is None:
+            return None
         begin = end.trail[1].begin if end.trail is not None else end.time
-        self._states[name] = end
-        self._note(job, {name: end.time}, begin)
-        return True
+        back = end.time + pilot.exit_seconds(end.at)
+        return Done({**states, name: end}, begin, {name: end.time}, back)
 
     def _earliest(self, job: Job) -> float | None:
         times = [self._tasks[name].earliest for name in job.tasks()]
@@ -179,16 +198,15 @@ class _Scheduling:
         team = self._decisions.teams.get(job.name)
         return team if isinstance(team, tuple) else tuple(self._crew.pilots)
 
-    def _best_sharing(self, job: Job) -> Sharing | None:
-        best: Sharing | None = None
+    def _sharings(self, job: Job) -> Iterator[Sharing]:
+        """Yield the best way to share a task out for each choice of robots."""
         task = self._tasks[job.name]
         for team in self._crew.teams[job.name]:
             candidates = self._candidates(job, task, team)
             for some, everyone in self._choices_of(task, candidates):
                 found = share_out(some, everyone=everyone, record=self._record)
-                if found is not None and (best is None or found.back < best.back - 1e-6):
-                    best = found
-        return best
+                if found is not None:
+                    yield found
 
     def _candidates(self, job: Job, task: Task, team: Sequence[str]) -> list[Candidate]:
         """Return the robots of a team, those first that are first back from the first portion."""

@@ -27,13 +27,16 @@ _PATIENCE = 15
 """Steps without a gain after which the search ends."""
 
 
-def find_decisions(crew: Crew, jobs: Sequence[Job], seed: int) -> tuple[Decisions, Schedule | Shortfall]:
+def find_decisions(
+    crew: Crew, jobs: Sequence[Job], seed: int, *, in_turns: bool = False
+) -> tuple[Decisions, Schedule | Shortfall]:
     """Return the best decisions found, with their schedule; a shortfall if none led to a schedule.
 
     Args:
         crew: of the scene.
         jobs: in an order in which none comes before one that it waits for.
         seed: of the search.
+        in_turns: whether a robot leaves home only when all others are back there.
     """
     order = _first_order(crew, jobs)
     starts = [
@@ -41,6 +44,7 @@ def find_decisions(crew: Crew, jobs: Sequence[Job], seed: int) -> tuple[Decision
         Decisions(order, {job.name: 1 for job in jobs}),
         *(Decisions(order, {job.name: (name,) for job in jobs}) for name in _only_ones(crew, jobs)),
     ]
+    starts = [replace(each, in_turns=in_turns) for each in starts]
     tried = [(each, schedule(crew, jobs, each)) for each in starts]
     best, found = min(tried, key=lambda pair: cost_of(crew, pair[1]))
     random, idle = Random(seed), 0

@@ -1,39 +1,55 @@
-"""Keeps robots apart: finds when planned robots come too near to each other, and delays one of them."""
+"""Keeps robots apart: finds when planned robots may come too near to each other, and delays one of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import inf
-from typing import TypeAlias
+from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.geometry.segments import closest_approach
+from mmrs_core.planning.nearness import Nearness, Track, near_pairs, track_of
 from mmrs_core.planning.schedule import Decisions
-from mmrs_core.planning.timeline import Track, track_of
+from mmrs_core.planning.timeline import rides_of
 from mmrs_core.scene import Plan, Scene
 
-Indices: TypeAlias = NDArray[np.intp]
-
 _ROUNDS = 60
-_STEP = 2.0
-"""Seconds by which delays are told apart."""
-
 _LONGEST_DELAY = 36_000.0
+
+_ROUNDING = 1e-3
+"""Metres that robots keep apart beyond what is required, since files round coordinates."""
+
+_SPARE = 0.05
+"""Seconds that robots are apart in time at one place, since times follow from rounded coordinates."""
+
+_PARTS = 8
+"""Pieces as long as the distance to keep are told apart in so many parts, but none shorter than 0.5 m."""
+
+
+class TooNearError(InfeasibleError):
+    """Robots cannot be kept apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """Two robots that come too near to each other: when, and to how many metres."""
+    """Two robots that may come too near to each other: when, and to how many metres."""
 
     first: str
     second: str
     time: float
     distance: float
+
+
+def distance_to_keep(scene: Scene) -> float | None:
+    """Return the metres that planned robots keep apart; None where none are asked for.
+
+    Each of two robots may be off by the position error.
+    """
+    if scene.minimum_separation is None or scene.minimum_separation <= 0:
+        return None
+    return scene.minimum_separation + 2.0 * scene.position_error + _ROUNDING
 
 
 def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions], Plan | None]) -> Plan:
@@ -47,28 +63,29 @@ def separated(scene: Scene, decisions: Decisions, planned: Callable[[Decisions],
         planned: makes the plan of decisions; None where they lead to none.
 
     Raises:
-        InfeasibleError: delays do not help, or lead to no plan.
+        TooNearError: delays do not help, or lead to no plan.
     """
     found = planned(decisions)
     if found is None:
         raise InfeasibleError("no plan: the decisions found cannot be carried out")
-    least = scene.minimum_separation
-    if least is None or least <= 0:
+    least = distance_to_keep(scene)
+    if least is None:
         return found
     for _ in range(_ROUNDS):
-        encounter = first_encounter(scene, found, least)
+        tracks = tracks_of(scene, found)
+        encounter = earliest_encounter(tracks, least)
         if encounter is None:
             return found
-        better = _resolved(scene, found, decisions, planned, encounter, least)
+        better = _resolved(scene, tracks, decisions, planned, encounter, least)
         if better is None:
             break
         decisions, found = better
-    raise InfeasibleError(_words(first_encounter(scene, found, least), least))
+    raise TooNearError(_words(first_encounter(scene, found, least), least))
 
 
 def _resolved(
     scene: Scene,
-    found: Plan,
+    tracks: Mapping[str, Track],
     decisions: Decisions,
     planned: Callable[[Decisions], Plan | None],
     encounter: Encounter,
@@ -79,10 +96,7 @@ def _resolved(
     One of the two robots starts later, by as little as would do if all else stayed; where it waits for
     the other anyway, that changes nothing, and the other one is tried.
     """
-    robots = {robot.name: robot for robot in scene.robots}
-    steps = {each.robot: each.steps for each in found.robots}
-    first = track_of(steps[encounter.first], robots[encounter.first])
-    second = track_of(steps[encounter.second], robots[encounter.second])
+    first, second = tracks[encounter.first], tracks[encounter.second]
     shifts = [
         (_shift(first, second, least), encounter.second),
         (_shift(second, first, least), encounter.first),
@@ -103,23 +117,19 @@ def _is_progress(before: Encounter, after: Encounter) -> bool:
 
 
 def _shift(fixed: Track, late: Track, least: float) -> float:
-    """Return by how many seconds a track must come later to keep apart from another; inf: never."""
-    i, j = _near_in_space(fixed, late, least)
-    longest = float(fixed.times.max() - late.times.min())
-    for shift in np.arange(_STEP, longest + 2 * _STEP, _STEP).tolist():
-        moved = Track(late.times + shift, late.places)
-        if _nearest_of(fixed, moved, i, j, least) is None:
-            return float(shift)
-    return inf
+    """Return by how many whole seconds a track must come later to keep apart from another."""
+    pairs = near_pairs(fixed, late, least, finest=_finest(least))
+    begins = pairs.one[:, 0] - pairs.two[:, 1] - _SPARE
+    ends = pairs.one[:, 1] - pairs.two[:, 0] + _SPARE
+    shift = 1.0
+    for i in np.argsort(begins).tolist():
+        if begins[i] < shift < ends[i]:
+            shift = float(ceil(ends[i]))
+    return shift
 
 
-def _near_in_space(one: Track, two: Track, least: float) -> tuple[Indices, Indices]:
-    """Return pairs of pieces whose boxes come within a distance, whenever they are there."""
-    low_one, high_one = one.places.min(axis=1)[:, None], one.places.max(axis=1)[:, None]
-    low_two, high_two = two.places.min(axis=1)[None], two.places.max(axis=1)[None]
-    near = ((low_one - least < high_two) & (low_two - least < high_one)).all(axis=2)
-    i, j = np.nonzero(near)
-    return i, j
+def _finest(least: float) -> float:
+    return max(0.5, least / _PARTS)
 
 
 def _words(encounter: Encounter | None, least: float) -> str:
@@ -132,39 +142,33 @@ def _words(encounter: Encounter | None, least: float) -> str:
     )
 
 
+def tracks_of(scene: Scene, plan: Plan) -> dict[str, Track]:
+    """Return the tracks of all robots that have something to do."""
+    robots = {robot.name: robot for robot in scene.robots}
+    return {name: track_of(rides) for name, rides in rides_of(plan, robots).items()}
+
+
 def first_encounter(scene: Scene, plan: Plan, least: float) -> Encounter | None:
     """Return the earliest encounter nearer than `least` metres; None if there is none."""
-    robots = {robot.name: robot for robot in scene.robots}
-    tracks = {each.robot: track_of(each.steps, robots[each.robot]) for each in plan.robots if each.steps}
-    found = [
-        Encounter(one, two, *nearest)
+    return earliest_encounter(tracks_of(scene, plan), least)
+
+
+def earliest_encounter(tracks: Mapping[str, Track], least: float) -> Encounter | None:
+    """Return the same of tracks."""
+    found: Iterable[Encounter | None] = (
+        _met(one, two, near_pairs(tracks[one], tracks[two], least, finest=_finest(least), spare=_SPARE))
         for one, two in combinations(tracks, 2)
-        if (nearest := _nearest(tracks[one], tracks[two], least)) is not None
-    ]
-    return min(found, key=lambda each: each.time, default=None)
+    )
+    return min((each for each in found if each is not None), key=lambda each: each.time, default=None)
 
 
-def _nearest(one: Track, two: Track, least: float) -> tuple[float, float] | None:
-    """Return (time, distance) at the beginning of the first encounter of two tracks."""
-    return _nearest_of(one, two, *_near_in_space(one, two, least), least)
-
-
-def _nearest_of(one: Track, two: Track, i: Indices, j: Indices, least: float) -> tuple[float, float] | None:
-    """Return the same for certain pairs of pieces only."""
-    start = np.maximum(one.times[i, 0], two.times[j, 0])
-    stop = np.minimum(one.times[i, 1], two.times[j, 1])
-    meet = start < stop
-    if not meet.any():
+def _met(one: str, two: str, pairs: Nearness) -> Encounter | None:
+    if not len(pairs.distance):
         return None
-    i, j, start, stop = i[meet], j[meet], start[meet], stop[meet]
-    first = np.stack([one.at(i, start), one.at(i, stop)], axis=1)
-    second = np.stack([two.at(j, start), two.at(j, stop)], axis=1)
-    distance, when = closest_approach(first, second, start, stop)
-    near = np.flatnonzero(distance < least - 1e-6)
-    if not len(near):
-        return None
-    earliest = near[np.argmin(when[near])]
-    return float(when[earliest]), float(distance[earliest])
+    times = np.maximum(pairs.one[:, 0], pairs.two[:, 0])
+    time = float(times.min())
+    nearest = float(pairs.distance[times <= time + 1.0].min())
+    return Encounter(one, two, time, max(0.0, nearest))
 
 
 def stacked_altitudes(scene: Scene) -> dict[str, float]:
@@ -173,7 +177,7 @@ def stacked_altitudes(scene: Scene) -> dict[str, float]:
     The lowest is the scene's own, or the height of the highest stroke. Empty where robots need not keep
     apart, or the lowest ceiling leaves no room for a second.
     """
-    least = scene.minimum_separation or 0.0
+    least = distance_to_keep(scene) or 0.0
     robots = [robot for robot in scene.robots if robot.kinematics is not None and robot.kinematics.launches]
     heights = [
         point[2] for work in scene.works.values() for stroke in work.strokes for point in stroke.points

@@ -7,13 +7,13 @@ against the wind or current times time.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 from typing import TypeAlias
 
 from mmrs_core.errors import UnreachableError
-from mmrs_core.planning.strokes import commanded_speed, length_of, serve_seconds
+from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Travel, Way
 from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Step, Stroke, Transit
 
@@ -75,47 +75,64 @@ class Ready:
         return max(self.time, self.earliest or 0.0)
 
 
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How a robot comes to a piece of work.
+
+    Attributes:
+        via: places to go to; all ways but the first one are within the task. The last is where the work
+            begins.
+        speed: commanded, metres per second; None: the robot's cruise.
+    """
+
+    via: tuple[Position, ...]
+    speed: float | None = None
+
+
 class Pilot:
     """Moves one robot's state on; every way of doing something is a short function of the state."""
 
-    def __init__(self, travel: Travel, slack: float = 0.0) -> None:
+    def __init__(self, travel: Travel, slack: float = 0.0, *, homing: bool = False) -> None:
         """Make it.
 
         Args:
             travel: ways of the robot.
             slack: seconds by which others may be later, and the robot earlier, than estimated: so much
                 longer may a wait for others be.
+            homing: whether it always keeps enough to go home, even if it may stay where it ends.
         """
-        self.travel, self._slack = travel, slack
+        self.travel, self.slack = travel, slack
         self.robot, self.kinematics = travel.robot, travel.kinematics
+        self.homebound = homing or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
         self.limit = min(self.kinematics.endurance, by_energy)
         self._exits: dict[Position, float] = {}
+        self._homes: dict[Position, float] = {}
 
     def start(self, delay: float = 0.0) -> State:
         """Return the state in which the mission begins, after a delay at home."""
-        state = State(0.0, self.robot.home)
-        return self._wait(state, Ready(earliest=delay), "") if delay > 0 else state
+        return self.stay_until(State(0.0, self.robot.home), delay, "")
+
+    def stay_until(self, state: State, time: float, task: str) -> State:
+        """Return the state after staying where the robot is until a time, if that is still to come."""
+        return self._wait(state, Ready(earliest=time), task)
 
     def exit_seconds(self, position: Position) -> float:
-        """Return the seconds that ending the sortie from a place takes; inf where it cannot be ended."""
-        seconds = self._exits.get(position)
-        if seconds is None:
-            try:
-                seconds = self.way_out(position).seconds
-            except UnreachableError:
-                seconds = inf
-            self._exits[position] = seconds
-        return seconds
+        """Return the seconds that ending the last sortie from a place takes; inf where it cannot end."""
+        return _remembered(self._exits, position, self.way_out)
+
+    def home_seconds(self, position: Position) -> float:
+        """Return the seconds that the way home from a place takes; inf where there is none."""
+        return _remembered(self._homes, position, self.travel.go_home)
 
     def way_out(self, position: Position) -> Way:
-        """Return the way on which a sortie is ended from a place: home, or down where that is allowed.
+        """Return the way on which the last sortie ends from a place: home, or down where that is allowed.
 
         Raises:
             UnreachableError: there is neither.
         """
-        if self.robot.return_home:
+        if self.homebound:
             return self.travel.go_home(position)
         try:
             return self.travel.come_down(position)
@@ -123,12 +140,14 @@ class Pilot:
             return self.travel.go_home(position)
 
     def affords(self, state: State, seconds: float, end: Position) -> bool:
-        """Return whether so many seconds that end at a place leave enough to end the sortie there."""
+        """Return whether so many seconds that end at a place leave enough to end the last sortie there."""
         return state.used + seconds + self.exit_seconds(end) <= self.limit + _SAME
 
-    def reach(
-        self, state: State, via: Sequence[Position], need: float, ready: Ready, task: str
-    ) -> State | None:
+    def affords_home(self, state: State, seconds: float, end: Position) -> bool:
+        """Return whether so many seconds that end at a place leave enough to go home."""
+        return state.used + seconds + self.home_seconds(end) <= self.limit + _SAME
+
+    def reach(self, state: State, approach: Approach, need: float, ready: Ready, task: str) -> State | None:
         """Return the state in which the robot begins work, as early as can be; None if it cannot.
 
         It goes there and waits, or first goes home for full batteries where it would have too little
@@ -136,16 +155,16 @@ class Pilot:
 
         Args:
             state: where it is.
-            via: places to go to, the last one being where the work begins.
+            approach: how it comes there.
             need: seconds it must then have left, the end of the sortie included.
             ready: what the work waits for.
             task: that it is for.
         """
-        now = self._with_enough(self._reach_now(state, via, ready, task), need)
+        now = self._with_enough(self._reach_now(state, approach, ready, task), need)
         if now is not None and now.time - state.time < (self.kinematics.recharge or inf):
             return now
         rested = self.rested(state, task)
-        later = None if rested is None else self._reach_now(rested, via, ready, task)
+        later = None if rested is None else self._reach_now(rested, approach, ready, task)
         found = [each for each in (now, self._with_enough(later, need)) if each is not None]
         return min(found, key=lambda each: (each.time, each.used), default=None)
 
@@ -162,23 +181,23 @@ class Pilot:
             return None
         return self._recharged(home, task) if home.used <= self.limit + _SAME else None
 
-    def _reach_now(self, state: State, via: Sequence[Position], ready: Ready, task: str) -> State | None:
+    def _reach_now(self, state: State, approach: Approach, ready: Ready, task: str) -> State | None:
         try:
             if not state.away:
-                return self._from_home(state, via, ready, task)
-            return self._wait(self._along(state, via, task), ready, task)
+                return self._from_home(state, approach, ready, task)
+            return self._wait(self._along(state, approach, task), ready, task)
         except UnreachableError:
             return None
 
-    def _from_home(self, state: State, via: Sequence[Position], ready: Ready, task: str) -> State:
+    def _from_home(self, state: State, approach: Approach, ready: Ready, task: str) -> State:
         """Wait at home for signals and clock, then go; wait for the rest of the clock where work begins."""
-        there = self._along(self._wait(state, replace(ready, earliest=None), task), via, task)
+        there = self._along(self._wait(state, replace(ready, earliest=None), task), approach, task)
         if ready.earliest is None or there.time >= ready.earliest:
             return there
         travel = there.time - max(state.time, ready.time)
         later = max(0.0, ready.earliest - travel)
         start = self._wait(state, replace(ready, earliest=later), task)
-        return self._wait(self._along(start, via, task), Ready(earliest=ready.earliest), task)
+        return self._wait(self._along(start, approach, task), Ready(earliest=ready.earliest), task)
 
     def _wait(self, state: State, ready: Ready, task: str) -> State:
         clock = ready.earliest if ready.earliest is not None and ready.earliest > state.time else None
@@ -187,7 +206,7 @@ class Pilot:
         end = max(state.time, ready.open)
         step = Await(state.time, end, task, ready.signals, clock)
         waited = end - state.time
-        longest = max(waited, ready.time + self._slack - state.time) if ready.signals else waited
+        longest = max(waited, ready.time + self.slack - state.time) if ready.signals else waited
         counts = state.away or not self.kinematics.launches
         return replace(
             state,
@@ -197,16 +216,18 @@ class Pilot:
             trail=(state.trail, step),
         )
 
-    def _along(self, state: State, via: Sequence[Position], task: str) -> State:
-        for goal in via:
-            if not state.away:
-                state = self._leave(state, goal, task)
-            elif state.at != goal:
-                state = self._follow(state, self.travel.go(state.at, goal), task)
+    def _along(self, state: State, approach: Approach, task: str) -> State:
+        first, *rest = approach.via
+        if not state.away:
+            state = self._leave(state, first, task, approach.speed)
+        elif state.at != first:
+            state = self._follow(state, self.travel.go(state.at, first), task, approach.speed)
+        for goal in rest:
+            state = self._follow(state, self.travel.hop(state.at, goal), task, approach.speed)
         return state
 
-    def _leave(self, state: State, goal: Position, task: str) -> State:
-        way = self.travel.leave(goal)
+    def _leave(self, state: State, goal: Position, task: str, speed: float | None) -> State:
+        way = self.travel.at_speed(self.travel.leave(goal), speed)
         trail, time = state.trail, state.time
         if way.height is not None:
             climb = way.height - self.robot.home[2]
@@ -215,7 +236,7 @@ class Pilot:
             time = up
         end = state.time + way.seconds
         if len(way.route) > 1 and way.route[0] != way.route[-1]:
-            trail = (trail, Transit(time, end, task, way.route))
+            trail = (trail, Transit(time, end, task, way.route, speed))
         return replace(
             state,
             time=end,
@@ -228,7 +249,8 @@ class Pilot:
             trail=trail,
         )
 
-    def _follow(self, state: State, way: Way, task: str) -> State:
+    def _follow(self, state: State, way: Way, task: str, speed: float | None) -> State:
+        way = self.travel.at_speed(way, speed)
         end = state.time + way.seconds
         return replace(
             state,
@@ -237,12 +259,25 @@ class Pilot:
             used=state.used + way.seconds,
             length=state.length + way.length,
             busy=state.busy + way.seconds,
-            trail=(state.trail, Transit(state.time, end, task, way.route)),
+            trail=(state.trail, Transit(state.time, end, task, way.route, speed)),
         )
 
-    def hop(self, state: State, goal: Position, task: str) -> State:
+    def hop(self, state: State, stroke: Stroke, task: str) -> State:
         """Return the state after the quickest way to the next stroke of a task."""
-        return state if state.at == goal else self._follow(state, self.travel.hop(state.at, goal), task)
+        goal = stroke.points[0]
+        if state.at == goal:
+            return state
+        return self._follow(state, self.travel.hop(state.at, goal), task, self._approach_speed(stroke))
+
+    def hop_seconds(self, here: Position, stroke: Stroke) -> float:
+        """Return how long that takes."""
+        goal = stroke.points[0]
+        if here == goal:
+            return 0.0
+        return self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke)).seconds
+
+    def _approach_speed(self, stroke: Stroke) -> float | None:
+        return approach_speed(stroke, self.kinematics)
 
     def serve(self, state: State, stroke: Stroke, task: str, rule: str, first: bool, last: bool) -> State:
         """Return the state after a stroke, whose first point the robot is at."""
@@ -279,7 +314,21 @@ class Pilot:
         Raises:
             UnreachableError: there is no way home.
         """
-        return self._ended(state, self.way_out(state.at), "") if state.away else state
+        if not state.away:
+            return state
+        way = self.way_out(state.at)
+        if self.homebound and not self.robot.return_home:
+            down = self._way_down(state)
+            way = way if down is None else down
+        return self._ended(state, way, "")
+
+    def _way_down(self, state: State) -> Way | None:
+        """Return the way down to the ground where the robot is; None if it is shut, or takes too long."""
+        try:
+            way = self.travel.come_down(state.at)
+        except UnreachableError:
+            return None
+        return way if state.used + way.seconds <= self.limit + _SAME else None
 
     def _ended(self, state: State, way: Way, task: str) -> State:
         end, trail = state.time + way.seconds, state.trail
@@ -308,3 +357,17 @@ class Pilot:
     def _recharged(self, state: State, task: str) -> State:
         end = state.time + (self.kinematics.recharge or 0.0)
         return replace(state, time=end, used=0.0, trail=(state.trail, Recharge(state.time, end, task)))
+
+
+def _remembered(
+    known: dict[Position, float], position: Position, way_from: Callable[[Position], Way]
+) -> float:
+    """Return the seconds of the way from a place; inf where there is none."""
+    seconds = known.get(position)
+    if seconds is None:
+        try:
+            seconds = way_from(position).seconds
+        except UnreachableError:
+            seconds = inf
+        known[position] = seconds
+    return seconds

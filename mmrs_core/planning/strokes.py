@@ -33,6 +33,18 @@ def commanded_speed(stroke: Stroke, kinematics: Kinematics) -> float:
     return min(max(speed, kinematics.slowest), kinematics.fastest)
 
 
+def approach_speed(stroke: Stroke, kinematics: Kinematics) -> float | None:
+    """Return the metres per second at which a robot is told to go to a stroke; None: its cruise.
+
+    A stroke of one point has no way of its own: how fast it is done is how fast the robot comes there.
+    """
+    limited = stroke.speed is not None or stroke.slow_down is not None
+    if len(stroke.points) > 1 or not limited:
+        return None
+    speed = commanded_speed(stroke, kinematics)
+    return None if abs(speed - kinematics.cruise) < _SAME else speed
+
+
 def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float:
     """Return how long a robot takes for a stroke from its first point, actions, hold and turn included.
 

@@ -1,117 +1,197 @@
-"""Where a planned robot is at each moment: its steps as pieces that it moves along steadily."""
+"""Where planned robots may be, and when: the ways and stays of their steps, within spans of time.
+
+A robot need not go steadily along a way: it speeds up, slows down, and may be quicker than planned
+wherever it need not turn, or takes the shorter arm of a choice. All that is certain is when it may
+begin at the earliest, when it has come to the end at the latest, and that it is nowhere faster than
+commanded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from math import dist, inf
-from typing import TypeAlias
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby, pairwise
+from math import dist, hypot
 
-import numpy as np
-from numpy.typing import NDArray
-
+from mmrs_core.errors import InternalError
 from mmrs_core.planning.layers import Rates
-from mmrs_core.planning.strokes import NEAR, action_seconds, rates_of, stops_of
+from mmrs_core.planning.strokes import NEAR, action_seconds, rates_of, stops_of, uncertain_seconds
 from mmrs_core.planning.travel import kinematics_of
-from mmrs_core.scene import Branch, Launch, Position, Recover, Robot, Serve, Step, Transit
-
-Floats: TypeAlias = NDArray[np.float64]
-Piece: TypeAlias = tuple[float, float, Position, Position]
-"""Seconds at which it begins and ends, and where the robot is then."""
+from mmrs_core.scene import (
+    Await,
+    Branch,
+    Launch,
+    Plan,
+    Position,
+    Recover,
+    Robot,
+    Serve,
+    Signal,
+    Step,
+    Transit,
+)
 
 
 @dataclass(frozen=True, slots=True)
-class Track:
-    """Where a robot is while it is away from home.
+class Ride:
+    """A way, or a stay at one place, while a robot is away from home.
 
     Attributes:
-        times: (n, 2) seconds at which each piece begins and ends.
-        places: (n, 2, 3) where the robot is then.
+        points: at least one; several: straight legs between them.
+        early: seconds at which it may begin; late: by which it has ended.
+        least: seconds of each leg at even speed, which the robot does not exceed.
+        radius: metres from the way within which the robot may be.
     """
 
-    times: Floats
-    places: Floats
-
-    def at(self, piece: NDArray[np.intp], time: Floats) -> Floats:
-        """Return (m, 3) where the robot is at m times within m pieces."""
-        begin, end = self.times[piece, 0], self.times[piece, 1]
-        share = ((time - begin) / np.where(end > begin, end - begin, 1.0))[:, None]
-        start = self.places[piece, 0]
-        place: Floats = start + share * (self.places[piece, 1] - start)
-        return place
+    points: tuple[Position, ...]
+    early: float
+    late: float
+    least: tuple[float, ...] = ()
+    radius: float = 0.0
 
 
-def track_of(steps: Sequence[Step], robot: Robot) -> Track:
-    """Return where a robot is from each time it leaves home until it is back; the longest arm counts."""
-    pieces = [piece for piece in _away(steps, robot) if piece[1] > piece[0]]
-    return Track(
-        np.array([piece[:2] for piece in pieces], dtype=np.float64).reshape(-1, 2),
-        np.array([piece[2:] for piece in pieces], dtype=np.float64).reshape(-1, 2, 3),
-    )
+def rides_of(plan: Plan, robots: Mapping[str, Robot]) -> dict[str, tuple[Ride, ...]]:
+    """Return the rides of every robot that has something to do, all arms of choices included.
+
+    Robots on the ground, and robots that stand at their homes, take up no space.
+    """
+    walks = {
+        each.robot: _Walk(robots[each.robot], rates_of_robot(robots[each.robot]))
+        for each in plan.robots
+        if each.steps
+    }
+    left = {each.robot: list(each.steps) for each in plan.robots if each.steps}
+    given: dict[str, float] = {}
+    while any(left.values()):
+        before = sum(map(len, left.values()))
+        for name, steps in left.items():
+            while steps and walks[name].may_begin(steps[0], given):
+                walks[name].add(steps.pop(0), given)
+        if sum(map(len, left.values())) == before:
+            raise InternalError("robots of a plan wait for each other for ever")
+    return {name: tuple(walk.rides) for name, walk in walks.items()}
 
 
-def _away(steps: Sequence[Step], robot: Robot) -> Iterator[Piece]:
-    """Yield the pieces during which a robot is neither at home nor on the ground."""
-    grounded = True
-    for step, pieces in _pieces(steps, robot, robot.home):
-        if isinstance(step, Launch) or not kinematics_of(robot).launches:
-            grounded = False
-        for piece in pieces:
-            if not grounded and not (piece[2] == piece[3] == robot.home):
-                yield piece
-        if isinstance(step, Recover):
-            grounded = True
-
-
-def _pieces(steps: Sequence[Step], robot: Robot, here: Position) -> Iterator[tuple[Step, list[Piece]]]:
-    for step in steps:
-        if isinstance(step, Branch):
-            longest = max((arm for _, arm in step.arms), key=lambda arm: arm[-1].end if arm else -inf)
-            yield from _pieces(longest, robot, here)
-            end = longest[-1].end if longest else step.begin
-            yield step, [(end, step.end, step.exit, step.exit)]
-            here = step.exit
-        else:
-            pieces = list(_of_step(step, robot, here))
-            yield step, pieces
-            here = pieces[-1][3] if pieces else here
-
-
-def _of_step(step: Step, robot: Robot, here: Position) -> Iterator[Piece]:
-    """Yield a step's pieces; what is left of its time is spent where it ends."""
-    now = step.begin
-    for seconds, place in _stops(step, robot, here):
-        later = min(now + seconds, step.end)
-        yield (now, later, here, place)
-        now, here = later, place
-    if now < step.end:
-        yield (now, step.end, here, here)
-
-
-def _stops(step: Step, robot: Robot, here: Position) -> Iterator[tuple[float, Position]]:
-    """Yield (seconds, where the robot is after them) through a step."""
+def rates_of_robot(robot: Robot) -> Rates:
+    """Return the rates of a robot at its cruise."""
     kinematics = kinematics_of(robot)
-    rates = rates_of(kinematics, kinematics.cruise)
-    if isinstance(step, Launch):
-        yield kinematics.launch, step.at
-        yield rates.rise(step.up - step.at[2]), (step.at[0], step.at[1], step.up)
-    elif isinstance(step, Recover):
-        yield rates.rise(step.up - step.at[2]), (step.at[0], step.at[1], step.up)
-    elif isinstance(step, Transit):
-        for one, two in pairwise(step.route):
-            yield rates.from_stop_to_stop(one, two), two
-    elif isinstance(step, Serve):
-        yield from _served(step, robot, rates_of(kinematics, step.speed))
+    return rates_of(kinematics, kinematics.cruise)
 
 
-def _served(step: Serve, robot: Robot, rates: Rates) -> Iterator[tuple[float, Position]]:
-    todo = list(step.stroke.actions)
-    stops = stops_of(step.stroke)
-    done, here = 0.0, stops[0]
-    for place in stops:
-        done += dist(here, place)
-        yield rates.from_stop_to_stop(here, place), place
-        here = place
-        while todo and todo[0].at <= done + NEAR:
-            yield action_seconds(robot.type, todo.pop(0)), place
+@dataclass(slots=True)
+class _Walk:
+    """One robot on its way through its steps, as early as it may be.
+
+    Attributes:
+        now: seconds; here: where it is; radius: how far from there it may be.
+    """
+
+    robot: Robot
+    rates: Rates
+    rides: list[Ride] = field(default_factory=list)
+    now: float = 0.0
+    here: Position = (0.0, 0.0, 0.0)
+    radius: float = 0.0
+    grounded: bool = True
+
+    def __post_init__(self) -> None:
+        self.here = self.robot.home
+        self.grounded = kinematics_of(self.robot).launches
+
+    def may_begin(self, step: Step, given: Mapping[str, float]) -> bool:
+        return not isinstance(step, Await) or all(signal in given for signal in step.signals)
+
+    def add(self, step: Step, given: dict[str, float]) -> None:
+        if isinstance(step, Await):
+            self._await(step, given)
+        elif isinstance(step, Signal):
+            given[step.signal] = self.now
+        elif isinstance(step, Branch):
+            self._branch(step, given)
+        elif isinstance(step, Serve):
+            self._serve(step)
+        elif isinstance(step, Transit):
+            self._transit(step)
+        elif isinstance(step, Launch | Recover):
+            self.grounded = False
+            self._ride((self.here, (step.at[0], step.at[1], step.up)), step.end - step.begin, step.end)
+            self.grounded = isinstance(step, Recover)
+        else:
+            self._stay(step.end - step.begin, step.end)
+
+    def _await(self, step: Await, given: Mapping[str, float]) -> None:
+        own = self.now + (0.0 if step.until is None else max(0.0, step.until - step.begin))
+        self._stay(max([own, *(given[signal] for signal in step.signals)]) - self.now, step.end)
+
+    def _branch(self, step: Branch, given: dict[str, float]) -> None:
+        """Take every arm; go on as soon as the quickest one may."""
+        begin, ends = (self.now, self.here, self.radius), []
+        for _, arm in step.arms:
+            self.now, self.here, self.radius = begin
+            for inner in arm:
+                self.add(inner, given)
+            self._stay(0.0, step.end)
+            ends.append(self.now)
+        self.now, self.here = min(ends), step.exit
+
+    def _transit(self, step: Transit) -> None:
+        rates = self.rates if step.speed is None else rates_of(kinematics_of(self.robot), step.speed)
+        legs = list(pairwise(step.route))
+        late = step.begin
+        for points in _moves_along(legs):
+            seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(points))
+            late += seconds
+            self._ride(points, seconds, late, rates)
+        self.radius = 0.0
+
+    def _serve(self, step: Serve) -> None:
+        rates = rates_of(kinematics_of(self.robot), step.speed)
+        todo, done, late = list(step.stroke.actions), 0.0, step.begin
+        for place in stops_of(step.stroke):
+            done += dist(self.here, place)
+            seconds = rates.from_stop_to_stop(self.here, place)
+            late += seconds
+            if place != self.here:
+                self._ride((self.here, place), seconds, late, rates)
+            while todo and todo[0].at <= done + NEAR:
+                acting = action_seconds(self.robot.type, todo.pop(0))
+                late += acting
+                self._stay(acting, late)
+        if step.stroke.object is not None:
+            self.radius = step.stroke.object_tolerance or 0.0
+        certain = step.end - late - uncertain_seconds(step.stroke, kinematics_of(self.robot))
+        self._stay(max(0.0, certain), step.end)
+
+    def _ride(
+        self, points: tuple[Position, ...], seconds: float, late: float, rates: Rates | None = None
+    ) -> None:
+        least = tuple((rates or self.rates).leg(one, two) for one, two in pairwise(points))
+        self.rides.append(Ride(points, self.now, late, least, self.radius))
+        self.now, self.here = self.now + seconds, points[-1]
+
+    def _stay(self, seconds: float, late: float) -> None:
+        """Stay for so long at least; what comes next may begin then, or as late as `late`."""
+        if not self.grounded and self.here != self.robot.home and late > self.now:
+            self.rides.append(Ride((self.here,), self.now, late, (), self.radius))
+        self.now += seconds
+
+
+def _moves_along(legs: Sequence[tuple[Position, Position]]) -> Iterator[tuple[Position, ...]]:
+    """Yield the legs of a route, upright and level ones in a row together.
+
+    Kinds of robots may make one move of these, within which nobody knows where the corner is passed.
+    """
+    for _, run in groupby(enumerate(legs), key=lambda pair: pair[0] if _slopes(*pair[1]) else -1):
+        joined = [leg for _, leg in run]
+        if len(joined) == 1 or not any(_upright(*leg) for leg in joined):
+            yield from joined
+        else:
+            yield (joined[0][0], *(two for _, two in joined))
+
+
+def _upright(one: Position, two: Position) -> bool:
+    return hypot(two[0] - one[0], two[1] - one[1]) <= NEAR
+
+
+def _slopes(one: Position, two: Position) -> bool:
+    return abs(two[2] - one[2]) > NEAR and not _upright(one, two)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import hypot, inf
 
 from mmrs_core.errors import InternalError, UnreachableError
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
-from mmrs_core.planning.strokes import length_of
+from mmrs_core.planning.strokes import length_of, rates_of
 from mmrs_core.scene import Kinematics, Position, Robot, Scene
 
 _NEAR_HOME = 2.0
@@ -110,12 +111,20 @@ class Travel:
         return _found(self._between[start, goal])
 
     def hop(self, start: Position, goal: Position) -> Way:
-        """Return the quickest way between two strokes of one task.
+        """Return the quickest way within one task: from its entry to a stroke, or between two strokes.
 
         Raises:
             UnreachableError: there is none.
         """
         return self._way(self.space.route(start, goal))
+
+    def at_speed(self, way: Way, speed: float | None) -> Way:
+        """Return the same way, its route gone at a commanded speed; None: at the robot's cruise."""
+        if speed is None:
+            return way
+        rates = rates_of(self.kinematics, speed)
+        seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(way.route))
+        return replace(way, seconds=way.seconds - self.space.seconds(way.route) + seconds)
 
     def come_down(self, start: Position) -> Way:
         """Return the way down to the ground where the robot is; for robots that need not return.

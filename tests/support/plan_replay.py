@@ -90,7 +90,7 @@ class _Walk:
     def _Transit(self, step):  # noqa: N802
         if not self.away or len(step.route) < 2:
             self.faults.append(f"cannot travel {step}")
-        self.lasts(step, self.move(step.route))
+        self.lasts(step, self.move(step.route, step.speed))
         if max(self.route_heights(step.route)) > self.kinematics.ceiling + NEAR:
             self.faults.append(f"{step} is above the ceiling")
 

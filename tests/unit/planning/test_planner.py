@@ -259,6 +259,49 @@ def test_the_transit_altitude_is_used_between_tasks():
     assert steps_of(found, "r1", Launch)[0].up == 60.0
 
 
+def test_the_way_from_an_entry_to_the_work_stays_low():
+    line = road((300.0, 40.0, 20.0), (300.0, 90.0, 20.0))
+    work = replace(line, entry=(300.0, 0.0, 20.0))
+    first, second, last = steps_of(sound(scene([robot()], {"a": work}, transit_altitude=60.0)), "r1", Transit)
+    assert max(point[2] for point in first.route) == max(point[2] for point in last.route) == 60.0
+    assert second.route == ((300.0, 0.0, 20.0), (300.0, 40.0, 20.0))
+
+
+def test_a_point_is_approached_at_the_speed_of_its_work():
+    slow = sound(scene([robot()], {"a": visit((300.0, 0.0, 20.0), slow_down=0.5)}))
+    there, back = steps_of(slow, "r1", Transit)
+    assert (there.speed, back.speed) == (5.0, None)
+    assert there.end - there.begin == pytest.approx(60.0)
+    assert back.end - back.begin == pytest.approx(30.0)
+
+
+def test_a_quick_point_is_approached_as_fast_as_the_robot_goes():
+    quick = sound(scene([robot()], {"a": visit((300.0, 0.0, 20.0), speed=float("inf"))}))
+    assert steps_of(quick, "r1", Transit)[0].speed == 15.0
+
+
+def test_a_stroke_is_approached_at_cruise_whatever_its_own_speed():
+    line = road((300.0, 0.0, 20.0), (300.0, 90.0, 20.0), speed=4.0)
+    assert steps_of(sound(scene([robot()], {"a": line})), "r1", Transit)[0].speed is None
+
+
+def test_points_of_one_task_are_gone_between_at_their_speed():
+    slow = sound(scene([robot()], {"a": visit((300.0, 0.0, 20.0), (300.0, 90.0, 20.0), slow_down=0.5)}))
+    assert [step.speed for step in steps_of(slow, "r1", Transit)] == [5.0, 5.0, None]
+
+
+def test_a_slow_approach_counts_against_the_charge():
+    lone = with_kinematics(robot(), endurance=115.0)
+    sound(scene([lone], {"a": visit((400.0, 0.0, 20.0))}))
+    with pytest.raises(InfeasibleError, match=r"takes 147 s there and back.*: 32 s short"):
+        plan(scene([lone], {"a": visit((400.0, 0.0, 20.0), slow_down=0.5)}))
+
+
+def test_a_point_that_is_never_reached_is_refused():
+    with pytest.raises(InfeasibleError, match="its speed there is zero"):
+        plan(scene([robot()], {"a": visit((400.0, 0.0, 20.0), slow_down=0.0)}))
+
+
 def test_a_robot_that_need_not_return_comes_down_where_it_ends():
     found = sound(scene([robot(returns=False)], {"a": visit((300.0, 0.0, 20.0))}))
     assert found.robots[0].steps[-1].at == (300.0, 0.0, 20.0)
@@ -272,6 +315,27 @@ def test_a_robot_that_cannot_come_down_where_it_ends_returns():
         areas=[box("hut", 290, -9, 310, 9, high=8.0)],
     )
     assert sound(whole).robots[0].steps[-1].at[:2] == (0.0, 0.0)
+
+
+def test_a_robot_that_need_not_return_goes_home_to_recharge_and_ends_where_it_ends():
+    lone = with_kinematics(robot(returns=False), endurance=200.0)
+    found = sound(scene([lone], {"a": folded()}))
+    assert found.robots[0].sorties > 3
+    assert found.robots[0].steps[-1].at[2] == 20.0
+    assert found.robots[0].steps[-1].at[:2] != (0.0, 0.0)
+
+
+def test_a_robot_that_need_not_return_may_go_so_far_that_it_could_not():
+    lone = with_kinematics(robot(returns=False), endurance=120.0, recharge=300.0)
+    assert sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))})).robots[0].sorties == 1
+
+
+def test_a_robot_that_need_not_return_keeps_enough_to_recharge_between_tasks():
+    lone = with_kinematics(robot(returns=False), endurance=120.0, recharge=300.0)
+    works = {name: visit((450.0, 10.0 * k, 20.0)) for k, name in enumerate("ab")}
+    works = {name: replace(w, strokes=(replace(w.strokes[0], hold=10.0),)) for name, w in works.items()}
+    far = {"z": visit((-450.0, 0.0, 20.0))}
+    assert sound(scene([lone], {**works, **far})).robots[0].sorties >= 2
 
 
 def test_a_crawler_neither_launches_nor_recovers():

@@ -1,29 +1,12 @@
-import numpy as np
+from dataclasses import replace
+
 import pytest
-from plain_scenes import photo, road, robot, scene, visit
+from plain_scenes import control, road, robot, scene, task, visit
+from plan_replay import complaints
 
+from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
-from mmrs_core.planning.separation import first_encounter, stacked_altitudes
-from mmrs_core.planning.timeline import track_of
-
-
-def test_a_track_stands_still_for_actions_and_holds():
-    work = road((0.0, 100.0, 20.0), (100.0, 100.0, 20.0), actions=(photo(50.0),), hold=30.0)
-    whole = scene([robot()], {"a": work})
-    found = plan(whole)
-    track = track_of(found.robots[0].steps, whole.robots[0])
-    still = (track.places[:, 0] == track.places[:, 1]).all(axis=1)
-    durations = (track.times[:, 1] - track.times[:, 0])[still]
-    assert sorted(durations.round(6).tolist()) == [1.0, 30.0]
-
-
-def test_a_track_is_without_gaps_from_climb_to_touch_down():
-    whole = scene([robot()], {"a": visit((100.0, 0.0, 20.0)), "b": visit((0.0, 100.0, 40.0))})
-    found = plan(whole)
-    track = track_of(found.robots[0].steps, whole.robots[0])
-    assert np.allclose(track.times[1:, 0], track.times[:-1, 1])
-    assert np.allclose(track.places[1:, 0], track.places[:-1, 1])
-    assert track.times[-1, 1] == pytest.approx(found.makespan - 5.0)
+from mmrs_core.planning.separation import distance_to_keep, first_encounter, stacked_altitudes
 
 
 def test_robots_at_home_meet_nobody():
@@ -48,8 +31,76 @@ def test_altitudes_are_stacked_below_the_ceiling():
     team = tuple(robot(f"r{k}") for k in range(3))
     whole = scene(team, {"a": visit((9.0, 9.0, 100.0))}, minimum_separation=15.0)
     heights = stacked_altitudes(whole)
-    assert sorted(set(heights.values())) == pytest.approx([100.0, 115.1])
+    assert sorted(set(heights.values())) == pytest.approx([100.0, 115.101])
 
 
 def test_nothing_is_stacked_where_robots_need_not_keep_apart():
     assert stacked_altitudes(scene((robot("r1"), robot("r2")), {"a": visit((9.0, 9.0, 9.0))})) == {}
+
+
+def test_planned_robots_keep_the_position_error_of_both_and_a_little_more():
+    whole = scene((robot("r1"),), {"a": visit((9.0, 9.0, 9.0))}, minimum_separation=4.0, position_error=1.0)
+    assert distance_to_keep(whole) == pytest.approx(6.001)
+    assert distance_to_keep(replace(whole, minimum_separation=None)) is None
+
+
+def test_robots_at_the_planned_distance_are_refused_no_more_than_needed():
+    team = (robot("r1"), robot("r2", (50.0, 0.0, 0.0)))
+    works = {
+        "a": {"r1": visit((100.0, 100.0, 20.0), hold=50.0)},
+        "b": {"r2": visit((100.0, 106.1, 20.0), hold=50.0)},
+    }
+    near = scene(team, works, minimum_separation=6.0)
+    assert first_encounter(near, plan(near), 6.0) is None
+
+
+def test_robots_that_wait_for_each_other_aloft_take_turns():
+    """Each one's second task is where the other one waits: only going home in between helps."""
+    team = (robot("r1"), robot("r2", (30.0, 0.0, 0.0)))
+    works = {
+        "a": {"r1": visit((100.0, 0.0, 20.0))},
+        "b": {"r2": visit((101.0, 0.0, 20.0), hold=30.0)},
+        "c": {"r1": visit((102.0, 0.0, 20.0), hold=30.0)},
+        "d": {"r2": visit((101.0, 0.0, 20.0))},
+    }
+    whole = scene(team, works, after=[("a", "b"), ("b", "c"), ("c", "d")], minimum_separation=10.0)
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert first_encounter(whole, found, 10.0) is None
+    assert [each.sorties for each in found.robots] == [2, 2]
+
+
+def test_taking_turns_keeps_choices_and_wanted_robots():
+    team = (robot("r1"), robot("r2", (30.0, 0.0, 0.0)))
+    line = road((100.0, 0.0, 20.0), (200.0, 0.0, 20.0), cuts=(25.0, 50.0, 75.0))
+    works = {
+        "a": {"r1": visit((100.0, 5.0, 20.0))},
+        "b": {"r2": visit((101.0, 0.0, 20.0), hold=30.0)},
+        "c": line,
+        "e": {"r1": visit((102.0, 0.0, 20.0))},
+        "f": {"r1": visit((120.0, 0.0, 20.0))},
+    }
+    after = [("a", "b"), ("b", "c"), ("c", "k"), ("k", "e", "windy"), ("k", "f"), ("e", "j"), ("f", "j")]
+    whole = scene(
+        team,
+        works,
+        after=after,
+        controls=(control("k", "Fork"), control("j", "Join")),
+        tasks={"c": task("c", wanted=2)},
+        minimum_separation=60.0,
+    )
+    found = plan(whole)
+    assert complaints(whole, found) == []
+    assert first_encounter(whole, found, 60.0) is None
+
+
+def test_deadlines_that_only_flying_at_once_can_keep_are_refused_with_what_is_short():
+    team = (robot("r1"), robot("r2", (30.0, 0.0, 0.0)))
+    works = {
+        "a": {"r1": visit((100.0, 0.0, 20.0), hold=100.0)},
+        "b": {"r2": visit((101.0, 0.0, 20.0), hold=100.0)},
+    }
+    tasks = {name: task(name, deadline=150.0) for name in works}
+    whole = scene(team, works, tasks=tasks, minimum_separation=10.0)
+    with pytest.raises(InfeasibleError, match=r"10\.001 m are required"):
+        plan(whole)

@@ -1,0 +1,173 @@
+"""Where two robots' rides come near to each other, and when each of them may be there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from mmrs_core.planning.timeline import Ride
+
+Floats: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """All that a robot may take up: straight pieces, each within a span of time.
+
+    Attributes:
+        times: (n, 2) seconds between which the robot may be on each piece.
+        places: (n, 2, 3) ends of each piece, equal for a stay.
+        least: (n,) seconds that it takes along the piece at least.
+        radii: (n,) metres from the piece within which it may be.
+    """
+
+    times: Floats
+    places: Floats
+    least: Floats
+    radii: Floats
+
+    def pick(self, pieces: Indices) -> Track:
+        """Return some pieces only."""
+        return Track(self.times[pieces], self.places[pieces], self.least[pieces], self.radii[pieces])
+
+    def cut(self, longest: float) -> Track:
+        """Return the same in pieces no longer than so many metres, each within its own span of time."""
+        length = np.linalg.norm(self.places[:, 1] - self.places[:, 0], axis=1)
+        parts = np.maximum(1, np.ceil(length / longest)).astype(np.intp)
+        of = np.repeat(np.arange(len(parts)), parts)
+        number = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
+        low, high = number / parts[of], (number + 1) / parts[of]
+        start, way = self.places[of, 0], (self.places[:, 1] - self.places[:, 0])[of]
+        ends = [start + share[:, None] * way for share in (low, high)]
+        times = [self.times[of, 0] + self.least[of] * low, self.times[of, 1] - self.least[of] * (1.0 - high)]
+        return Track(
+            np.stack(times, axis=1), np.stack(ends, axis=1), self.least[of] / parts[of], self.radii[of]
+        )
+
+
+def track_of(rides: Sequence[Ride]) -> Track:
+    """Return rides as pieces, one for each leg or stay."""
+    times, places, least, radii = [], [], [], []
+    for ride in rides:
+        points = ride.points if len(ride.points) > 1 else ride.points * 2
+        seconds = ride.least or (0.0,)
+        before, whole = 0.0, sum(seconds)
+        for leg, each in zip(pairwise(points), seconds, strict=True):
+            times.append((ride.early + before, ride.late - (whole - before - each)))
+            places.append(leg)
+            least.append(each)
+            radii.append(ride.radius)
+            before += each
+    return Track(
+        np.array(times, dtype=np.float64).reshape(-1, 2),
+        np.array(places, dtype=np.float64).reshape(-1, 2, 3),
+        np.array(least, dtype=np.float64),
+        np.array(radii, dtype=np.float64),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Nearness:
+    """Pairs of pieces of two tracks that are nearer to each other than allowed.
+
+    Attributes:
+        one, two: (n, 2) seconds between which each robot may be on its piece.
+        distance: (n,) metres at the nearest.
+    """
+
+    one: Floats
+    two: Floats
+    distance: Floats
+
+
+def near_pairs(
+    one: Track, two: Track, least: float, *, finest: float, spare: float | None = None
+) -> Nearness:
+    """Return the pairs of pieces that come within a distance of each other, in space.
+
+    Args:
+        one: track of a robot.
+        two: of another.
+        least: metres to keep.
+        finest: length in metres of the pieces that are told apart.
+        spare: None: whenever the robots are there; else only where their times come within so many
+            seconds of overlapping.
+    """
+    i, j = _pairs(one, two, least)
+    if spare is not None:
+        together = _overlap(one.times[i], two.times[j], spare)
+        i, j = i[together], j[together]
+    first, second = one.pick(np.unique(i)).cut(finest), two.pick(np.unique(j)).cut(finest)
+    i, j = _pairs(first, second, least)
+    if spare is not None:
+        together = _overlap(first.times[i], second.times[j], spare)
+        i, j = i[together], j[together]
+    apart = legs_apart(first.places[i], second.places[j]) - first.radii[i] - second.radii[j]
+    near = apart < least
+    return Nearness(first.times[i[near]], second.times[j[near]], apart[near])
+
+
+def _overlap(one: Floats, two: Floats, spare: float) -> NDArray[np.bool_]:
+    found: NDArray[np.bool_] = np.maximum(one[:, 0], two[:, 0]) < np.minimum(one[:, 1], two[:, 1]) + spare
+    return found
+
+
+def _pairs(one: Track, two: Track, least: float) -> tuple[Indices, Indices]:
+    """Return indices of pieces whose boxes come within a distance."""
+    reach = least + max(one.radii.max(initial=0.0) + two.radii.max(initial=0.0), 0.0)
+    tree = shapely.STRtree(_boxes(two, 0.0))
+    i, j = tree.query(_boxes(one, reach))
+    low, high = one.places[i, :, 2].min(axis=1) - reach, one.places[i, :, 2].max(axis=1) + reach
+    other = two.places[j, :, 2]
+    level = (other.max(axis=1) > low) & (other.min(axis=1) < high)
+    return i[level], j[level]
+
+
+def _boxes(track: Track, more: float) -> NDArray[np.object_]:
+    low, high = track.places[:, :, :2].min(axis=1) - more, track.places[:, :, :2].max(axis=1) + more
+    found: NDArray[np.object_] = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+    return found
+
+
+def legs_apart(one: Floats, two: Floats) -> Floats:
+    """Return the distances (n,) between straight legs (n, 2, 3), exact but for rounding.
+
+    The least distance is at an end of one of them, or where both are nearest to each other inside.
+    """
+    ends = [
+        _to_leg(one[:, 0], two),
+        _to_leg(one[:, 1], two),
+        _to_leg(two[:, 0], one),
+        _to_leg(two[:, 1], one),
+        _inside(one, two),
+    ]
+    nearest: Floats = np.min(ends, axis=0)
+    return nearest
+
+
+def _to_leg(points: Floats, legs: Floats) -> Floats:
+    way, gap = legs[:, 1] - legs[:, 0], points - legs[:, 0]
+    length2 = (way**2).sum(axis=1)
+    share = np.clip((gap * way).sum(axis=1) / np.where(length2 > 0.0, length2, 1.0), 0.0, 1.0)
+    found: Floats = np.linalg.norm(gap - share[:, None] * way, axis=1)
+    return found
+
+
+def _inside(one: Floats, two: Floats) -> Floats:
+    """Return the distances where the legs' lines are nearest, taken back into both legs."""
+    u, v, w = one[:, 1] - one[:, 0], two[:, 1] - two[:, 0], one[:, 0] - two[:, 0]
+    a, b, c = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
+    d, e = (u * w).sum(axis=1), (v * w).sum(axis=1)
+    across = a * c - b * b
+    safe = np.where(across > 0.0, across, 1.0)
+    s = np.clip((b * e - c * d) / safe, 0.0, 1.0)[:, None]
+    t = np.clip((a * e - b * d) / safe, 0.0, 1.0)[:, None]
+    found: Floats = np.linalg.norm(w + s * u - t * v, axis=1)
+    return found

@@ -1,0 +1,127 @@
+from dataclasses import replace
+from itertools import pairwise
+from math import dist
+
+import pytest
+from plain_scenes import CRAWLER, control, photo, road, robot, scene, visit, with_kinematics
+
+from mmrs_core.errors import InternalError
+from mmrs_core.planning.planner import plan
+from mmrs_core.planning.timeline import rides_of
+from mmrs_core.scene import Await, Look
+
+SWIFT = with_kinematics(robot(), acceleration=2.0)
+
+
+def rides_in(whole, name="r1"):
+    return rides_of(plan(whole), {each.name: each for each in whole.robots})[name]
+
+
+def stays(rides):
+    return [ride for ride in rides if len(ride.points) == 1]
+
+
+def test_a_robot_stands_still_for_actions_and_holds():
+    work = road((0.0, 100.0, 20.0), (100.0, 100.0, 20.0), actions=(photo(50.0),), hold=30.0)
+    found = stays(rides_in(scene([robot()], {"a": work})))
+    assert sorted(round(ride.late - ride.early, 6) for ride in found) == [1.0, 30.0]
+
+
+def test_rides_follow_each_other_without_gaps_in_space_from_climb_to_touch_down():
+    rides = rides_in(scene([robot()], {"a": visit((100.0, 0.0, 20.0)), "b": visit((0.0, 100.0, 40.0))}))
+    ends = [(one.points[-1], two.points[0]) for one, two in pairwise(rides)]
+    assert all(dist(*pair) == 0.0 for pair in ends)
+    assert rides[0].points[0] == rides[-1].points[-1] == (0.0, 0.0, 0.0)
+
+
+def test_rides_follow_each_other_without_gaps_in_time():
+    whole = scene([SWIFT], {"a": road((0.0, 90.0, 20.0), (90.0, 90.0, 20.0), actions=(photo(40.0),))})
+    rides = rides_in(whole)
+    assert [one.late for one in rides[:-1]] == pytest.approx([two.early for two in rides[1:]])
+    assert rides[-1].late == pytest.approx(plan(whole).makespan)
+
+
+def test_a_ride_leaves_open_where_speeding_up_and_slowing_down_is_done():
+    whole = scene([SWIFT], {"a": visit((100.0, 0.0, 20.0))})
+    way = next(ride for ride in rides_in(whole) if ride.points[-1] == (100.0, 0.0, 20.0))
+    assert sum(way.least) == pytest.approx(10.0)
+    assert way.late - way.early == pytest.approx(10.0 + 10.0 / 2.0)
+
+
+def test_a_turn_that_may_be_spared_makes_what_follows_early():
+    looking = visit((100.0, 0.0, 20.0), look=Look((100.0, 50.0, 0.0)), hold=10.0)
+    whole = scene([robot()], {"a": looking})
+    rides = rides_in(whole)
+    (hold,) = stays(rides)
+    home = rides[rides.index(hold) + 1]
+    assert hold.late - hold.early == pytest.approx(10.0 + 2.0)
+    assert hold.late - home.early == pytest.approx(2.0)
+
+
+def test_a_wait_for_a_robot_that_may_be_early_may_end_early():
+    looking = visit((300.0, 0.0, 20.0), look=Look((100.0, 50.0, 0.0)), hold=10.0)
+    team = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
+    works = {"a": {"r1": looking}, "b": {"r2": visit((30.0, 0.0, 20.0))}}
+    whole = scene(team, works, after=[("a", "b")])
+    found = plan(whole)
+    launch = rides_of(found, {each.name: each for each in team})["r2"][0]
+    assert launch.early == pytest.approx(found.ends["a"] - 2.0)
+
+
+def test_all_arms_of_a_choice_are_ridden():
+    works = {"near": visit((120.0, 0.0, 20.0)), "far": visit((500.0, 0.0, 20.0))}
+    after = [("f", "near", "windy"), ("f", "far"), ("near", "j"), ("far", "j")]
+    controls = (control("f", "Fork"), control("j", "Join"))
+    places = {
+        ride.points[-1][0] for ride in rides_in(scene([robot()], works, after=after, controls=controls))
+    }
+    assert {120.0, 500.0} <= places
+
+
+def test_after_a_choice_a_robot_may_be_as_early_as_its_shorter_arm():
+    works = {name: visit((120.0, 0.0, 20.0), hold=hold) for name, hold in (("a", 40.0), ("b", 10.0))}
+    works["z"] = visit((0.0, 9.0, 20.0))
+    after = [("f", "a", "windy"), ("f", "b"), ("a", "j"), ("b", "j"), ("j", "z")]
+    controls = (control("f", "Fork"), control("j", "Join"))
+    rides = rides_in(scene([robot()], works, after=after, controls=controls))
+    onwards = next(ride for ride in rides if ride.points[-1] == (0.0, 9.0, 20.0))
+    assert onwards.late - onwards.early == pytest.approx(sum(onwards.least) + 30.0)
+
+
+def test_an_upright_and_a_level_leg_in_a_row_are_one_ride():
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((300.0, 300.0, 20.0))}
+    rides = rides_in(scene([robot()], works, transit_altitude=60.0))
+    between = next(ride for ride in rides if ride.points[0] == (300.0, 0.0, 20.0))
+    assert [point[2] for point in between.points] == [20.0, 60.0, 60.0, 20.0]
+
+
+def test_a_robot_that_stands_at_home_is_nowhere():
+    rover = robot(kinematics=CRAWLER)
+    team = (rover, robot("r2", (20.0, 0.0, 0.0)))
+    works = {"a": {"r2": visit((300.0, 0.0, 20.0))}, "b": {"r1": visit((30.0, 0.0, 0.0))}}
+    whole = scene(team, works, after=[("a", "b")])
+    found = plan(whole)
+    first = rides_of(found, {each.name: each for each in team})["r1"][0]
+    assert first.early == pytest.approx(found.ends["a"])
+
+
+def test_an_object_may_be_anywhere_within_its_tolerance():
+    work = visit((100.0, 0.0, 20.0), object="buoy", object_tolerance=7.0, hold=5.0)
+    rides = rides_in(scene([robot()], {"a": work}))
+    assert [ride.radius for ride in rides if ride.points[0] == (100.0, 0.0, 20.0)] == [7.0, 7.0]
+    assert rides[-1].radius == 0.0
+
+
+def test_rides_keep_to_the_commanded_speed():
+    work = road((0.0, 100.0, 20.0), (100.0, 100.0, 20.0), speed=4.0)
+    whole = scene([robot()], {"a": work})
+    served = next(ride for ride in rides_in(whole) if len(ride.points) == 2 and sum(ride.least) == 25.0)
+    assert set(served.points) == {(0.0, 100.0, 20.0), (100.0, 100.0, 20.0)}
+
+
+def test_robots_that_wait_for_nobody_in_the_plan_are_an_error():
+    whole = scene([robot()], {"a": visit((9.0, 9.0, 9.0))})
+    found = plan(whole)
+    waiting = replace(found.robots[0], steps=(Await(0.0, 0.0, "a", ("never",)), *found.robots[0].steps))
+    with pytest.raises(InternalError, match="for ever"):
+        rides_of(replace(found, robots=(waiting,)), {"r1": whole.robots[0]})
