@@ -21,6 +21,7 @@ from mmrs_core.languages.grounding import area_of, ground_of, part_of, robot_typ
 from mmrs_core.languages.grounding_parts import names_of
 from mmrs_core.languages.grounding_values import children, number
 from mmrs_core.languages.model import Model
+from mmrs_core.languages.modelset import context_in, robot_files_in
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import Place, program_of
 from mmrs_core.scene import Area, Part
@@ -36,6 +37,7 @@ class BehaviourFiles:
         behaviour, context: None where the files hold none, or there is no file.
         types: by name.
         models: every file that was read.
+        place: the file that the context stands in, or ought to.
     """
 
     file: Path
@@ -43,6 +45,7 @@ class BehaviourFiles:
     context: contexts.Context | None
     types: Mapping[str, robots_language.Robot]
     models: tuple[Model, ...]
+    place: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,16 +89,15 @@ def read_behaviour_files(
     Raises:
         UnreadableError: if a file is missing or no model at all.
     """
-    beside = file.parent / "context.xmi"
-    place = context if context is not None else (beside if beside.is_file() else None)
-    types = tuple(robots) or tuple(sorted((file.parent / "robots").glob("*.xmi")))
+    place = context if context is not None else context_in(file.parent)
+    types = tuple(robots) or robot_files_in(file.parent / "robots")
     registry = workshop.contributions.languages
-    return _as_files(
-        file, [read_model(each, registry) for each in (file, *([place] if place else []), *types)]
-    )
+    models = [read_model(each, registry) for each in (file, *([place] if place else []), *types)]
+    workshop.have_read(models, place)
+    return _as_files(file, models, place)
 
 
-def _as_files(file: Path, models: Sequence[Model]) -> BehaviourFiles:
+def _as_files(file: Path, models: Sequence[Model], place: Path | None = None) -> BehaviourFiles:
     roots = [root for model in models for root in model.roots]
     return BehaviourFiles(
         file,
@@ -103,6 +105,7 @@ def _as_files(file: Path, models: Sequence[Model]) -> BehaviourFiles:
         next((root for root in roots if isinstance(root, contexts.Context)), None),
         {root.name or "": root for root in roots if isinstance(root, robots_language.Robot)},
         tuple(models),
+        place,
     )
 
 
@@ -118,6 +121,8 @@ def faults_of(workshop: Workshop, files: BehaviourFiles) -> tuple[Diagnostic, ..
         faults += [*model.diagnostics, *check_conformance(model, contributions.languages)]
     if files.behaviour is None or len(files.models[0].roots) != 1:
         raise InvalidModelError(f"{files.file}: expected one behaviour in this file", in_order(faults))
+    if files.place is not None and files.context is None:
+        raise InvalidModelError(f"{files.place}: expected one context in this file", in_order(faults))
     faults += check_behaviour(
         files.behaviour,
         contributions.constraints,

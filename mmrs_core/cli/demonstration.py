@@ -8,9 +8,10 @@ from pathlib import Path
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
-from mmrs_core.cli.journey import Journey, require_safe
+from mmrs_core.cli.journey import Journey
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
+from mmrs_core.cli.planned import require_sound, require_writable
 from mmrs_core.cli.preview.command import picture_of, write_pictures
 from mmrs_core.cli.simulation import fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
@@ -84,11 +85,12 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
     Raises:
         MmrsError: as the stages raise it; nothing is written before the behaviour is known to be safe.
     """
-    workshop = journey.workshop
-    program, place = journey.program, journey.place
-    require_safe(program, journey.verdicts, journey.scene.name or "mission")
-    folder.mkdir(parents=True, exist_ok=True)
+    workshop, place = journey.workshop, journey.place
+    program = journey.program
     behaviour = folder / "behaviour.xmi"
+    require_writable(journey, behaviour, "choose another folder")
+    require_sound(journey, journey.scene.name or "mission")
+    folder.mkdir(parents=True, exist_ok=True)
     save(journey.transformed[0], behaviour, workshop.contributions)
     files: list[tuple[str, Path, int]] = [("what each robot does, move by move", behaviour, 1)]
     left_out: dict[str, tuple[str, ...]] = {}
@@ -96,13 +98,13 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
         rendered, left_out[target] = _rendered(journey, target)
         if not rendered:
             continue
-        written = write(rendered, folder / "controllers" / target)
+        write(rendered, folder / "controllers" / target)
         lossy = (
             f", without {counted(len(left_out[target]), 'thing')} it cannot express"
             if left_out[target]
             else ""
         )
-        files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(written)))
+        files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(workshop, program, place, {})
     logs = write_logs(run, program, folder / "logs")
     files.append(("what each robot did", folder / "logs", len(logs)))

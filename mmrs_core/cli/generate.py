@@ -74,6 +74,7 @@ def _generate(
 ) -> tuple[Path, ...]:
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import require_safe, verdicts_of
+    from mmrs_core.cli.protection import refuse_inputs
     from mmrs_core.generation.writing import write
     from mmrs_core.pipeline import render
 
@@ -85,6 +86,7 @@ def _generate(
         "generating",
         lambda: render(program, place, target, workshop.contributions, allow_lossy=allow_lossy),
     )
+    refuse_inputs((output / file.path for file in files), workshop.inputs)
     return write(files, output, force=force)
 
 

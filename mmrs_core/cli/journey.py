@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from mmrs_core.cli.output import progress, report
+from mmrs_core.cli.output import progress, report, tell
+from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
 from mmrs_core.errors import MmrsError
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.diagnostics import Diagnostic
     from mmrs_core.languages.behaviour import Behaviour
+    from mmrs_core.languages.model import Model
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.pipeline import Place
     from mmrs_core.plugins import Plugins
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     from mmrs_core.transformation.engine import Trace
 
 Result = TypeVar("Result")
+
+NO_CONTEXT = "no context: nothing is known of obstacles and forbidden areas"
 
 
 class RefusedError(MmrsError):
@@ -43,6 +47,18 @@ class Workshop:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
+        self._inputs: list[Path] = []
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Return every file of models that was read so far, none of which may be overwritten."""
+        return tuple(self._inputs)
+
+    def have_read(self, models: Iterable[Model], context: object) -> None:
+        """Remember the files of the models of a mission or behaviour; tell if there is no context."""
+        self._inputs += files_of(models)
+        if context is None:
+            tell(f"{self._inputs[0].parent}: note: {NO_CONTEXT}")
 
     @cached_property
     def plugins(self) -> Plugins:
@@ -91,6 +107,7 @@ class Journey:
                 self._mission, self.workshop.contributions, context=self._context, robots=self._robots
             ),
         )
+        self.workshop.have_read(models.models, models.context)
         report(warnings)
         return models, warnings
 

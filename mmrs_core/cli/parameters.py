@@ -47,7 +47,9 @@ def robot_files(given: Iterable[Path] | None) -> tuple[Path, ...]:
 def _files_of(path: Path) -> tuple[Path, ...]:
     if not path.is_dir():
         return (path,)
-    found = tuple(sorted(path.glob("*.xmi")))
+    from mmrs_core.languages.modelset import robot_files_in
+
+    found = robot_files_in(path)
     if not found:
         raise UnreadableError(f"{path}: no robot type (*.xmi) in this folder")
     return found

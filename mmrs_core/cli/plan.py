@@ -52,6 +52,7 @@ def plan(
     context: Context = None,
     robots: Robots = None,
     seed: Seed = 0,
+    force: Annotated[bool, typer.Option("--force", help="Replace a behaviour written by hand.")] = False,
     stop_after: Annotated[
         Stage | None,
         typer.Option("--stop-after", help="Print what a stage makes as JSON, and write nothing."),
@@ -62,8 +63,9 @@ def plan(
 
     The behaviour is checked first; one that is not safe is not written.
     """
-    from mmrs_core.cli.journey import Journey, Workshop, require_safe
+    from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan_words import plan_lines, plan_summary
+    from mmrs_core.cli.planned import require_sound, require_writable
     from mmrs_core.pipeline import save
 
     workshop = Workshop(settings_of(call))
@@ -72,7 +74,8 @@ def plan(
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](journey)})
         return 0
     file = output if output is not None else folder_of(project) / "behaviour.xmi"
-    require_safe(journey.program, journey.verdicts, str(project))
+    require_writable(journey, file, "" if force else "--force replaces it")
+    require_sound(journey, str(project))
     save(journey.transformed[0], file, workshop.contributions)
     if json:
         summary = plan_summary(journey.scene, journey.plan)

@@ -24,13 +24,17 @@ def simulate(
     json: Json = False,
 ) -> int:
     """Carry out a behaviour in simulation, faster than real time."""
+    from mmrs_core.behaviour.log import log_name
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.protection import refuse_inputs
     from mmrs_core.cli.simulation import answers, fly, run_lines, succeeded, write_logs
 
     workshop = Workshop(settings_of(call))
     conditions = answers(assume)
     loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
+    if output is not None:
+        refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)
     run = fly(workshop, loaded.program, loaded.place, conditions)
     logs = write_logs(run, loaded.program, output) if output is not None else ()
     if json:

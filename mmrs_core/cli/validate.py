@@ -62,6 +62,7 @@ def _faults_of_mission(
     if models is None:
         return False, in_order(faults)
     given = models
+    workshop.have_read(given.models, given.context)
     checked = workshop.stage(
         "check", "checking the models", lambda: check_models(given, workshop.contributions)
     )

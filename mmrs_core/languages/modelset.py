@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,8 @@ from mmrs_core.languages.registry import Registry
 
 if TYPE_CHECKING:
     from mmrs_core.languages.metaclass import Metaclass
+
+_CONTEXT = "context.xmi"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,7 @@ def project_files(
     What is not given is looked for beside the mission: ``context.xmi``, and ``robots/*.xmi`` by name.
 
     Raises:
-        UnreadableError: if a folder has no ``mission.xmi``.
+        UnreadableError: if a folder has no ``mission.xmi``, or its context bears another name.
     """
     mission_file = place
     if place.is_dir():
@@ -52,9 +55,32 @@ def project_files(
         if not mission_file.is_file():
             raise UnreadableError(f"{place}: no mission.xmi in this folder")
     folder = mission_file.parent
-    if context is None and (folder / "context.xmi").is_file():
-        context = folder / "context.xmi"
-    return mission_file, context, tuple(robots) or tuple(sorted(folder.glob("robots/*.xmi")))
+    if context is None:
+        context = context_in(folder)
+    return mission_file, context, tuple(robots) or robot_files_in(folder / "robots")
+
+
+def context_in(folder: Path) -> Path | None:
+    """Return ``context.xmi`` of a folder, readable or not; None if the folder has none.
+
+    Raises:
+        UnreadableError: if it leads nowhere, or differs from that name by capitals only: a context that
+            goes unnoticed is an obstacle that is flown into.
+    """
+    file = folder / _CONTEXT
+    if file.is_symlink() and not file.exists():
+        raise UnreadableError(f"{file}: a link that leads nowhere")
+    if os.path.lexists(file):
+        return file
+    for other in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if other.name.casefold() == _CONTEXT:
+            raise UnreadableError(f"{other}: is taken for no context unless its name is {_CONTEXT}")
+    return None
+
+
+def robot_files_in(folder: Path) -> tuple[Path, ...]:
+    """Return the files of robot types in a folder, by name; hidden files are none."""
+    return tuple(sorted(file for file in folder.glob("*.xmi") if not file.name.startswith(".")))
 
 
 def read_project(

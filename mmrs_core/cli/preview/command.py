@@ -45,6 +45,7 @@ def preview(
     from mmrs_core.cli.behaviours import is_behaviour
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan import folder_of
+    from mmrs_core.cli.protection import refuse_inputs
 
     workshop = Workshop(settings_of(call))
     types = robot_files(robots)
@@ -52,7 +53,9 @@ def preview(
         picture = _of_behaviour(workshop, project, context, types, assume)
     else:
         picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
-    written = write_pictures(picture, output if output is not None else folder_of(project))
+    folder = output if output is not None else folder_of(project)
+    refuse_inputs((folder / PAGE, folder / MAP), workshop.inputs)
+    written = write_pictures(picture, folder)
     if json:
         say_json({"files": written})
     else:
