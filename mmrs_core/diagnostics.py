@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
@@ -67,7 +68,28 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 _RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.NOTE: 2}
 
 
+_FIGURES = re.compile(r"([0-9]+)")
+
+
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return them without repeats: errors first, then by file, line and code."""
-    unique = dict.fromkeys(diagnostics)
-    return tuple(sorted(unique, key=lambda d: (_RANK[d.severity], d.place, d.code, d.message)))
+    """Return them without repeats: errors first, then as they stand in the files, then by code.
+
+    Numbers within paths and messages count as numbers: ``/tasks[7]`` comes before ``/tasks[106]``.
+    """
+    return tuple(sorted(dict.fromkeys(diagnostics), key=_rank))
+
+
+def _rank(fault: Diagnostic) -> tuple[object, ...]:
+    place = fault.place
+    where = (_counted(place.file), place.line, _counted(place.path))
+    # the bare texts tell 07 from 7
+    return (_RANK[fault.severity], *where, fault.code, _counted(fault.message), place, fault.message)
+
+
+def _counted(text: str) -> tuple[tuple[int, int, str], ...]:
+    """Return what sorts texts as people count: figures by their value, in front of letters."""
+    parts = enumerate(_FIGURES.split(text))
+    # figures by their length before their digits: they may be longer than Python reads as a number
+    return tuple(
+        (0, len(part.lstrip("0")), part.lstrip("0")) if odd % 2 else (1, 0, part) for odd, part in parts
+    )

@@ -13,6 +13,8 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.registry import Registry
 
+_FINITE = "give a number; leave the attribute out where the value is not known"
+
 
 def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...]:
     """Return every breach of the metamodels in a model, in document order.
@@ -119,7 +121,7 @@ def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagno
     if not kind.accepts(value):
         yield _fault("ECO003", element, f"{where} is {value!r}, not of the type {kind.name}")
     elif kind.python is float and not math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
-        yield _fault("ECO009", element, f"{where} is {kind.render(value)}, not a finite number")
+        yield _fault("ECO009", element, f"{where} is {kind.render(value)}, not a finite number", _FINITE)
     elif kind.python is int:
         try:
             kind.parse(str(value))

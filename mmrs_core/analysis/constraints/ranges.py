@@ -14,8 +14,8 @@ from mmrs_core.analysis.constraints.findings import (
     finding,
 )
 from mmrs_core.contributions.constraints import Constraint, Finding
-from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of
-from mmrs_core.languages.grounding_values import number, value
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding_values import number
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Name
 
@@ -57,29 +57,11 @@ def _positive(*features: str) -> _Range:
     return _Range(features, low=0.0, without_low=True)
 
 
-def _finite(root: Element, models: ModelSet) -> Iterator[Finding]:
-    for element in (root, *descendants(root)):
-        if isinstance(element, Unknown):
-            continue
-        for feature in metaclass_of(element).features:
-            found = value(element, feature.name)
-            for each in found if isinstance(found, list) else [found]:
-                if isinstance(each, float) and not isfinite(each):
-                    yield finding(element, f"{feature.name} is {each}, but must be a finite number")
-
-
-_FINITE = "give a number; leave the attribute out where the value is not known"
-
-
 def _constraint(code: str, title: str, metaclass: Name, check: _Range, hint: str) -> Constraint:
     return Constraint(code, title, metaclass, check, hint)
 
 
 CONSTRAINTS = (
-    Constraint("MML009", "Every number of a mission is finite.", (MISSION, "Mission"), _finite, _FINITE),
-    Constraint("CTX009", "Every number of a context is finite.", (CONTEXT, "Context"), _finite, _FINITE),
-    Constraint("RL009", "Every number of a robot type is finite.", (ROBOT, "Robot"), _finite, _FINITE),
-    Constraint("BL009", "Every number of a behaviour is finite.", (BEHAVIOUR, "Behaviour"), _finite, _FINITE),
     _constraint(
         "MML005",
         "The reserve is a part of the whole: at least 0 and less than 1.",
