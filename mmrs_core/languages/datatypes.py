@@ -6,14 +6,17 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 
 ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 XML_TYPES = "http://www.eclipse.org/emf/2003/XMLType"
 
-_JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)")
+_JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)", re.ASCII)
+_JAVA_DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _JAVA_INTEGER = re.compile(r"[+-]?[0-9]+")
-_DATE = re.compile(r"(\d+)-(\d\d)-(\d\d)(?:T(\d\d):(\d\d)(?::(\d\d)(?:\.(\d{1,6}))?)?)?(Z|[+-]\d\d:?\d\d)?")
+_DATE = re.compile(
+    r"(\d+)-(\d\d)-(\d\d)(?:T(\d\d):(\d\d)(?::(\d\d)(?:\.(\d{1,6}))?)?)?(Z|[+-]\d\d:?\d\d)?", re.ASCII
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,10 +115,9 @@ def _integer(bits: int | None) -> Callable[[str], int]:
 
 
 def _parse_decimal(text: str) -> Decimal:
-    try:
-        return Decimal(text)
-    except InvalidOperation:
-        raise ValueError(f"{shown(text)}: not a decimal number") from None
+    if not _JAVA_DECIMAL.fullmatch(text):
+        raise ValueError(f"{shown(text)}: not a decimal number")
+    return Decimal(text)
 
 
 def _parse_character(text: str) -> str:

@@ -14,7 +14,8 @@ from mmrs_core.languages.metaclass import Feature
 
 MOST_FAULTS = 10_000
 
-_STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>\d{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
+_STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>[0-9]{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
+_INDEX = re.compile(r"[0-9]{0,9}")
 _KEY = re.compile(r"(?P<name>\w+)='(?P<value>[^']*)'")
 
 
@@ -89,9 +90,9 @@ class Draft:
         return element
 
     def _root(self, index: str) -> Element | None:
-        number = (
-            0 if index == "" else int(index) if index.isdecimal() and len(index) < 10 else len(self.roots)
-        )
+        if not _INDEX.fullmatch(index):
+            return None
+        number = int(index or 0)
         return self.roots[number] if number < len(self.roots) else None
 
     def _step(self, parent: Element | None, step: str) -> Element | None:

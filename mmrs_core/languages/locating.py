@@ -95,7 +95,7 @@ class Directory:
         top, *steps = fragment.lstrip("#").removeprefix("/").split("/")
         if not steps or not steps[-1]:
             raise PluginError(f"{referrer.provider}: {referrer.table.ns_uri}: {uri} names no class")
-        ns_uri = self.document(document, int(top) if top.isdigit() else 0, referrer, uri)
+        ns_uri = self.document(document, int(top) if top.isascii() and top.isdigit() else 0, referrer, uri)
         for step in steps[:-1]:
             if (ns_uri, step) not in self._children:
                 raise PluginError(f"{referrer.provider}: {referrer.table.ns_uri}: {uri}: no package {step}")

@@ -45,6 +45,23 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean {folded[found[0]]}?" if found else ""
 
 
+def typo_of(name: str, known: Iterable[str]) -> str:
+    """Return a hint that names the known word at most two letters away, or an empty text."""
+    return next((f"did you mean {each}?" for each in sorted(set(known)) if _within_two_edits(name, each)), "")
+
+
+def _within_two_edits(one: str, other: str) -> bool:
+    """Return whether two letters put in, left out or exchanged make one text the other."""
+    if abs(len(one) - len(other)) > 2:
+        return False
+    row = list(range(len(other) + 1))
+    for index, letter in enumerate(one, 1):
+        above, row = row, [index]
+        for place, wanted in enumerate(other):
+            row.append(min(above[place] + (letter != wanted), above[place + 1] + 1, row[-1] + 1))
+    return row[-1] <= 2
+
+
 def unreadable(name: str) -> str:
     r"""Return what people could not read a name by, in words; empty for a good name.
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.documents import Draft, Pending
-from mmrs_core.languages.element import Element, Unknown, label_of
+from mmrs_core.languages.element import Element, Unknown, held, label_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.naming import nearest, typo_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xml_events import XMI, XSI, Document
 
@@ -44,6 +44,7 @@ class XmiReader:
         self._wrapped = False
         self._kept: tuple[Unknown, int] | None = None
         self._nil = False
+        self._missing: dict[str, str] = {}
         self._hints: dict[tuple[Metaclass, str], str] = {}
 
     def start(self, tag: str, attributes: list[str]) -> None:
@@ -215,10 +216,18 @@ class XmiReader:
         elif not ns_uri:
             self._fault("XMI015", f"{name}: the root is no model: it has no namespace", owner)
         else:
-            known = nearest(ns_uri, [package.ns_uri for package in self._registry.packages])
-            hint = known or "install the plug-in that provides it; the element is kept as it is"
-            self._fault("XMI001", f"{ns_uri}: no such metamodel, needed for {name}", owner, hint)
+            self._no_metamodel(ns_uri, name, owner)
         return None
+
+    def _no_metamodel(self, ns_uri: str, name: str, owner: Element | None) -> None:
+        if ns_uri not in self._missing:
+            guess = typo_of(ns_uri, (package.ns_uri for package in self._registry.packages))
+            missing = (
+                f"a plug-in is missing: install the one that brings {ns_uri}; the element is kept as it is"
+            )
+            self._missing[ns_uri] = f"{guess} else {missing}" if guess else missing
+        message = f"{ns_uri}: no such metamodel, needed for {name}"
+        self._fault("XMI001", message, owner, self._missing[ns_uri])
 
     # attributes and values
 
@@ -254,6 +263,9 @@ class XmiReader:
             return
         if feature.many:
             getattr(element, feature.attribute).append(value)
+        elif held(element, feature):
+            self._fault("XMI009", f"{feature.name}: given more than once, takes one", element)
+            return
         else:
             type(element)._mmrs_slots[feature.attribute].__set__(element, value)
         if feature.is_id:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,10 @@ from mmrs_core.errors import UnreadableError
 
 LARGEST_FILE = 512 * 1024 * 1024
 DEEPEST_NESTING = 400
+MOST_ATTRIBUTES = 10_000
+_SHORTEST_ATTRIBUTE = len(' a=""')
+_TAG = re.compile(rb"<[^\s<>/=]+")
+_ATTRIBUTE = re.compile(rb"""\s+[^\s<>/="']+\s*=\s*(?:"[^"<]*"|'[^'<]*')""")
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
@@ -92,11 +97,13 @@ class Document:
         """Send all events to the listener.
 
         Raises:
-            UnreadableError: if it is not well-formed, has a DOCTYPE, or nests too deeply.
+            UnreadableError: if it is not well-formed, has a DOCTYPE, nests too deeply, or an element has more
+                attributes than any model.
         """
         self._parser.StartElementHandler = self._counted(listener.start)
         self._parser.EndElementHandler = self._uncounted(listener.end)
         self._parser.CharacterDataHandler = listener.text
+        _refuse_crowds(self.data, self.file)
         try:
             self._parser.Parse(self.data, True)
         except expat.ExpatError as fault:
@@ -139,6 +146,29 @@ def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]
         return data.decode("utf-16").encode(), "UTF-8"
     except UnicodeDecodeError:
         raise UnreadableError(f"{file}: not readable as UTF-16") from None
+
+
+def _refuse_crowds(data: bytes, file: str) -> None:
+    """Refuse an element with too many attributes: the parser takes them all in before it tells of any."""
+    window, begin = MOST_ATTRIBUTES * _SHORTEST_ATTRIBUTE, data.find(b"<")
+    while begin >= 0:
+        following = data.rfind(b"<", begin + 1, begin + window)
+        if following < 0:
+            if _attributes_at(data, begin) > MOST_ATTRIBUTES:
+                line = data.count(b"\n", 0, begin) + 1
+                raise UnreadableError(f"{file}:{line}: more than {MOST_ATTRIBUTES} attributes in one element")
+            following = data.find(b"<", begin + window)
+        begin = following
+
+
+def _attributes_at(data: bytes, begin: int) -> int:
+    """Return how many attributes the tag there has, counted no further than one too many."""
+    tag = _TAG.match(data, begin)
+    count = 0
+    while tag is not None and count <= MOST_ATTRIBUTES:
+        tag = _ATTRIBUTE.match(data, tag.end())
+        count += tag is not None
+    return count
 
 
 def read_bytes(path: Path, largest: int = LARGEST_FILE) -> bytes:

@@ -53,6 +53,20 @@ def test_a_doctype_is_refused_before_anything_else(core, doctype):
         read_text(doctype + ROOT + b' name="&a;"/>', "bad.xmi", core)
 
 
+def test_an_element_with_more_attributes_than_any_model_is_unreadable(core):
+    crowd = b" ".join(b"a%d='>'" % index for index in range(10_001))
+    with pytest.raises(UnreadableError, match=r"^bad\.xmi:2: more than 10000 attributes in one element"):
+        read_text(b"<?xml version='1.0'?>\n" + ROOT + b" " + crowd + b"/>", "bad.xmi", core)
+
+
+def test_a_long_text_or_value_is_not_taken_for_many_attributes(core):
+    long = b" a='1'" * 20_000
+    model = read_text(ROOT + b' name="x' + long + b'"/>', "long.xmi", core)
+    assert model.diagnostics == ()
+    stray = read_text(ROOT + b">" + long + b"</m:Mission>", "long.xmi", core)
+    assert {fault.code for fault in stray.diagnostics} == {"XMI010"}
+
+
 def test_deep_nesting_is_unreadable(core):
     with pytest.raises(UnreadableError, match="nested deeper than"):
         read_text(ROOT + b">" + b"<a>" * 100_000, "deep.xmi", core)

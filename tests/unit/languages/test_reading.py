@@ -122,6 +122,24 @@ def test_a_single_feature_given_twice_is_a_fault(read_zoo):
     assert codes(read_zoo(lion * 2)) == ["XMI009"]
 
 
+@pytest.mark.parametrize(
+    "twice",
+    [
+        '<animals xsi:type="zoo:Lion"><name>a</name><name>b</name></animals>',
+        '<animals xsi:type="zoo:Lion" name="a"><name>b</name></animals>',
+    ],
+)
+def test_a_single_value_given_twice_is_a_fault(read_zoo, twice):
+    model = read_zoo(twice)
+    assert codes(model) == ["XMI009"]
+    assert model.roots[0].animals[0].name == "a"
+
+
+@pytest.mark.parametrize("step", ["//@animals.\u0660", "/\u0660/@animals.0", "//@animals.\uff10"])
+def test_figures_of_other_scripts_lead_nowhere(read_zoo, step):
+    assert codes(read_zoo('<animals xsi:type="zoo:Lion" name="l"/>', f'name="z" star="{step}"')) == ["XMI006"]
+
+
 def test_stray_text_is_a_fault(read_zoo):
     assert codes(read_zoo("hello")) == ["XMI010"]
 
@@ -152,7 +170,18 @@ STRANGER = (
 def test_an_element_of_a_missing_plug_in_names_what_is_missing(read_zoo):
     fault = only_fault(read_zoo(STRANGER))
     assert (fault.code, fault.message) == ("XMI001", "urn:other: no such metamodel, needed for Cat")
-    assert "install the plug-in" in fault.hint
+    assert fault.hint.startswith("a plug-in is missing: install the one that brings urn:other;")
+
+
+def test_a_metamodel_unlike_any_installed_is_not_taken_for_a_slip_of_the_pen(core):
+    survey = b'<a:B xmlns:a="urn:mmrs:survey:1.0"/>'
+    assert "did you mean" not in only_fault(read_text(survey, "z.xmi", core)).hint
+
+
+def test_a_metamodel_that_is_two_letters_off_is_named(core):
+    slip = b'<a:Mission xmlns:a="urn:mmrs:misson:1.1"/>'
+    hint = only_fault(read_text(slip, "z.xmi", core)).hint
+    assert hint.startswith("did you mean urn:mmrs:mission:1.0? else a plug-in is missing")
 
 
 @pytest.mark.parametrize("stranger", [STRANGER, '<animals xsi:type="zoo:Tiger" name="a>b"/>'])

@@ -63,7 +63,9 @@ def test_javas_notation_of_real_numbers_is_read(lion, text, value):
     assert lion(f'weight="{text}"').weight == value
 
 
-@pytest.mark.parametrize("text", ["nan", "inf", "infinity", "1,5", "1_0.0", "0x1p3", "", "1.5 m"])
+@pytest.mark.parametrize(
+    "text", ["nan", "inf", "infinity", "1,5", "1_0.0", "0x1p3", "", "1.5 m", "٣.٥", "１"]
+)
 def test_other_notations_of_real_numbers_are_faults(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" weight="{text}"/>')) == ["XMI005"]
 
