@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 MODEL_INVALID = 1
 USAGE = 2
 UNREADABLE = 3
-INTERRUPTED = 130
 
 _HELP = "Usage: "
 """How the message begins when a command is called without arguments: with its help."""

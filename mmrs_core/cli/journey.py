@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from mmrs_core.cli.interruption import interrupted
 from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
@@ -71,9 +72,15 @@ class Workshop:
         return self.plugins.contributions
 
     def stage(self, name: str, doing: str, make: Callable[[], Result]) -> Result:
-        """Return what a stage makes, after telling the observers of it."""
+        """Return what a stage makes, after telling the observers of it.
+
+        Raises:
+            KeyboardInterrupt: also for an interrupt that a library swallowed while the stage was made.
+        """
         with progress(doing):
             result = make()
+        if interrupted():
+            raise KeyboardInterrupt
         self.plugins.observe_stage(name, result)
         return result
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import typer
 
 from mmrs_core.cli.app import app_for, generate_app
-from mmrs_core.cli.failures import INTERRUPTED, MODEL_INVALID, ended_by
+from mmrs_core.cli.failures import MODEL_INVALID, ended_by
+from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import spread
 from mmrs_core.cli.settings import taken_from
@@ -27,12 +28,16 @@ def run_command(arguments: Sequence[str], program: str) -> int:
     except typer.Exit as ending:
         return ending.exit_code
     except (typer.Abort, KeyboardInterrupt):
-        tell("mmrs: interrupted")
-        return INTERRUPTED
+        return _interrupted()
     except SystemExit as ending:
         return ending.code if isinstance(ending.code, int) else MODEL_INVALID
     except Exception as error:
-        return _ended_by(error, arguments)
+        return _interrupted() if interrupted() else _ended_by(error, arguments)
+
+
+def _interrupted() -> int:
+    tell("mmrs: interrupted")
+    return INTERRUPTED
 
 
 def _ended_by(error: Exception, arguments: Sequence[str]) -> int:
