@@ -59,11 +59,16 @@ def _in_order(value: Iterable[object]) -> Iterable[object]:
 
 
 def _element(value: object) -> Plain:
-    """Return a model element with the features that are set; references become fragment paths."""
-    from mmrs_core.languages.element import Element, get, is_set, metaclass_of, path_of
+    """Return a model element with the features that are set; references become fragment paths.
+
+    An element whose metamodel is not installed keeps its XML.
+    """
+    from mmrs_core.languages.element import Element, Unknown, get, is_set, metaclass_of, path_of
 
     if not isinstance(value, Element):
         raise TypeError(f"{type(value).__name__}: no such value passes between stages")
+    if isinstance(value, Unknown):
+        return {"$type": value._mmrs_type, "$xml": value._mmrs_xml}
     metaclass = metaclass_of(value)
     encoded: dict[str, Plain] = {"$type": f"{metaclass.ns_uri}#{metaclass.name}"}
     for feature in metaclass.features:

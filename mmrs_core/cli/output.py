@@ -79,15 +79,20 @@ def coloured(stream: TextIO) -> bool:
 
 @contextmanager
 def progress(doing: str) -> Iterator[None]:
-    """Show what is being done while it is done, on a terminal only."""
+    """Show what is being done while it is done, on a terminal only.
+
+    It is erased afterwards: by spaces where no escape sequences are wanted.
+    """
     if not sys.stderr.isatty():
         yield
         return
-    _write(sys.stderr, f"\r\x1b[K{printable(doing)} …")
+    words = f"{printable(doing)} …"
+    erased = "\r\x1b[K" if coloured(sys.stderr) else f"\r{' ' * len(words)}\r"
+    _write(sys.stderr, f"\r{words}")
     try:
         yield
     finally:
-        _write(sys.stderr, "\r\x1b[K")
+        _write(sys.stderr, erased)
 
 
 def counted(number: int, thing: str) -> str:

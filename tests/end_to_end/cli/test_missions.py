@@ -130,6 +130,41 @@ def test_the_planned_file_is_drawn_as_it_went(mmrs, pool):
     assert (pool / "preview.html").is_file()
 
 
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_elements_of_a_missing_plugin_are_shown_as_unknown(mmrs, example):
+    code, out, err = mmrs("show", shipped("examples") / example / "mission.xmi", "--no-plugins")
+    assert code == 0
+    assert "(unknown, of urn:mmrs:survey:1.0)" in out
+    assert "[XMI001]" in err
+
+
+def test_unknown_elements_are_shown_by_name_and_referred_to_by_it(mmrs, pool):
+    out = mmrs("show", pool / "mission.xmi", "--no-plugins")[1]
+    assert "tasks: GoToTask name=gate (unknown, of urn:mmrs:survey:1.0)" in out
+    assert "from=→ gate" in out
+
+
+def test_a_root_of_a_missing_plugin_is_shown_as_unknown(mmrs, pool):
+    file = pool / "mission.xmi"
+    file.write_text('<s:PhotoGridTask xmlns:s="urn:mmrs:survey:1.0" name="&lt;floor>"/>')
+    assert mmrs("show", file, "--no-plugins")[1] == (
+        "PhotoGridTask name=<floor> (unknown, of urn:mmrs:survey:1.0)\n"
+    )
+
+
+def test_unknown_elements_keep_their_text_in_json(mmrs, pool):
+    told = json.loads(mmrs("show", pool / "mission.xmi", "--no-plugins", "--json")[1])
+    task = told["roots"][0]["tasks"][0]
+    assert task["$type"] == "urn:mmrs:survey:1.0#GoToTask"
+    assert 'name="gate"' in task["$xml"]
+
+
+def test_a_mistake_beside_a_missing_plugin_still_counts(mmrs, pool):
+    file = pool / "mission.xmi"
+    file.write_text(file.read_text().replace("<team", "<team colour='red'", 1))
+    assert mmrs("show", file, "--no-plugins")[0] == 1
+
+
 @pytest.mark.parametrize("command", ["plan", "validate"])
 def test_without_plugins_their_tasks_are_unknown(mmrs, pool, command):
     code, _, err = mmrs(command, pool, "--no-plugins")

@@ -78,6 +78,15 @@ def test_progress_shows_on_a_terminal_and_leaves_no_trace(monkeypatch):
     assert terminal.getvalue().endswith("\r\x1b[K")
 
 
+def test_progress_uses_no_escape_sequence_without_colour(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("NO_COLOR", "1")
+    with output.progress("planning"):
+        assert terminal.getvalue() == "\rplanning …"
+    assert terminal.getvalue() == f"\rplanning …\r{' ' * len('planning …')}\r"
+
+
 def test_progress_is_silent_elsewhere(capsys):
     with output.progress("planning"):
         pass
