@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from mmrs_core.analysis.constraints import (
+    approaches,
     areas,
+    blanks,
     branches,
     capabilities,
     coordinates,
@@ -25,6 +27,7 @@ __all__ = ["CONSTRAINTS", "check_behaviour", "check_constraints"]
 
 _THEMES = (
     names,
+    blanks,
     ranges,
     coordinates,
     distances,
@@ -37,6 +40,7 @@ _THEMES = (
     robot_types,
     moves,
     slots,
+    approaches,
     equipment,
 )
 

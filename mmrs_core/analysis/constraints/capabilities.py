@@ -87,6 +87,12 @@ def _too_many(task: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(task, f"wants {wanted:g} robots, but only {count} of the team can do it")
 
 
+def _shared_point(task: Element, models: ModelSet) -> Iterator[Finding]:
+    wanted = number(task, "robotsWanted")
+    if wanted is not None and wanted > 1:
+        yield finding(task, f"wants {wanted:g} robots, but a point cannot be shared")
+
+
 def _too_deep(task: Element, models: ModelSet) -> Iterator[Finding]:
     depth, team = _depth(task, models), able(task, models)
     limits = [_deepest(robot.type, models) for robot in team if robot.type is not None]
@@ -218,5 +224,12 @@ CONSTRAINTS = (
         (MISSION, "Robot"),
         _unmeasured,
         "add a movement capability for that payload to the robot type",
+    ),
+    Constraint(
+        "MML069",
+        "A task at one point wants one robot.",
+        (MISSION, "PointTask"),
+        _shared_point,
+        "leave robotsWanted out; for several robots at the point, write a task for each",
     ),
 )

@@ -77,6 +77,11 @@ class Sketch:
         return ground_of(self._models.mission, self._models.context)
 
     @cached_property
+    def program_ground(self) -> Ground:
+        """Where the coordinates of the behaviour lie."""
+        return ground_of(self._models.behaviour, self._models.context)
+
+    @cached_property
     def order(self) -> Order:
         """What tasks wait for."""
         return Order(self._models.mission)

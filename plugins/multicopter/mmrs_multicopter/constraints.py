@@ -9,7 +9,7 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of, is_kind, label_of
 from mmrs_core.languages.grounding_values import child, number, text
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_multicopter.heights import too_high
+from mmrs_multicopter.heights import cut_transit, too_high, too_low
 from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, TAKE_OFF
 
 MISSION = ("urn:mmrs:mission:1.0", "Mission")
@@ -194,5 +194,20 @@ CONSTRAINTS = (
             "use moves that the robot's kind knows, or make its type a Drone",
         )
         for code, metaclass in (("MUL012", TAKE_OFF), ("MUL013", LAND), ("MUL014", GO_TO))
+    ),
+    Constraint(
+        "MUL015",
+        "Some robot of the team flies as low as each task",
+        MISSION,
+        too_low,
+        "give the task an altitude of at least 1 m above home, or add a robot that works there",
+    ),
+    Constraint(
+        "MUL016",
+        "Some robot of the team reaches the transit altitude",
+        MISSION,
+        cut_transit,
+        "lower transitAltitude, or add a robot that flies higher",
+        Severity.WARNING,
     ),
 )

@@ -1,27 +1,29 @@
-"""Whether tasks lie above what a team of drones reaches."""
+"""Whether tasks and transits lie between the floor and the ceiling of a team of drones."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import inf
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding_coordinates import ground_of
+from mmrs_core.languages.grounding_coordinates import Ground, ground_of
 from mmrs_core.languages.grounding_values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import Position
+from mmrs_multicopter.kinds import LOWEST_FLIGHT
 from mmrs_multicopter.names import DRONE
 
+EXACT = 1e-6
+"""Metres."""
 PLACES = ("points", "shell")
 
 
 def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield the tasks above the ceiling of every robot; none where some robot is no drone."""
-    positions = ground_of(mission, models.context).positions
-    ceiling = _highest_ceiling(mission, models, positions)
+    ground = ground_of(mission, models.context)
+    ceiling = _highest_ceiling(mission, models, ground)
     for task in children(mission, "tasks"):
-        height = _height(task, positions)
+        height = max(_heights(task, ground), default=-inf)
         if height > ceiling:
             yield Finding(
                 task,
@@ -29,28 +31,69 @@ def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
             )
 
 
-def _highest_ceiling(mission: Element, models: ModelSet, positions: Mapping[Element, Position]) -> float:
+def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield the tasks below the floor of every robot; none where some robot is no drone."""
+    ground = ground_of(mission, models.context)
+    floors = [_floor(member, models, ground) for member in children(child(mission, "team"), "robots")]
+    floor = min(floors, default=-inf)
+    for task in children(mission, "tasks"):
+        height = min(_heights(task, ground), default=inf)
+        if height < floor - EXACT:
+            yield Finding(
+                task,
+                f"task '{label_of(task)}' is at {height:g} m, "
+                f"the team's drones fly no lower than {floor:g} m",
+            )
+
+
+def cut_transit(mission: Element, models: ModelSet) -> Iterator[Finding]:
+    """Yield a mission whose transits are above the ceiling of every robot; none where some is no drone."""
+    ceiling = _highest_ceiling(mission, models, ground_of(mission, models.context))
+    transit = number(mission, "transitAltitude")
+    if transit is not None and transit > ceiling:
+        yield Finding(
+            mission,
+            f"transitAltitude of '{label_of(mission)}' is {transit:g} m, "
+            f"the team's drones go at {ceiling:g} m instead",
+        )
+
+
+def _highest_ceiling(mission: Element, models: ModelSet, ground: Ground) -> float:
     team = child(mission, "team")
-    ceilings = [_ceiling(member, models, positions) for member in children(team, "robots")]
-    return max(ceilings, default=inf)
+    return max((_ceiling(member, models, ground) for member in children(team, "robots")), default=inf)
 
 
-def _ceiling(member: Element, models: ModelSet, positions: Mapping[Element, Position]) -> float:
+def _ceiling(member: Element, models: ModelSet, ground: Ground) -> float:
     """Return how high a robot gets, metres above the origin; inf where that is not known."""
+    drone, home = _drone(member, models), _home_height(member, ground)
+    highest = number(drone, "maxAltitude") if drone is not None else None
+    return inf if highest is None or home is None else home + highest
+
+
+def _floor(member: Element, models: ModelSet, ground: Ground) -> float:
+    """Return how low a robot flies, metres above the origin; -inf where that is not known."""
+    home = _home_height(member, ground)
+    return -inf if _drone(member, models) is None or home is None else home + LOWEST_FLIGHT
+
+
+def _drone(member: Element, models: ModelSet) -> Element | None:
     robot_type = models.robots.get(text(member, "type"))
+    return robot_type if robot_type is not None and is_kind(robot_type, *DRONE) else None
+
+
+def _home_height(member: Element, ground: Ground) -> float | None:
     home = child(member, "home")
-    if robot_type is None or not is_kind(robot_type, *DRONE) or home is None or home not in positions:
-        return inf
-    highest = number(robot_type, "maxAltitude")
-    return inf if highest is None else positions[home][2] + highest
+    return ground.positions[home][2] if home is not None and home in ground.positions else None
 
 
-def _height(task: Element, positions: Mapping[Element, Position]) -> float:
-    """Return the largest height at which a task is done, metres above the origin; -inf if not known."""
-    altitude = number(task, "altitude")
+def _heights(task: Element, ground: Ground) -> tuple[float, ...]:
+    """Return at which heights a task is done, metres above the origin; empty where that is not known."""
+    altitude, depth = number(task, "altitude"), number(task, "depth")
     if altitude is not None:
-        return altitude
-    return max((positions[each][2] for each in _places(task) if each in positions), default=-inf)
+        return (altitude,)
+    if depth is not None:
+        return (ground.frame.surface - depth,)
+    return tuple(ground.positions[each][2] for each in _places(task) if each in ground.positions)
 
 
 def _places(task: Element) -> Iterator[Element]:

@@ -26,12 +26,14 @@ def plainly_sized(registry):
     return registry.create(*DRONE, name="Quad", size=registry.create(ROBOT_LANGUAGE, "Size", width=0.5))
 
 
-def mission(registry, altitude=0.0, home_up=0.0):
+def mission(registry, altitude=0.0, home_up=0.0, **features):
     point = mml.RelativeCoordinate(x=1.0, y=1.0, z=altitude)
     visit = registry.create("urn:test:visits:1.0", "Visit", name="peak", point=point)
     home = mml.RelativeCoordinate(x=0.0, y=0.0, z=home_up)
     team = mml.Team(robots=[mml.Robot(name="Alba", type="Quad", home=home)])
-    return mml.Mission(name="m", team=team, tasks=[visit], origin=mml.RelativeCoordinate(x=0.0, y=0.0))
+    return mml.Mission(
+        name="m", team=team, tasks=[visit], origin=mml.RelativeCoordinate(x=0.0, y=0.0), **features
+    )
 
 
 def weather(wind):
@@ -73,6 +75,14 @@ CASES = {
     ),
     "MUL013": (lambda r: [plain(r), flying(r, LAND)], lambda r: [drone(r), flying(r, LAND)]),
     "MUL014": (lambda r: [plain(r), flying(r, GO_TO)], lambda r: [drone(r), flying(r, GO_TO)]),
+    "MUL015": (
+        lambda r: [drone(r), mission(r, altitude=20.9, home_up=20.0)],
+        lambda r: [drone(r), mission(r, altitude=21.0, home_up=20.0)],
+    ),
+    "MUL016": (
+        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transitAltitude=121.0)],
+        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transitAltitude=120.0)],
+    ),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
@@ -103,6 +113,18 @@ def test_elements_without_any_feature_set_break_no_constraint(metaclass, registr
 def test_a_team_with_a_robot_of_unknown_ceiling_breaks_no_height(registry, breaches):
     models = [plain(registry), mission(registry, altitude=500.0)]
     assert breaches(BY_CODE["MUL009"], models) == []
+
+
+def test_a_task_at_depth_is_too_low_for_drones(registry, breaches):
+    made = mission(registry)
+    made.tasks[0].point = mml.GeoCoordinate(latitude=42.0, longitude=13.0, depth=3.0)
+    made.origin = mml.GeoCoordinate(latitude=42.0, longitude=13.0, altitude=0.0)
+    (found,) = breaches(BY_CODE["MUL015"], [drone(registry), made])
+    assert found == "task 'peak' is at -3 m, the team's drones fly no lower than 1 m"
+
+
+def test_a_team_with_a_robot_that_is_no_drone_breaks_no_floor(registry, breaches):
+    assert breaches(BY_CODE["MUL015"], [plain(registry), mission(registry)]) == []
 
 
 def test_every_code_belongs_to_this_plugin():

@@ -33,10 +33,10 @@ def footprint_at(properties: Mapping[str, str], distance: float) -> Footprint | 
     >>> footprint_at({"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}, 40.0)
     Footprint(width=60.0, length=40.0)
     """
-    figures = [_figure(properties, key) for key in (*SENSOR_KEYS, FOCAL_KEY)]
+    figures = [figure(properties, key) for key in (*SENSOR_KEYS, FOCAL_KEY)]
     if None in figures or distance <= 0.0:
         return None
-    width, height, focal = (figure or 0.0 for figure in figures)
+    width, height, focal = (each or 0.0 for each in figures)
     return Footprint(width * distance / focal, height * distance / focal)
 
 
@@ -49,10 +49,10 @@ def footprint_of(properties: Mapping[str, str], distance: float, resolution: flo
     Raises:
         InfeasibleError: the image size is not known, or the camera is too coarse from there.
     """
-    pixels = [_figure(properties, key) for key in IMAGE_KEYS]
+    pixels = [figure(properties, key) for key in IMAGE_KEYS]
     if None in pixels:
         raise InfeasibleError(f"device '{device}' does not state {' and '.join(IMAGE_KEYS)}")
-    across, along = (figure or 0.0 for figure in pixels)
+    across, along = (each or 0.0 for each in pixels)
     seen = footprint_at(properties, distance)
     if seen is None:
         return Footprint(resolution * across, resolution * along)
@@ -65,9 +65,10 @@ def footprint_of(properties: Mapping[str, str], distance: float, resolution: flo
     return seen
 
 
-def _figure(properties: Mapping[str, str], key: str) -> float | None:
+def figure(properties: Mapping[str, str], key: str) -> float | None:
+    """Return the number above zero that a property holds; None where there is none."""
     try:
-        figure = float(properties[key])
+        found = float(properties[key])
     except (KeyError, ValueError):
         return None
-    return figure if 0.0 < figure < float("inf") else None
+    return found if 0.0 < found < float("inf") else None

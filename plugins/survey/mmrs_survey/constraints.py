@@ -5,6 +5,7 @@ from __future__ import annotations
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.diagnostics import Severity
 from mmrs_survey import names
+from mmrs_survey.amounts import MANY, TOO_MANY, amount_over
 from mmrs_survey.device_checks import action_undone, camera_unreadable, device_unclear, parameter_unknown
 from mmrs_survey.grid_checks import (
     footprint_twice,
@@ -25,6 +26,7 @@ from mmrs_survey.task_checks import (
 )
 
 DEVICE = ("urn:mmrs:robot:1.0", "Device")
+MISSION = ("urn:mmrs:mission:1.0", "Mission")
 TASK = ("urn:mmrs:mission:1.0", "Task")
 
 CONSTRAINTS = (
@@ -150,5 +152,20 @@ CONSTRAINTS = (
         looks_at_itself,
         "give a distance or another altitude, so that the device has something to look at",
         Severity.WARNING,
+    ),
+    Constraint(
+        "SUR018",
+        "No survey task takes more photos or samples than a day has time for",
+        MISSION,
+        amount_over(MANY, TOO_MANY),
+        "check that gridResolution, footprint, spacing and overlaps are as meant: lengths are in metres",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SUR019",
+        "No survey task takes more photos or samples than can be planned",
+        MISSION,
+        amount_over(TOO_MANY),
+        "correct gridResolution, footprint, spacing or overlaps: lengths are in metres; or divide the area",
     ),
 )

@@ -71,6 +71,12 @@ def accepting(registry, *unknowns):
     return mml.Mission(name="m", tasks=[made], acceptedUnknowns=list(unknowns))
 
 
+def field(made, side=100.0):
+    corners = ((0.0, 0.0), (side, 0.0), (side, side), (0.0, side))
+    made.shell.extend(mml.RelativeCoordinate(x=x, y=y) for x, y in corners)
+    return mml.Mission(name="m", tasks=[made], origin=mml.RelativeCoordinate(x=0.0, y=0.0))
+
+
 CASES = {
     "SUR001": (
         lambda r: [sized(r, gridResolution=12.0)],
@@ -115,6 +121,14 @@ CASES = {
     "SUR017": (
         lambda r: [task(r, "ObserveTask", duration=1.0)],
         lambda r: [task(r, "ObserveTask", duration=1.0, distance=5.0)],
+    ),
+    "SUR018": (
+        lambda r: [field(grid(r, gridResolution=0.7))],
+        lambda r: [field(grid(r, gridResolution=0.71))],
+    ),
+    "SUR019": (
+        lambda r: [field(grid(r, gridResolution=0.1))],
+        lambda r: [field(grid(r, gridResolution=10.0))],
     ),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
@@ -175,3 +189,37 @@ def test_a_road_without_photos_needs_no_camera(registry, breaches):
 def test_a_device_that_only_looks_must_be_carried_too(registry, breaches):
     models = [task(registry, "ObserveTask", deviceId="telescope"), probe(registry)]
     assert "no robot type has it" in breaches(BY_CODE["SUR010"], models)[0]
+
+
+def test_a_slip_of_the_unit_is_told_with_its_number(registry, breaches):
+    found = breaches(BY_CODE["SUR019"], [field(grid(registry, gridResolution=0.1))])
+    assert found == ["task 'field' takes about 1,000,000 photos"]
+
+
+@pytest.mark.parametrize(
+    ("features", "photos"),
+    [
+        ({"footprintWidth": 0.5, "footprintLength": 0.4, "frontOverlap": 0.0, "sideOverlap": 0.0}, "50,000"),
+        ({"footprintWidth": 1.0, "footprintLength": 1.0, "frontOverlap": 0.5, "sideOverlap": 0.5}, "40,000"),
+        ({"groundResolution": 1e-4, "frontOverlap": 0.0, "sideOverlap": 0.0}, "83,333"),
+    ],
+)
+def test_photos_are_counted_by_what_one_covers_less_the_overlaps(features, photos, registry, breaches):
+    models = [field(grid(registry, **features)), camera(registry)]
+    assert breaches(BY_CODE["SUR018"], models) == [f"task 'field' takes about {photos} photos"]
+
+
+def test_samples_are_counted_by_area_and_by_length(registry, breaches):
+    area = field(measure(registry, points=[], spacing=0.5))
+    line = mml.Mission(
+        name="m", origin=mml.RelativeCoordinate(x=0.0, y=0.0), tasks=[measure(registry, points=corners(5))]
+    )
+    line.tasks[0].spacing = 0.0001
+    assert breaches(BY_CODE["SUR018"], [area]) == ["task 'probe' takes about 40,000 samples"]
+    assert breaches(BY_CODE["SUR018"], [line]) == ["task 'probe' takes about 40,000 samples"]
+
+
+def test_photos_of_a_road_are_counted_on_every_pass(registry, breaches):
+    road = task(registry, "RoadTask", photoDistance=0.001, width=20.0, footprintWidth=4.0, points=corners(6))
+    made = mml.Mission(name="m", origin=mml.RelativeCoordinate(x=0.0, y=0.0), tasks=[road])
+    assert breaches(BY_CODE["SUR018"], [made]) == ["task 'it' takes about 25,000 photos"]
