@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import pluggy
 
 from mmrs_core import builtin, hookspecs
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.blame import guarded
+from mmrs_core.contributions.registry import Contributions, called
 from mmrs_core.errors import PluginError
 
 GROUP = "mmrs.plugins"
@@ -105,6 +106,7 @@ def _declared(
     manager: pluggy.PluginManager, distributions: Mapping[str, str], sort: str
 ) -> Iterator[tuple[str, Any]]:
     hook = getattr(manager.hook, f"mmrs_{sort}")
+    kind = _kind(sort)
     for implementation in sorted(hook.get_hookimpls(), key=lambda each: each.plugin_name):
         name = implementation.plugin_name
         try:
@@ -113,5 +115,17 @@ def _declared(
             raise PluginError(
                 f"plug-in '{name}' of distribution '{distributions[name]}': mmrs_{sort} fails: {error!r}"
             ) from error
+        blamed = f"plug-in '{name}' of distribution '{distributions[name]}'"
         for item in items:
-            yield name, item
+            if not isinstance(item, kind):
+                raise PluginError(
+                    f"{blamed}: mmrs_{sort} gives a {type(item).__name__}, not a {kind.__name__}"
+                )
+            yield name, item if name == "core" else guarded(item, f"{blamed}: {called(sort, item)}")
+
+
+def _kind(sort: str) -> type:
+    """Return what a hook declares, by its signature."""
+    declared = get_type_hints(getattr(hookspecs, f"mmrs_{sort}"))["return"]
+    kind: type = get_args(declared)[0]
+    return kind

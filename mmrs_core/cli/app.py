@@ -23,7 +23,7 @@ from mmrs_core.cli import (
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.preview import command as preview
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import MmrsError, PluginError
 
 if TYPE_CHECKING:
     from mmrs_core.contributions.commands import Command
@@ -55,7 +55,7 @@ def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
     app = _core_app()
     called = next((argument for argument in arguments if not argument.startswith("-")), None)
     if called not in {*(name for name, _ in _COMMANDS), "plugin", "metamodel"}:
-        _add_plugin_commands(app, settings)
+        _add_plugin_commands(app, settings, called)
     return app
 
 
@@ -94,29 +94,36 @@ def _global_options(
     """Describe the global options, which `taken_from` has taken off the command line before."""
 
 
-def _add_plugin_commands(app: typer.Typer, settings: Settings) -> None:
+def _add_plugin_commands(app: typer.Typer, settings: Settings, called: str | None) -> None:
+    """Add the commands of plug-ins; what is wrong with them is only told where help was asked for."""
     try:
-        commands = settings.plugins().contributions.commands
+        contributions = settings.plugins().contributions
+        commands = contributions.commands
     except PluginError as error:
+        if called is not None:
+            raise
         tell(f"mmrs: {error}")
         return
     for command in commands:
         passed = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
         app.command(command.name, help=command.help, context_settings=passed, add_help_option=False)(
-            _runner(command)
+            _runner(command, contributions.blamed("commands", command))
         )
 
 
-def _runner(command: Command) -> Callable[[typer.Context], int]:
+def _runner(command: Command, blamed: str) -> Callable[[typer.Context], int]:
     def run(context: typer.Context) -> int:
         module, _, function = command.entry.partition(":")
         try:
             entry = getattr(import_module(module), function)
-        except (ImportError, AttributeError) as error:
-            raise PluginError(
-                f"command '{command.name}': {command.entry} cannot be imported: {error}"
-            ) from error
-        result = entry(list(context.args))
+        except Exception as error:
+            raise PluginError(f"{blamed}: {command.entry} cannot be imported: {error!r}") from error
+        try:
+            result = entry(list(context.args))
+        except (MmrsError, OSError, typer.TyperException, typer.Exit, typer.Abort):
+            raise  # about what the user gave, in the words of all commands
+        except Exception as error:
+            raise PluginError(f"{blamed} fails: {error!r}") from error
         return result if isinstance(result, int) else 0
 
     return run

@@ -27,34 +27,45 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
 
     settings = settings_of(call)
     try:
-        found = _loaded(settings)
+        found, conflict = _loaded(settings)
     except PluginError as error:
         tell(f"mmrs: {error}")
         return _list_broken(str(error), json)
+    if conflict:
+        tell(f"mmrs: {conflict}")
     if json:
-        say_json({"plugins": found})
-        return 0
+        say_json({"plugins": found} | ({"error": conflict} if conflict else {}))
+        return 1 if conflict else 0
     for name, (distribution, version, sorts) in found.items():
         say(f"{name} ({' '.join(filter(None, (distribution, version)))})")
         for sort, names in sorts.items():
             say(f"  {sort.replace('_', ' ')}: {_listed(names)}")
-    return 0
+    return 1 if conflict else 0
 
 
 _Found = dict[str, tuple[str, str, dict[str, list[str]]]]
 
 
-def _loaded(settings: Settings) -> _Found:
-    from mmrs_core.plugins import load_plugins
+def _loaded(settings: Settings) -> tuple[_Found, str]:
+    """Return the plug-ins that load, and how they conflict; empty if they do not.
 
-    plugins = load_plugins(only_core=settings.only_core)
+    Raises:
+        PluginError: if one is broken by itself.
+    """
+    from mmrs_core.errors import PluginError
+
+    plugins = settings.plugins()
     found: _Found = {
         name: (distribution, _version(distribution), {})
         for name, distribution in plugins.distributions.items()
     }
     for each in plugins.contributions.catalogue():
         found[each.plugin][2].setdefault(each.sort, []).append(each.name)
-    return found
+    try:
+        plugins.contributions.check()
+    except PluginError as error:
+        return found, str(error)
+    return found, ""
 
 
 def _version(distribution: str) -> str:

@@ -4,6 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+CORE_COMMANDS = frozenset(
+    {
+        "demo",
+        "validate",
+        "plan",
+        "check",
+        "generate",
+        "simulate",
+        "replay",
+        "preview",
+        "show",
+        "plugin",
+        "metamodel",
+    }
+)
+"""The names that plug-ins cannot have."""
+
 
 @dataclass(frozen=True, slots=True)
 class Command:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
 
 from mmrs_core.contributions.checks import Check
-from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory, Condition
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
@@ -20,6 +21,8 @@ from mmrs_core.scene import Name
 
 Key = TypeVar("Key")
 Item = TypeVar("Item")
+
+_CODE = re.compile("[A-Z]{3,}[0-9]{3}")
 
 Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
 
@@ -75,23 +78,30 @@ class Contributions:
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """Return the constraints on models."""
+        for plugin, constraint in self._declared("constraints"):
+            if plugin != "core" and not _CODE.fullmatch(constraint.code):
+                raise PluginError(
+                    f"constraint {constraint.code!r} of plug-in '{plugin}': "
+                    "expected a code of three or more capitals and three digits"
+                )
+        self._refuse_misspelt("constraints")
         return tuple(self._by("constraints", lambda constraint: constraint.code).values())
 
     @cached_property
     def rules(self) -> Mapping[Name, Rule]:
         """Return the rules by the metaclass of their tasks."""
         by_key("rules", self._declared("rules"), lambda rule: rule.name)
-        return self._by("rules", lambda rule: rule.metaclass)
+        return self._by_metaclass("rules")
 
     @cached_property
     def robot_kinds(self) -> Mapping[Name, RobotKind]:
         """Return the kinds of robots by metaclass."""
-        return self._by("robot_kinds", lambda kind: kind.metaclass)
+        return self._by_metaclass("robot_kinds")
 
     @cached_property
     def move_kinds(self) -> Mapping[Name, MoveKind]:
         """Return the kinds of moves by metaclass."""
-        return self._by("move_kinds", lambda kind: kind.metaclass)
+        return self._by_metaclass("move_kinds")
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
@@ -116,11 +126,14 @@ class Contributions:
     @cached_property
     def map_symbols(self) -> Mapping[Name, MapSymbol]:
         """Return how elements look on maps, by metaclass."""
-        return self._by("map_symbols", lambda symbol: symbol.metaclass)
+        return self._by_metaclass("map_symbols")
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:
         """Return the commands that plug-ins add."""
+        for plugin, command in self._declared("commands"):
+            if command.name in CORE_COMMANDS:
+                raise PluginError(f"command '{command.name}': contributed by both 'core' and '{plugin}'")
         return tuple(self._by("commands", lambda command: command.name).values())
 
     def catalogue(self) -> tuple[Contribution, ...]:
@@ -134,11 +147,52 @@ class Contributions:
 
     def distribution_of(self, sort: str, item: object) -> str:
         """Return the distribution whose plug-in contributed a descriptor; empty if none did."""
-        plugin = next((plugin for plugin, each in self._declared(sort) if each is item), "")
-        return self._distributions.get(plugin, "")
+        return self._distributions.get(self._plugin_of(sort, item), "")
+
+    def blamed(self, sort: str, item: object) -> str:
+        """Return plug-in, distribution and name of a descriptor, for messages about its failures."""
+        plugin = self._plugin_of(sort, item)
+        distribution = self._distributions.get(plugin, "unknown distribution")
+        return f"plug-in '{plugin}' of distribution '{distribution}': {called(sort, item)}"
+
+    def check(self) -> None:
+        """Look at every sort of contribution.
+
+        Raises:
+            PluginError: if a plug-in is broken, or two conflict.
+        """
+        for sort in _SHOWN:
+            getattr(self, sort)
+
+    def _plugin_of(self, sort: str, item: object) -> str:
+        return next((plugin for plugin, each in self._declared(sort) if each is item), "")
+
+    def _by_metaclass(self, sort: str) -> dict[Name, Any]:
+        self._refuse_misspelt(sort)
+        return self._by(sort, lambda item: item.metaclass)
+
+    def _refuse_misspelt(self, sort: str) -> None:
+        """Raise PluginError for a class that its language does not have; a language may be missing."""
+        for plugin, item in self._declared(sort):
+            ns_uri, name = item.metaclass
+            if not self.languages.has(ns_uri):
+                continue
+            try:
+                self.languages.metaclass(ns_uri, name)
+            except ValueError as error:
+                raise PluginError(f"plug-in '{plugin}': {called(sort, item)}: {error}") from error
 
     def _by(self, sort: str, key: Callable[[Any], Key]) -> dict[Key, Any]:
         return by_key(sort, self._declared(sort), key)
+
+
+def called(sort: str, item: object) -> str:
+    """Return what messages call a descriptor, such as ``rule 'wave'``."""
+    return f"{_singular(sort)} '{_SHOWN[sort](item)}'"
+
+
+def _singular(sort: str) -> str:
+    return sort.removesuffix("s").replace("_", " ")
 
 
 def by_key(sort: str, items: Iterable[tuple[str, Item]], key: Callable[[Item], Key]) -> dict[Key, Item]:
@@ -150,13 +204,19 @@ def by_key(sort: str, items: Iterable[tuple[str, Item]], key: Callable[[Item], K
         key: of an item; must be unique over all plug-ins.
 
     Raises:
-        PluginError: if two have the same key; names both plug-ins.
+        PluginError: if two have the same key; names both plug-ins, or the one that says it twice.
     """
     found: dict[Key, Item] = {}
     owners: dict[Key, str] = {}
     for plugin, item in items:
         name = key(item)
         if name in found:
-            raise PluginError(f"{sort} {name}: contributed by both '{owners[name]}' and '{plugin}'")
+            shown = "#//".join(name) if isinstance(name, tuple) else name
+            whom = (
+                f"twice by '{plugin}'"
+                if owners[name] == plugin
+                else f"by both '{owners[name]}' and '{plugin}'"
+            )
+            raise PluginError(f"{_singular(sort)} '{shown}': contributed {whom}")
         found[name], owners[name] = item, plugin
     return found

@@ -88,6 +88,8 @@ def _refuse_misspelt(constraint: Constraint, registry: Registry) -> None:
 def _breaches(constraint: Constraint, element: Element, models: ModelSet) -> Iterator[Finding]:
     try:
         yield from constraint.check(element, models)
+    except PluginError as error:
+        raise PluginError(f"{error}, on {place_of(element).path} of {place_of(element)}") from error
     except Exception as error:
         place = place_of(element)
         raise InternalError(

@@ -7,6 +7,10 @@ import pytest
 from lxml import etree
 
 from mmrs_core.cli.plan import Stage
+from mmrs_core.cli.settings import Settings
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.hookspecs import hookimpl
+from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 
 EXAMPLES = ("carbon-dioxide", "pool", "mixed-team")
@@ -128,6 +132,24 @@ def test_the_planned_file_is_drawn_as_it_went(mmrs, pool):
     mmrs("plan", pool)
     assert mmrs("preview", pool / "behaviour.xmi")[0] == 0
     assert (pool / "preview.html").is_file()
+
+
+class Clumsy:
+    """A plug-in whose constraint fails on every task."""
+
+    @hookimpl
+    def mmrs_constraints(self):
+        tasks = ("urn:mmrs:mission:1.0", "Task")
+        return (Constraint("CLUMSY001", "t", tasks, lambda task, models: 1 / 0, "h"),)
+
+
+def test_a_constraint_that_fails_is_the_plugins_fault(mmrs, pool, monkeypatch):
+    monkeypatch.setattr(Settings, "plugins", lambda settings: load_plugins(extra={"clumsy": Clumsy()}))
+    code, _, err = mmrs("validate", pool)
+    assert code == 1
+    assert "plug-in 'clumsy' of distribution 'given by the caller': constraint 'CLUMSY001' fails" in err
+    assert "on /tasks[0] of " in err
+    assert "internal error" not in err
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

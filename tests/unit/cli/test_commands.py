@@ -1,12 +1,13 @@
 """The command line as a user types it, in this process."""
 
 import json
+import sys
 
 import pytest
 
 from mmrs_core.cli import run
 from mmrs_core.cli.settings import Settings
-from mmrs_core.contributions.commands import Command
+from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
@@ -34,6 +35,7 @@ class Kites:
         return (
             Command("fly-kite", "Fly a kite.", "tests_of_kites:fly"),
             Command("lost", "Lost.", "nowhere.at.all:f"),
+            Command("fail", "Fail.", "failing_kites:fly"),
         )
 
 
@@ -114,6 +116,85 @@ def test_a_plugin_command_gets_its_arguments_and_gives_the_exit_code(with_kites,
 def test_a_plugin_command_that_does_not_import_is_named(with_kites, capsys):
     assert run(["lost"]) == 1
     assert "nowhere.at.all:f" in capsys.readouterr().err
+
+
+FAILURES = (
+    ("raise KeyError('string')", 1, "KeyError('string')"),
+    ("raise ValueError('knot')", 1, "ValueError('knot')"),
+    ("from mmrs_core.errors import LinkLostError; raise LinkLostError('kite: lost')", 5, "mmrs: kite: lost"),
+    ("open('/no/such/kite')", 3, "/no/such/kite: no such file"),
+)
+
+
+@pytest.mark.parametrize(("failure", "code", "words"), FAILURES)
+def test_a_plugin_command_that_fails_names_the_plugin(
+    with_kites, monkeypatch, tmp_path, capsys, failure, code, words
+):
+    (tmp_path / "failing_kites.py").write_text(f"def fly(arguments):\n    {failure}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "failing_kites", raising=False)
+    assert run(["fail"]) == code
+    err = capsys.readouterr().err
+    assert words in err
+    blamed = "plug-in 'kites' of distribution 'given by the caller': command 'fail' fails"
+    assert (blamed in err) == (code == 1)
+    assert "internal error" not in err
+
+
+def test_a_plugin_command_that_breaks_while_it_is_imported_names_the_plugin(
+    with_kites, monkeypatch, tmp_path, capsys
+):
+    (tmp_path / "failing_kites.py").write_text("1 / 0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "failing_kites", raising=False)
+    assert run(["fail"]) == 1
+    assert "plug-in 'kites' of distribution" in capsys.readouterr().err
+
+
+def test_no_plugin_can_have_a_name_of_the_core():
+    assert set(CORE) == CORE_COMMANDS
+
+
+class Usurper:
+    """A plug-in that wants a command of the core."""
+
+    @hookimpl
+    def mmrs_commands(self):
+        return (Command("plan", "Plan kites.", "kites:plan"),)
+
+
+@pytest.fixture
+def with_usurper(monkeypatch):
+    monkeypatch.setattr(
+        Settings, "plugins", lambda self: load_plugins(only_core=True, extra={"usurper": Usurper()})
+    )
+
+
+USURPED = "command 'plan': contributed by both 'core' and 'usurper'"
+
+
+def test_a_command_named_like_one_of_the_core_is_told_beside_the_help(with_usurper, capsys):
+    assert run(["--help"]) == 0
+    assert USURPED in capsys.readouterr().err
+
+
+def test_a_command_named_like_one_of_the_core_stops_the_commands_of_plugins(with_usurper, capsys):
+    assert run(["fly-kite"]) == 1
+    assert USURPED in capsys.readouterr().err
+
+
+def test_plugins_in_conflict_are_listed_with_the_conflict(with_usurper, capsys):
+    assert run(["plugin", "list"]) == 1
+    captured = capsys.readouterr()
+    assert USURPED in captured.err
+    assert "usurper (given by the caller)\n  commands: plan" in captured.out
+
+
+def test_plugins_in_conflict_are_told_in_json(with_usurper, capsys):
+    assert run(["plugin", "list", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["error"] == USURPED
+    assert "usurper" in told["plugins"]
 
 
 def test_help_and_list_work_with_a_broken_plugin(monkeypatch, capsys):

@@ -1,0 +1,75 @@
+"""Says whose fault it is when something that a plug-in contributed fails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from mmrs_core.errors import MmrsError, PluginError
+
+Descriptor = TypeVar("Descriptor")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Guarded:
+    """A function of a plug-in, whose failures name the plug-in; equal to the function itself.
+
+    Errors of this package pass: by them, a plug-in says what its contract lets it say. What the
+    function yields later is guarded, too.
+
+    Attributes:
+        function: the plug-in's own.
+        blamed: plug-in, distribution and contribution, for messages.
+    """
+
+    function: Callable[..., Any]
+    blamed: str
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Return what the function returns.
+
+        Raises:
+            PluginError: if it raises anything but an error of this package.
+        """
+        try:
+            result = self.function(*arguments, **named)
+        except MmrsError:
+            raise
+        except Exception as error:
+            raise self._failure(error) from error
+        return self._guarded(result) if isinstance(result, Iterator) else result
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether both are the same function, guarded or not."""
+        return self.function == (other.function if isinstance(other, Guarded) else other)
+
+    def __hash__(self) -> int:
+        """Return the function's own."""
+        return hash(self.function)
+
+    def _guarded(self, result: Iterator[object]) -> Iterator[object]:
+        try:
+            yield from result
+        except MmrsError:
+            raise
+        except Exception as error:
+            raise self._failure(error) from error
+
+    def _failure(self, error: Exception) -> PluginError:
+        return PluginError(f"{self.blamed} fails: {error!r}")
+
+
+def guarded(descriptor: Descriptor, blamed: str) -> Descriptor:
+    """Return a descriptor whose functions blame the plug-in for their failures.
+
+    >>> from mmrs_core.contributions.execution import Condition
+    >>> guarded(Condition("windy", lambda state: 1 / 0), "condition 'windy' of 'kites'").holds(0)
+    Traceback (most recent call last):
+    ...
+    mmrs_core.errors.PluginError: condition 'windy' of 'kites' fails: ZeroDivisionError('division by zero')
+    """
+    if not is_dataclass(descriptor) or isinstance(descriptor, type):
+        return descriptor
+    held = ((field.name, getattr(descriptor, field.name)) for field in fields(descriptor))
+    return replace(descriptor, **{name: Guarded(value, blamed) for name, value in held if callable(value)})
