@@ -44,12 +44,19 @@ def list_metamodels(call: typer.Context, json: Json = False) -> int:
 
 
 @app.command("export")
-def export(call: typer.Context, directory: Folder, json: Json = False) -> int:
+def export(
+    call: typer.Context,
+    directory: Folder,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace files that were changed or come from elsewhere.")
+    ] = False,
+    json: Json = False,
+) -> int:
     """Write all languages side by side as an Eclipse project."""
     from mmrs_core.languages.export import export_metamodels
 
     registry = settings_of(call).plugins().contributions.languages
-    return _written(export_metamodels(registry, directory), json)
+    return _written(export_metamodels(registry, directory, force=force), json)
 
 
 @app.command("docs")

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from hashlib import sha256
 from pathlib import Path
 
+from mmrs_core.errors import MmrsError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.ecore_tables import PackageTable
 from mmrs_core.languages.ecore_text import package_text
@@ -17,6 +21,7 @@ from mmrs_core.languages.xml_events import Document, read_bytes
 
 _REFERENCE = re.compile(r"""\b(eType|eSuperTypes|eOpposite|eClassifier|eKeys)=(["'])(.*?)\2""", re.DOTALL)
 
+_RECORD = ".mmrs-export.json"
 _PROJECT = """<?xml version="1.0" encoding="UTF-8"?>
 <projectDescription>
 \t<name>mmrs-metamodels</name>
@@ -44,13 +49,22 @@ def exported_names(registry: Registry) -> dict[str, str]:
     return names
 
 
-def export_metamodels(registry: Registry, directory: Path) -> list[Path]:
+def export_metamodels(registry: Registry, directory: Path, *, force: bool = False) -> list[Path]:
     """Write all metamodels, with references relative to each other, and an Eclipse project around them.
 
+    Which files were written, and what was in them, is kept in ``.mmrs-export.json`` beside them.
+
+    Args:
+        registry: the metamodels.
+        directory: made if need be; what else is in it stays.
+        force: replace files that somebody else wrote or changed. A metamodel that is installed from
+            there is never replaced.
+
     Returns:
-        The paths of the written files; the folder is made if need be, and what else is in it stays.
+        The paths of the written files.
 
     Raises:
+        MmrsError: if files would be replaced that must not be; lists all of them.
         OSError: if the folder cannot be written to.
     """
     names = exported_names(registry)
@@ -58,12 +72,61 @@ def export_metamodels(registry: Registry, directory: Path) -> list[Path]:
     texts = {
         names[package.ns_uri]: rewriter.text(package) for package in registry.packages if not package.parent
     }
+    files = {name: text.encode() for name, text in {".project": _PROJECT, **texts}.items()}
+    sources = [package.ecore for package in registry.packages if isinstance(package.ecore, Path)]
+    _refuse(directory, [name for name in files if _is_any(directory / name, sources)], "installed from there")
+    if not force:
+        _refuse(directory, _others(directory, files), "not as an export left them; --force replaces them")
     directory.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name, text in {".project": _PROJECT, **texts}.items():
-        replace_file(directory / name, text.encode())
-        written.append(directory / name)
-    return written
+    hashes = {name: _hash(data) for name, data in files.items()}
+    for name, data in {**files, _RECORD: json.dumps(hashes, indent=2).encode() + b"\n"}.items():
+        replace_file(directory / name, data)
+    return [directory / name for name in files]
+
+
+def _others(directory: Path, files: Mapping[str, bytes]) -> list[str]:
+    """Return which files are there with a content that neither is exported now nor was before."""
+    recorded = _recorded(directory / _RECORD)
+    return [
+        name
+        for name, data in files.items()
+        if os.path.lexists(directory / name)
+        and _content(directory / name) not in (_hash(data), recorded.get(name))
+    ]
+
+
+def _content(path: Path) -> str:
+    """Return the hash of a file; empty for what is no file that can be read."""
+    try:
+        return _hash(path.read_bytes()) if path.is_file() else ""
+    except OSError:
+        return ""
+
+
+def _recorded(path: Path) -> Mapping[str, str]:
+    """Return the hashes by name that an export left; without a sound record, none are known."""
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return (
+        {name: each for name, each in found.items() if isinstance(each, str)}
+        if isinstance(found, dict)
+        else {}
+    )
+
+
+def _refuse(directory: Path, names: list[str], why: str) -> None:
+    if names:
+        raise MmrsError(f"{', '.join(str(directory / name) for name in names)}: {why}")
+
+
+def _is_any(path: Path, files: Iterable[Path]) -> bool:
+    return path.exists() and any(file.exists() and path.samefile(file) for file in files)
+
+
+def _hash(data: bytes) -> str:
+    return sha256(data).hexdigest()
 
 
 class _Rewriter:
