@@ -40,7 +40,7 @@ class Diagnostic:
     """One fault.
 
     Attributes:
-        code: three or more capitals and three digits, such as ``MML014``; stable.
+        code: two or more capitals and three digits, such as ``MML014``; stable.
         severity: how much it matters.
         message: lower case, no full stop, the culprit first.
         place: where it stands.

@@ -31,7 +31,7 @@ class Constraint:
     """A rule that valid models keep.
 
     Attributes:
-        code: three or more capitals and three digits, unique.
+        code: two or more capitals and three digits, unique.
         title: what must hold, as a sentence for the documentation.
         metaclass: whose instances (subclasses included) it is checked on.
         check: the breaches by one such element in its models.

@@ -22,7 +22,7 @@ from mmrs_core.scene import Name
 Key = TypeVar("Key")
 Item = TypeVar("Item")
 
-_CODE = re.compile("[A-Z]{3,}[0-9]{3}")
+_CODE = re.compile("[A-Z]{2,}[0-9]{3}")
 
 Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
 
@@ -82,7 +82,7 @@ class Contributions:
             if plugin != "core" and not _CODE.fullmatch(constraint.code):
                 raise PluginError(
                     f"constraint {constraint.code!r} of plug-in '{plugin}': "
-                    "expected a code of three or more capitals and three digits"
+                    "expected a code of two or more capitals and three digits"
                 )
         self._refuse_misspelt("constraints")
         return tuple(self._by("constraints", lambda constraint: constraint.code).values())
