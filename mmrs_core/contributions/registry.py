@@ -79,7 +79,7 @@ class Contributions:
     def constraints(self) -> tuple[Constraint, ...]:
         """Return the constraints on models."""
         for plugin, constraint in self._declared("constraints"):
-            if plugin != "core" and not _CODE.fullmatch(constraint.code):
+            if not _CODE.fullmatch(constraint.code):
                 raise PluginError(
                     f"constraint {constraint.code!r} of plug-in '{plugin}': "
                     "expected a code of two or more capitals and three digits"

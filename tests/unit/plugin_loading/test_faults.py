@@ -78,7 +78,7 @@ def test_what_works_gives_what_it_gives():
     assert rule.work(1, 2, 3) == (1, 2, 3)
 
 
-@pytest.mark.parametrize("code", ["KI001", "KITE01", "KITE0001", "kite001", "KITE1", ""])
+@pytest.mark.parametrize("code", ["K001", "KITE01", "KITE0001", "kite001", "KITE1", ""])
 def test_a_constraint_has_a_code_of_capitals_and_three_digits(code):
     contributions = contributions_with("mmrs_constraints", Constraint(code, "t", KITE, fails, "h"))
     with pytest.raises(PluginError, match=r"constraint .* of plug-in 'kites'.*two or more capitals"):
