@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from mmrs_core.planning.slabs import TINY, Cell, Side
 
 _STEPS = 12
 """How many level legs a thin slanted cell may be cut into before it gets one slanted leg."""
 
+_ANY = (-inf, inf)
 _ROUNDING = 1e-7
 """Metres by which the lowest height that will do may seem to lie above the highest."""
 
@@ -38,25 +40,29 @@ def legs_over(chain: Sequence[Cell], width: float) -> list[Leg]:
     """
     legs: list[Leg] = []
     run: list[Cell] = []
+    window = _ANY
     for cell in (part for whole in chain for part in _level_parts(whole, width)):
-        if run and _window([*run, cell], width) is None:
-            legs.append(_leg(run, width))
-            run = []
+        limits = _limits(cell, width)
+        common = (max(window[0], limits[0]), min(window[1], limits[1]))
+        if run and not _open(common):
+            legs.append(_leg(run, window))
+            run, common = [], limits
         run.append(cell)
-    return [*legs, _leg(run, width)] if run else legs
+        window = common
+    return [*legs, _leg(run, window)] if run else legs
 
 
-def _leg(run: Sequence[Cell], width: float) -> Leg:
+def _leg(run: Sequence[Cell], window: tuple[float, float]) -> Leg:
+    """Return the leg over cells at a height in a window, as near to the middle of their needs as can be."""
     corners = tuple(corner for cell in run for corner in _corners(cell))
     heights = [y for _, y in corners] or [y for cell in run for y in (*cell.room.low, *cell.room.high)]
     middle = (min(heights) + max(heights)) / 2
-    window = _window(run, width)
-    if window is None:
+    if _open(window):
+        begin = end = min(max(middle, min(window)), window[1])
+    else:
         (cell,) = run
         ends = zip(cell.room.low, cell.room.high, strict=True)
         begin, end = (min(max(middle, low), high) for low, high in ends)
-    else:
-        begin = end = min(max(middle, window[0]), window[1])
     return Leg((run[0].left, begin), (run[-1].right, end), tuple(_needs(run)), corners)
 
 
@@ -96,20 +102,23 @@ def _upper_limits(cell: Cell, width: float) -> list[Side]:
     return [cell.room.high, (left + width / 2, right + width / 2)]
 
 
-def _window(run: Sequence[Cell], width: float) -> tuple[float, float] | None:
-    """Return the heights at which one level leg stays inside all rooms and covers all needs; None: none."""
-    low = max(max(side) for cell in run for side in _lower_limits(cell, width))
-    high = min(min(side) for cell in run for side in _upper_limits(cell, width))
-    if low > high + _ROUNDING:
-        return None
-    return min(low, high), high
+def _limits(cell: Cell, width: float) -> tuple[float, float]:
+    """Return the lowest and the highest level leg that stays inside a cell's room and covers its need."""
+    return (
+        max(max(side) for side in _lower_limits(cell, width)),
+        min(min(side) for side in _upper_limits(cell, width)),
+    )
+
+
+def _open(window: tuple[float, float]) -> bool:
+    return window[0] <= window[1] + _ROUNDING
 
 
 def _level_parts(cell: Cell, width: float) -> list[Cell]:
     """Return the cell, cut upright into parts for a level leg each, left to right, each as long as can be."""
     parts: list[Cell] = []
     rest = cell
-    while len(parts) < _STEPS and _window([rest], width) is None:
+    while len(parts) < _STEPS and not _open(_limits(rest, width)):
         x = _level_until(rest, width)
         if not rest.left + TINY < x < rest.right - TINY:
             break
@@ -123,8 +132,8 @@ def _level_until(cell: Cell, width: float) -> float:
     lower, upper = _lower_limits(cell, width), _upper_limits(cell, width)
     floor, ceiling = max(side[0] for side in lower), min(side[0] for side in upper)
     shares = [
-        *((ceiling - side[0]) / (side[1] - side[0]) for side in lower if side[1] > ceiling),
-        *((floor - side[0]) / (side[1] - side[0]) for side in upper if side[1] < floor),
+        *((ceiling - side[0]) / (side[1] - side[0]) for side in lower if side[1] > max(side[0], ceiling)),
+        *((floor - side[0]) / (side[1] - side[0]) for side in upper if side[1] < min(side[0], floor)),
         *_meetings(lower, upper),
     ]
     return cell.left + min(shares, default=1.0) * (cell.right - cell.left)

@@ -29,7 +29,12 @@ clearances are rounded up by, and enough for lines along its edge."""
 
 
 def swaths_along_x(
-    pieces: Iterable[BaseGeometry], width: float, *, length: float = 0.0, closed: BaseGeometry | None = None
+    pieces: Iterable[BaseGeometry],
+    width: float,
+    *,
+    length: float = 0.0,
+    closed: BaseGeometry | None = None,
+    shift: float | None = None,
 ) -> list[Swath]:
     """Return swaths along x such that what they cover includes the pieces.
 
@@ -43,6 +48,8 @@ def swaths_along_x(
         width: of a strip, metres, positive.
         length: of what an action covers along the swath, metres; 0: the swath itself covers.
         closed: where swaths may not go, its edge excepted; None: nowhere.
+        shift: None: strips share evenly what they have to spare; else all are as wide as they can be, and
+            the lowest begins this share (0 to 1) of what there is to spare below the pieces.
     """
     blocked = Polygon() if closed is None else closed
     core = shapely.buffer(blocked, -_SHAVED)
@@ -54,7 +61,7 @@ def swaths_along_x(
     swaths = (
         swath_over(legs_over(chain, width), width, length, clear)
         for group in _groups([piece for piece in pieces if piece.area > 0.0], _GAP * width)
-        for chain in _chains_of(group, width, blocked)
+        for chain in _chains_of(group, width, blocked, shift)
     )
     return [swath for swath in swaths if swath is not None]
 
@@ -75,19 +82,24 @@ def _groups(pieces: Sequence[BaseGeometry], gap: float) -> Iterator[BaseGeometry
         yield shapely.union_all([pieces[i] for i in group]) if len(group) > 1 else pieces[group[0]]
 
 
-def _chains_of(target: BaseGeometry, width: float, blocked: BaseGeometry) -> Iterator[list[Cell]]:
+def _chains_of(
+    target: BaseGeometry, width: float, blocked: BaseGeometry, shift: float | None
+) -> Iterator[list[Cell]]:
     """Yield the rows of cells, each for one swath, strip by strip."""
     left, bottom, right, top = shapely.bounds(target).tolist()
-    for low, high in _levels(bottom, top, width):
+    for low, high in _levels(bottom, top, width, shift):
         strip = shapely.box(left - 1.0, low, right + 1.0, high)
         inside = shapely.intersection(target, strip)
         for row in _rows(cells(inside, shapely.difference(strip, blocked))):
             yield from _chains(row, _GAP * width)
 
 
-def _levels(bottom: float, top: float, width: float) -> Iterator[tuple[float, float]]:
-    """Yield the strips' (low, high): all of one height, not over `width`, as few as can be."""
+def _levels(bottom: float, top: float, width: float, shift: float | None) -> Iterator[tuple[float, float]]:
+    """Yield the strips' (low, high): of one height, not over `width`, as few as can be."""
     count = max(1, ceil((top - bottom) / width - TINY))
+    if shift is not None:
+        bottom -= shift * (count * width - (top - bottom))
+        top = bottom + count * width
     edges = np.linspace(bottom, top, count + 1).tolist()
     yield from pairwise(edges)
 

@@ -23,6 +23,8 @@ from mmrs_core.planning.tours import hop_length, tour
 Floats: TypeAlias = NDArray[np.float64]
 
 _ANGLES = 8
+_SHIFTED = 3
+_SHIFTS = (0.0, 0.5, 1.0)
 _REPAIRS = 4
 _LEFT_OUT = 1e-5
 """Share of the target that swaths may leave out: a hundredth of what is promised."""
@@ -71,11 +73,22 @@ def swaths(
         return []
     reach = _Reach(width, length, _near(closed, pieces, width))
     angles = [angle] if angle is not None else sweep_angles(pieces)
-    sweeps = [_sweep(pieces, reach, direction) for direction in angles]
-    lines = min(sweeps, key=lambda sweep: _cost(sweep, reach, start)) if len(sweeps) > 1 else sweeps[0]
-    lines = _repaired(pieces, lines, reach)
+    lines = _repaired(pieces, _best_sweep(pieces, reach, angles, start), reach)
+    if not lines:
+        place = pieces[0].representative_point()
+        return [Swath(np.array([[place.x, place.y]]))]
     begins, ends = _ends(lines)
     return [lines[i].reversed() if back else lines[i] for i, back in tour(begins, ends, start)]
+
+
+def _best_sweep(
+    pieces: Sequence[Polygon], reach: _Reach, angles: Sequence[float], start: tuple[float, float] | None
+) -> list[Swath]:
+    """Return the best sweep at all angles, with strips shifted at the best angles."""
+    sweeps = [(_sweep(pieces, reach, angle), angle) for angle in angles]
+    sweeps.sort(key=lambda each: _cost(each[0], reach, start))
+    shifted = [_sweep(pieces, reach, angle, shift) for _, angle in sweeps[:_SHIFTED] for shift in _SHIFTS]
+    return min([sweeps[0][0], *shifted], key=lambda lines: _cost(lines, reach, start))
 
 
 def sweep_angles(pieces: Sequence[Polygon], count: int = _ANGLES) -> list[float]:
@@ -109,11 +122,11 @@ def _near(closed: BaseGeometry | None, pieces: Sequence[Polygon], width: float) 
     return near
 
 
-def _sweep(pieces: Sequence[Polygon], reach: _Reach, angle: float) -> list[Swath]:
+def _sweep(pieces: Sequence[Polygon], reach: _Reach, angle: float, shift: float | None = None) -> list[Swath]:
     turned = [_turned(piece, angle) for piece in pieces]
     closed = _turned(reach.closed, angle)
     back = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
-    lines = swaths_along_x(turned, reach.width, length=reach.length, closed=closed)
+    lines = swaths_along_x(turned, reach.width, length=reach.length, closed=closed, shift=shift)
     return [replace(line, points=line.points @ back) for line in lines]
 
 

@@ -9,8 +9,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
+Plane: TypeAlias = NDArray[np.complex128]
+"""Points as east + i north, so that a distance is the absolute value of a difference."""
 
 _PASSES = 20
+_RUN = 4
+"""Strokes at most that are moved to another place of a tour together."""
+
+_KICKS = 20
+_KICKED = 1000
+"""Strokes at most, in all tours together, that are improved again from somewhere else."""
+
+_SHORTER = 1e-6
+"""Metres by which a tour must become shorter to be kept."""
+
+_NOWHERE = complex("nan")
 
 
 def tour(
@@ -23,117 +36,158 @@ def tour(
         ends: (n, 2) last points.
         start: (2,) where the tour begins; None: at whichever outer end is best.
         improve: whether to go on after the nearest-end tour with reversals of parts (2-opt) and moves
-            of single strokes until neither helps. Deterministic.
+            of short runs of strokes (or-opt) until neither helps, again from a few tours nearby.
+            Deterministic.
     """
-    first = np.asarray(begins, dtype=np.float64).reshape(-1, 2)
-    last = np.asarray(ends, dtype=np.float64).reshape(-1, 2)
+    first, last = _plane(begins), _plane(ends)
     if not len(first):
         return []
-    starts = [np.asarray(start, dtype=np.float64)] if start is not None else _corners(first, last)
-    tours = [_nearest(first, last, point) for point in starts]
-    best = min(tours, key=lambda order: hop_length(first, last, order, start))
-    return _improved(first, last, best, start) if improve else best
+    origin = _NOWHERE if start is None else complex(*np.asarray(start, dtype=np.float64).tolist())
+    starts = _corners(first, last) if start is None else [origin]
+    tours = [_Tour(first, last, origin, *_nearest(first, last, point)) for point in starts]
+    best = min(tours, key=lambda each: each.hops)
+    return (_kicked(best.improved()) if improve else best).order
 
 
 def hop_length(
-    begins: Floats, ends: Floats, order: Sequence[tuple[int, bool]], start: ArrayLike | None = None
+    begins: ArrayLike, ends: ArrayLike, order: Sequence[tuple[int, bool]], start: ArrayLike | None = None
 ) -> float:
     """Return the metres of straight hops between the strokes in that order, from `start` if given."""
-    enter, leave = _directed(begins, ends, order)
-    total = float(np.linalg.norm(enter[1:] - leave[:-1], axis=1).sum())
-    if start is not None:
-        total += float(np.linalg.norm(enter[0] - np.asarray(start, dtype=np.float64)))
-    return total
+    origin = _NOWHERE if start is None else complex(*np.asarray(start, dtype=np.float64).tolist())
+    index = np.array([i for i, _ in order], dtype=np.intp)
+    flip = np.array([back for _, back in order], dtype=np.bool_)
+    return _Tour(_plane(begins), _plane(ends), origin, index, flip).hops
 
 
-def _corners(first: Floats, last: Floats) -> list[Floats]:
+def _plane(points: ArrayLike) -> Plane:
+    pairs = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
+
+
+def _corners(first: Plane, last: Plane) -> list[complex]:
     """Return the outermost ends in four directions, without repeats."""
     ends = np.concatenate([first, last])
-    along = np.stack([ends.sum(axis=1), ends[:, 0] - ends[:, 1]])
+    along = np.stack([ends.real + ends.imag, ends.real - ends.imag])
     picks = dict.fromkeys(int(i) for row in along for i in (np.argmin(row), np.argmax(row)))
-    return [ends[i] for i in picks]
+    return [complex(ends[i]) for i in picks]
 
 
-def _nearest(first: Floats, last: Floats, start: Floats) -> list[tuple[int, bool]]:
+def _nearest(first: Plane, last: Plane, at: complex) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Go on with the stroke that has the nearest end, again and again; O(n²)."""
     ends = np.stack([first, last])
-    open_ends = np.zeros((2, len(first)))
+    done = np.zeros(ends.shape)
     order = []
-    at = start
     for _ in range(len(first)):
-        distance = np.hypot(ends[..., 0] - at[0], ends[..., 1] - at[1]) + open_ends
-        flip, index = divmod(int(np.argmin(distance)), len(first))
-        order.append((index, bool(flip)))
-        open_ends[:, index] = np.inf
-        at = ends[1 - flip, index]
-    return order
+        flip, index = divmod(int(np.argmin(np.abs(ends - at) + done)), len(first))
+        order.append((index, flip))
+        done[:, index] = np.inf
+        at = complex(ends[1 - flip, index])
+    pairs = np.array(order, dtype=np.intp)
+    return pairs[:, 0], pairs[:, 1].astype(np.bool_)
 
 
-def _directed(begins: Floats, ends: Floats, order: Sequence[tuple[int, bool]]) -> tuple[Floats, Floats]:
-    """Return the points at which strokes are entered and left, in order."""
-    index = np.array([i for i, _ in order], dtype=np.intp)
-    flip = np.array([back for _, back in order])[:, None]
-    return np.where(flip, ends[index], begins[index]), np.where(flip, begins[index], ends[index])
+def _kicked(best: _Tour) -> _Tour:
+    """Swap random neighbouring parts of the tour and improve it again; keep what became shorter."""
+    count = len(best.index)
+    rng = np.random.default_rng(0)
+    for _ in range(min(_KICKS, _KICKED // count) if count > 2 else 0):
+        i, j, k = np.sort(rng.choice(count + 1, 3, replace=False)).tolist()
+        other = best.arranged(np.r_[0:i, j:k, i:j, k:count]).improved()
+        if other.hops < best.hops - _SHORTER:
+            best = other
+    return best
 
 
-def _improved(
-    first: Floats, last: Floats, order: list[tuple[int, bool]], start: ArrayLike | None
-) -> list[tuple[int, bool]]:
-    for _ in range(_PASSES):
-        better = _moved(first, last, _reversed(first, last, order, start), start)
-        if hop_length(first, last, better, start) >= hop_length(first, last, order, start) - 1e-6:
-            return order
-        order = better
-    return order
+def _far(one: Plane | complex, two: Plane | complex) -> Floats:
+    """Return distances; 0 from and to nowhere."""
+    far: Floats = np.fmax(np.abs(np.subtract(one, two)), 0.0)
+    return far
 
 
-def _distance(one: Floats, two: Floats) -> Floats:
-    gap: Floats = np.hypot(one[..., 0] - two[..., 0], one[..., 1] - two[..., 1])
-    return gap
+class _Tour:
+    """Strokes in an order, each one way round.
 
+    Hop k leads to the k-th stroke; the last one, to nowhere, has no length, nor has the first without
+    an origin.
+    """
 
-def _reversed(
-    first: Floats, last: Floats, order: list[tuple[int, bool]], start: ArrayLike | None
-) -> list[tuple[int, bool]]:
-    """Turn parts of the tour around wherever that shortens it (one sweep of 2-opt)."""
-    order = list(order)
-    for i in range(len(order)):
-        enter, leave = _directed(first, last, order)
-        came = leave[i - 1] if i else (None if start is None else np.asarray(start, dtype=np.float64))
-        gain = np.zeros(len(order) - i)
-        if came is not None:
-            gain += _distance(came, enter[i]) - _distance(came, leave[i:])
-        gain[:-1] += _distance(leave[i:-1], enter[i + 1 :]) - _distance(enter[i], enter[i + 1 :])
-        j = int(np.argmax(gain))
-        if gain[j] > 1e-6:
-            order[i : i + j + 1] = [(k, not back) for k, back in reversed(order[i : i + j + 1])]
-    return order
+    def __init__(
+        self,
+        first: Plane,
+        last: Plane,
+        origin: complex,
+        index: NDArray[np.intp],
+        flip: NDArray[np.bool_],
+    ) -> None:
+        self._first, self._last, self._origin = first, last, origin
+        self.index, self.flip = index, flip
+        self._enter = np.where(flip, last[index], first[index])
+        self._leave = np.where(flip, first[index], last[index])
+        self._came = np.concatenate([[origin], self._leave])
+        self._next = np.concatenate([self._enter, [_NOWHERE]])
+        self._gaps = _far(self._came, self._next)
+        self.hops = float(self._gaps.sum())
 
+    @property
+    def order(self) -> list[tuple[int, bool]]:
+        """The strokes as (index, reversed)."""
+        return list(zip(self.index.tolist(), self.flip.tolist(), strict=True))
 
-def _moved(
-    first: Floats, last: Floats, order: list[tuple[int, bool]], start: ArrayLike | None
-) -> list[tuple[int, bool]]:
-    """Move single strokes to a better place, either way round, wherever that shortens the tour."""
-    order = list(order)
-    for stroke in range(len(order)):
-        at = next(i for i, (k, _) in enumerate(order) if k == stroke)
-        rest = order[:at] + order[at + 1 :]
-        if not rest:
-            return order
-        enter, leave = _directed(first, last, rest)
-        best = hop_length(first, last, order, start) - 1e-6
-        base = hop_length(first, last, rest, start)
-        for back in (False, True):
-            head, tail = (last[stroke], first[stroke]) if back else (first[stroke], last[stroke])
-            cost = np.zeros(len(rest) + 1)
-            cost[1:] += _distance(leave, head)
-            cost[:-1] += _distance(tail, enter)
-            cost[1:-1] -= _distance(leave[:-1], enter[1:])
-            if start is not None:
-                origin = np.asarray(start, dtype=np.float64)
-                cost[0] += _distance(origin, head) - _distance(origin, enter[0])
-            place = int(np.argmin(cost))
-            if base + cost[place] < best:
-                best = base + float(cost[place])
-                order = [*rest[:place], (stroke, back), *rest[place:]]
-    return order
+    def arranged(self, places: NDArray[np.intp], turned: NDArray[np.bool_] | None = None) -> _Tour:
+        """Return the tour with its strokes in another order, some of them turned."""
+        flip = self.flip[places] if turned is None else self.flip[places] ^ turned
+        return _Tour(self._first, self._last, self._origin, self.index[places], flip)
+
+    def improved(self) -> _Tour:
+        """Return the tour after reversals and moves, until neither helps."""
+        best = self
+        for _ in range(_PASSES):
+            other = best._with_reversals()._with_moves()
+            if other.hops >= best.hops - _SHORTER:
+                return best
+            best = other
+        return best
+
+    def _with_reversals(self) -> _Tour:
+        """Turn parts of the tour around wherever that shortens it (one sweep of 2-opt)."""
+        best = self
+        for i in range(len(self.index)):
+            gain = best._gaps[i] + best._gaps[i + 1 :]
+            gain = gain - _far(best._came[i], best._leave[i:]) - _far(best._enter[i], best._next[i + 1 :])
+            j = i + int(np.argmax(gain))
+            if gain[j - i] > _SHORTER:
+                best = best._reversed(i, j)
+        return best
+
+    def _reversed(self, i: int, j: int) -> _Tour:
+        places = np.arange(len(self.index))
+        places[i : j + 1] = places[i : j + 1][::-1].copy()
+        turned = (places >= i) & (places <= j)
+        return self.arranged(places, turned)
+
+    def _with_moves(self) -> _Tour:
+        """Move runs of strokes to a better place, either way round, wherever that shortens the tour."""
+        best = self
+        count = len(self.index)
+        for size in range(1, min(_RUN, count - 1) + 1):
+            for i in range(count - size + 1):
+                best = best._with_move(i, i + size)
+        return best
+
+    def _with_move(self, i: int, j: int) -> _Tour:
+        """Move strokes i to j - 1 to where that shortens the tour most."""
+        head, tail = self._enter[i], self._leave[j - 1]
+        left_out = self._gaps[i] + self._gaps[j] - float(_far(self._came[i], self._next[j]))
+        onwards = _far(self._came, head) + _far(tail, self._next) - self._gaps
+        backwards = _far(self._came, tail) + _far(head, self._next) - self._gaps
+        added = np.minimum(onwards, backwards)
+        added[i : j + 1] = np.inf
+        to = int(np.argmin(added))
+        if added[to] >= left_out - _SHORTER:
+            return self
+        back = bool(backwards[to] < onwards[to])
+        run = np.arange(i, j)[:: -1 if back else 1]
+        rest = np.r_[0:i, j : len(self.index)]
+        before = to if to < i else to - (j - i)
+        places = np.concatenate([rest[:before], run, rest[before:]])
+        return self.arranged(places, (places >= i) & (places < j) & back)
