@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.crew import Crew, homebound_of
 from mmrs_core.planning.jobs import Job, is_control
 from mmrs_core.planning.schedule import Schedule, signal_name
 from mmrs_core.planning.sorties import State
@@ -35,8 +35,19 @@ def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         makespan=max((state.time for state in finished.values()), default=0.0),
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
-        notes=_NOTES,
+        notes=(*_NOTES, *_of_no_return(crew, schedule)),
     )
+
+
+def _of_no_return(crew: Crew, schedule: Schedule) -> Iterator[str]:
+    """Yield which robots end where they could not get home from, though a low battery sends them there."""
+    for name in sorted(homebound_of(crew.scene) - crew.homebound):
+        pilot, state = crew.pilots[name], schedule.states[name]
+        if state.away and not pilot.affords_home(state, 0.0, state.at):
+            yield (
+                f"robot '{name}' ends where its charge does not suffice to go home:"
+                " give it another response to BATTERY_LOW than to return, such as LAND"
+            )
 
 
 def _robot_plan(

@@ -10,10 +10,15 @@ from mmrs_core.planning.materials import Layout, Material, charge_faults, faults
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of, uncertain_seconds
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
-from mmrs_core.scene import Scene, Task, Work
+from mmrs_core.scene import Part, Robot, Scene, Task, Value, Work
 
 _PORTIONS_PER_ROBOT = 60
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
+
+_LOW = "BATTERY_LOW"
+
+_GOES_AWAY = ("RETURN", "EMERGENCY_AREA")
+"""Responses that take a robot elsewhere."""
 
 Direction = bool
 """Whether a material is laid out backwards."""
@@ -26,7 +31,7 @@ class Crew:
         scene: expanded.
         fine: whether works are divided as finely as can be.
         stacked: whether robots have transit altitudes of their own.
-        homing: whether robots that need not return always keep enough to go home.
+        homebound: names of the robots that always keep enough to go home.
         pilots: by name of robot, in the scene's order.
         teams: by name of task: robots that may share it, by sort of work; robots of different sorts
             (such as cameras with different footprints) cannot.
@@ -38,7 +43,7 @@ class Crew:
         scene: Scene,
         *,
         fine: bool = False,
-        homing: bool = False,
+        homebound: frozenset[str] | None = None,
         altitudes: Mapping[str, float] | None = None,
     ) -> None:
         """Lay everything out.
@@ -46,17 +51,18 @@ class Crew:
         Args:
             scene: expanded.
             fine: whether works are divided as finely as can be, for missions that barely fit.
-            homing: whether robots that need not return always keep enough to go home, for recharging.
+            homebound: names of the robots that always keep enough to go home; None: see `homebound_of`.
             altitudes: of transit, by robot; None: the scene's for all.
         """
-        self.scene, self.fine, self.stacked, self.homing = scene, fine, altitudes is not None, homing
+        self.scene, self.fine, self.stacked = scene, fine, altitudes is not None
+        self.homebound = homebound_of(scene) if homebound is None else homebound
         spaces, slack = Spaces(scene), _slack(scene)
         aloft = altitudes or {}
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
                 Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude)),
                 slack,
-                homing=homing,
+                homebound=robot.name in self.homebound,
             )
             for robot in scene.robots
         }
@@ -159,6 +165,29 @@ class Crew:
             material = self.forwards(task, name)
             for fault in charge_faults(material, self.pilots[name]) if material is not None else ():
                 yield f"{name}: {fault}"
+
+
+def homebound_of(scene: Scene) -> frozenset[str]:
+    """Return the names of the robots that must always have enough left to go home.
+
+    These are the robots that return in the end, and those that nobody told to do otherwise when their
+    battery is low: most kinds of robots then return.
+    """
+    return frozenset(
+        robot.name
+        for robot in scene.robots
+        if robot.return_home or _response_to_low_battery(scene, robot) in _GOES_AWAY
+    )
+
+
+def _response_to_low_battery(scene: Scene, robot: Robot) -> str:
+    """Return what the mission or the robot's type declares; RETURN where neither does."""
+    declared: list[Value] = [policy.response for policy in scene.policies if policy.event == _LOW]
+    of_type = robot.type.part.attributes.get("policies")
+    for part in of_type if isinstance(of_type, tuple) else ():
+        if isinstance(part, Part) and part.attributes.get("event") == _LOW:
+            declared.append(part.attributes.get("response"))
+    return str(declared[0]) if declared else "RETURN"
 
 
 def _slack(scene: Scene) -> float:

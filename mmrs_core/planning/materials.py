@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import inf
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.pacing import paced
 from mmrs_core.planning.sorties import Approach, Pilot
 from mmrs_core.planning.strokes import (
     approach_speed,
@@ -36,7 +37,7 @@ class Material:
         task: name of its task.
         rule: name of the rule that made it.
         portions: strokes of each portion; robots take runs of portions.
-        begins, ends: seconds at which each portion begins and ends when one robot does them all.
+        begins, ends: seconds at which each portion begins and ends, see `paced`.
         entry: where whoever does the first portion goes first; None: nowhere.
         speeds: by portion: at which the robot goes to it, metres per second; None: its cruise.
         whole: whether one robot must do all of it in one sortie.
@@ -136,23 +137,14 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
     portions = layout.portions
     if backwards:
         portions = tuple(tuple(turned(part) for part in reversed(portion)) for portion in reversed(portions))
-    begins, ends, now = [], [], 0.0
-    here: Position | None = None
-    for portion in portions:
-        for i, stroke in enumerate(portion):
-            if here is not None:
-                now += pilot.hop_seconds(here, stroke)
-            if i == 0:
-                begins.append(now)
-            now += serve_seconds(stroke, pilot.robot, pilot.kinematics)
-            here = stroke.points[-1]
-        ends.append(now)
+    spans = iter(paced([part for portion in portions for part in portion], pilot))
+    of_portions = [[next(spans) for _ in portion] for portion in portions]
     return Material(
         task=task,
         rule=work.rule,
         portions=portions,
-        begins=tuple(begins),
-        ends=tuple(ends),
+        begins=tuple(own[0][0] for own in of_portions),
+        ends=tuple(own[-1][1] for own in of_portions),
         entry=_entry(work, pilot),
         speeds=tuple(approach_speed(portion[0], pilot.kinematics) for portion in portions),
         whole=not work.divisible,

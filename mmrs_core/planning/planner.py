@@ -45,13 +45,17 @@ class _ShortError(InfeasibleError):
 
 
 def _crews(crew: Crew) -> Iterator[Crew]:
-    """Yield a crew, and what it may be replaced by where somebody is missing for some job."""
-    scene = crew.scene
+    """Yield a crew, and what it may be replaced by where somebody is missing for some job.
+
+    Robots that need not return may keep enough to go home, to recharge there; or they may not, and end
+    further away.
+    """
     yield crew
-    if any(not pilot.robot.return_home and pilot.kinematics.recharge for pilot in crew.pilots.values()):
-        yield Crew(scene, homing=True)
-        yield Crew(scene, homing=True, fine=True)
-    yield Crew(scene, fine=True)
+    everyone = frozenset(crew.pilots)
+    returning = frozenset(name for name, pilot in crew.pilots.items() if pilot.robot.return_home)
+    others = [each for each in dict.fromkeys((everyone, returning)) if each != crew.homebound]
+    yield from (Crew(crew.scene, homebound=each) for each in others)
+    yield from (Crew(crew.scene, homebound=each, fine=True) for each in (*others, crew.homebound))
 
 
 def _plan_with(crew: Crew, jobs: Sequence[Job], seed: int) -> Plan:
@@ -71,8 +75,8 @@ def _told_otherwise(crew: Crew) -> Iterator[tuple[Crew, bool]]:
     """Yield (crew, whether its robots fly one after the other) that may help where robots come too near."""
     altitudes = stacked_altitudes(crew.scene)
     if altitudes:
-        yield Crew(crew.scene, fine=crew.fine, homing=crew.homing, altitudes=altitudes), False
-    yield Crew(crew.scene, fine=crew.fine, homing=True), True
+        yield Crew(crew.scene, fine=crew.fine, homebound=crew.homebound, altitudes=altitudes), False
+    yield Crew(crew.scene, fine=crew.fine, homebound=frozenset(crew.pilots)), True
 
 
 def _plan_of(crew: Crew, jobs: Sequence[Job], seed: int, *, in_turns: bool = False) -> Plan:

@@ -54,10 +54,13 @@ def find_decisions(
             break
         other = _varied(crew, jobs, best, random)
         result = schedule(crew, jobs, other)
-        if cost_of(crew, result) < _slightly_less(cost_of(crew, found)):
+        cost, least = cost_of(crew, result), cost_of(crew, found)
+        if cost < _slightly_less(least):
             best, found, idle = other, result, 0
-        else:
-            idle += 1
+            continue
+        idle += 1
+        if isinstance(found, Shortfall) and cost == least:
+            best, found = other, result
     return best, found
 
 

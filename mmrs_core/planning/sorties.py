@@ -92,18 +92,18 @@ class Approach:
 class Pilot:
     """Moves one robot's state on; every way of doing something is a short function of the state."""
 
-    def __init__(self, travel: Travel, slack: float = 0.0, *, homing: bool = False) -> None:
+    def __init__(self, travel: Travel, slack: float = 0.0, *, homebound: bool = True) -> None:
         """Make it.
 
         Args:
             travel: ways of the robot.
             slack: seconds by which others may be later, and the robot earlier, than estimated: so much
                 longer may a wait for others be.
-            homing: whether it always keeps enough to go home, even if it may stay where it ends.
+            homebound: whether it always keeps enough to go home, even if it may stay where it ends.
         """
         self.travel, self.slack = travel, slack
         self.robot, self.kinematics = travel.robot, travel.kinematics
-        self.homebound = homing or self.robot.return_home
+        self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
         by_energy = self.kinematics.energy / power if power > 0 else inf
         self.limit = min(self.kinematics.endurance, by_energy)

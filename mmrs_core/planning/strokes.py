@@ -199,14 +199,15 @@ def joined(parts: Iterable[Stroke]) -> tuple[Stroke, ...]:
     strokes: list[Stroke] = []
     for part in parts:
         last = strokes[-1] if strokes else None
-        if last is not None and _continues(last, part):
+        if last is not None and continues(last, part):
             strokes[-1] = _put_together(last, part)
         else:
             strokes.append(part)
     return tuple(strokes)
 
 
-def _continues(one: Stroke, two: Stroke) -> bool:
+def continues(one: Stroke, two: Stroke) -> bool:
+    """Return whether one stroke goes on where another one ends, so that both may be one."""
     plain = one.hold == 0.0 and one.object is None
     alike = (one.look, one.speed, one.slow_down, one.reversible) == (
         two.look,

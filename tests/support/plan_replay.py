@@ -1,7 +1,7 @@
 """Carries out plans step by step and complains about whatever does not fit; shares no code with planning."""
 
 from itertools import pairwise
-from math import dist, hypot, inf
+from math import dist, hypot, inf, sqrt
 
 import numpy as np
 import shapely
@@ -68,7 +68,11 @@ class _Walk:
         level = hypot(end[0] - start[0], end[1] - start[1]) / speed
         rise = end[2] - start[2]
         rate = self.kinematics.climb if rise > 0 else self.kinematics.descent
-        return max(level, abs(rise) / rate)
+        even, length = max(level, abs(rise) / rate), dist(start, end)
+        if length == 0.0 or self.kinematics.acceleration == inf:
+            return even
+        ramp = length / even / self.kinematics.acceleration
+        return even + ramp if ramp <= even else 2.0 * sqrt(length / self.kinematics.acceleration)
 
     def lasts(self, step, seconds, more=0.0):
         if not seconds - NEAR <= step.end - step.begin <= seconds + more + NEAR:
@@ -100,7 +104,7 @@ class _Walk:
     def _Serve(self, step):  # noqa: N802
         if not self.away:
             self.faults.append(f"works on the ground {step}")
-        seconds = self.move(step.stroke.points, step.speed)
+        seconds = self.move(_with_stops(step.stroke), step.speed)
         actions = [self.robot.type.devices["camera"].actions[each.action] for each in step.stroke.actions]
         whole = seconds + step.stroke.hold + sum(action.duration for action in actions)
         turning = 180.0 / self.kinematics.turn_rate if step.stroke.look else 0.0
@@ -144,6 +148,17 @@ class _Walk:
                 self.faults.append("an arm is longer than its branch")
             uses.append(self.used)
         self.here, self.time, self.used = step.exit, step.end, max(uses)
+
+
+def _with_stops(stroke):
+    """Return the stroke's points and the places of its actions, in order."""
+    if len(stroke.points) == 1:
+        return stroke.points
+    arcs = np.cumsum([0.0, *(dist(a, b) for a, b in pairwise(stroke.points))])
+    whole = sorted({*arcs.tolist(), *(action.at for action in stroke.actions)})
+    apart = [at for before, at in pairwise([-1.0, *whole]) if at - before > 1e-5]
+    places = np.array(stroke.points)
+    return [tuple(float(np.interp(at, arcs, places[:, axis])) for axis in range(3)) for at in apart]
 
 
 def _robot_faults(scene, robot, plan):

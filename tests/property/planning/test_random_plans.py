@@ -63,9 +63,12 @@ def random_scene(seed):
     for k in range(int(rng.integers(1, 5))):
         endurance = float(rng.choice([200.0, 400.0, 2000.0]))
         each = robot(f"r{k}", (25.0 * k, 0.0, 0.0), returns=bool(rng.random() < 0.9))
-        team.append(
-            with_kinematics(each, endurance=endurance, recharge=[60.0, None][int(rng.random() < 0.15)])
-        )
+        figures = {
+            "endurance": endurance,
+            "recharge": [60.0, None][int(rng.random() < 0.15)],
+            "acceleration": float(rng.choice([0.5, 3.0, np.inf])),
+        }
+        team.append(with_kinematics(each, **figures))
     empty = scene(team, {}, areas=tuple(areas(rng)))
     names = [f"task {k}" for k in range(int(rng.integers(1, 6)))]
     works, tasks = {}, {}

@@ -19,7 +19,7 @@ from plan_replay import complaints
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_encounter
-from mmrs_core.scene import Await, Branch, Launch, Recharge, Recover, Serve, Signal, Transit
+from mmrs_core.scene import Await, Branch, Launch, Policy, Recharge, Recover, Serve, Signal, Transit
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
@@ -327,7 +327,33 @@ def test_a_robot_that_need_not_return_goes_home_to_recharge_and_ends_where_it_en
 
 def test_a_robot_that_need_not_return_may_go_so_far_that_it_could_not():
     lone = with_kinematics(robot(returns=False), endurance=120.0, recharge=300.0)
-    assert sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))})).robots[0].sorties == 1
+    found = sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))}))
+    assert found.robots[0].sorties == 1
+    assert any("robot 'r1' ends where its charge does not suffice to go home" in note for note in found.notes)
+
+
+def test_a_robot_that_lands_on_a_low_battery_may_go_so_far_without_a_note():
+    lone = with_kinematics(robot(returns=False), endurance=120.0)
+    landing = (Policy("BATTERY_LOW", "LAND"),)
+    found = sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))}, policies=landing))
+    assert not [note for note in found.notes if "r1" in note]
+
+
+def test_a_robot_that_need_not_return_can_always_go_home_where_that_is_possible():
+    lone = with_kinematics(robot(returns=False), endurance=140.0, recharge=60.0)
+    works = {"a": visit((400.0, 0.0, 20.0)), "b": visit((0.0, 400.0, 20.0))}
+    found = sound(scene([lone], works))
+    assert found.robots[0].sorties == 2
+    assert not [note for note in found.notes if "r1" in note]
+
+
+def test_a_charge_that_just_suffices_is_enough():
+    works = {name: visit((100.0 * k, 40.0, 20.0)) for k, name in enumerate(("a", "b", "c"), 1)}
+    works["d"] = road((0.0, 90.0, 20.0), (400.0, 90.0, 20.0), cuts=CUTS[:7])
+    plenty = with_kinematics(robot(), acceleration=0.5, recharge=None, energy=1e9)
+    needed = plan(scene([plenty], works)).makespan
+    exact = with_kinematics(plenty, endurance=needed)
+    assert sound(scene([exact], works)).makespan == pytest.approx(needed)
 
 
 def test_a_robot_that_need_not_return_keeps_enough_to_recharge_between_tasks():

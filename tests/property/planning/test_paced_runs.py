@@ -1,0 +1,62 @@
+"""The time of any run of parts is that of the strokes which they are together."""
+
+from itertools import pairwise
+from math import dist
+
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from plain_scenes import photo, road, robot, scene, visit, with_kinematics
+
+from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.strokes import joined, parts_of, serve_seconds, turned
+
+places = st.tuples(st.integers(0, 400), st.integers(0, 400), st.sampled_from([20, 30]))
+
+
+@st.composite
+def cut_roads(draw):
+    points = [tuple(map(float, each)) for each in draw(st.lists(places, min_size=2, max_size=5))]
+    assume(all(one != two for one, two in pairwise(points)))
+    length = sum(dist(one, two) for one, two in pairwise(points))
+    shares = st.floats(0.01, 0.99).map(lambda share: round(share * length, 3))
+    cuts = tuple(sorted(set(draw(st.lists(shares, min_size=1, max_size=6)))))
+    actions = sorted(draw(st.lists(st.one_of(shares, st.sampled_from(cuts)), max_size=4)))
+    (stroke,) = road(*points, cuts=cuts, actions=tuple(map(photo, actions))).strokes
+    parts = parts_of(stroke)
+    return tuple(turned(part) for part in reversed(parts)) if draw(st.booleans()) else parts
+
+
+def seconds_of(parts, pilot):
+    return sum(serve_seconds(each, pilot.robot, pilot.kinematics) for each in joined(parts))
+
+
+def pilot_with(acceleration):
+    each = with_kinematics(robot(), acceleration=acceleration)
+    return Crew(scene([each], {"a": visit((0.0, 9.0, 20.0))})).pilots["r1"]
+
+
+@given(cut_roads(), st.data(), st.sampled_from([0.5, 3.0, float("inf")]))
+def test_a_run_never_takes_longer_than_counted(parts, data, acceleration):
+    pilot = pilot_with(acceleration)
+    spans = paced(parts, pilot)
+    first = data.draw(st.integers(0, len(parts) - 1))
+    last = data.draw(st.integers(first, len(parts) - 1))
+    run = seconds_of(parts[first : last + 1], pilot)
+    assert spans[last][1] - spans[first][0] >= run - 1e-6
+
+
+@given(cut_roads(), st.sampled_from([0.5, 3.0]))
+def test_the_whole_takes_exactly_what_is_counted(parts, acceleration):
+    pilot = pilot_with(acceleration)
+    spans = paced(parts, pilot)
+    assert abs(spans[-1][1] - seconds_of(parts, pilot)) < 1e-6
+
+
+@given(cut_roads(), st.data())
+def test_without_inertia_every_run_takes_exactly_what_is_counted(parts, data):
+    pilot = pilot_with(float("inf"))
+    spans = paced(parts, pilot)
+    first = data.draw(st.integers(0, len(parts) - 1))
+    run = seconds_of(parts[first:], pilot)
+    assert abs(spans[-1][1] - spans[first][0] - run) < 1e-6

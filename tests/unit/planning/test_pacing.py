@@ -1,0 +1,74 @@
+from dataclasses import replace
+
+import pytest
+from plain_scenes import box, photo, road, robot, scene, visit, with_kinematics
+
+from mmrs_core.planning.crew import Crew
+from mmrs_core.planning.pacing import paced
+from mmrs_core.planning.strokes import parts_of, serve_seconds, turned
+
+SLUGGISH = with_kinematics(robot(), acceleration=0.5)
+CUTS = (25.0, 50.0, 75.0)
+
+
+def pilot_of(each=SLUGGISH, **features):
+    whole = scene([each], {"a": visit((0.0, 9.0, 20.0))}, **features)
+    return Crew(whole).pilots[each.name]
+
+
+def parts(*points, **features):
+    (stroke,) = road(*points, **{"cuts": CUTS, **features}).strokes
+    return parts_of(stroke), stroke
+
+
+def test_a_cut_costs_no_stop_where_one_robot_does_both_sides():
+    cut, stroke = parts((0.0, 0.0, 20.0), (400.0, 0.0, 20.0))
+    spans = paced(cut, pilot_of())
+    assert spans[-1][1] - spans[0][0] == pytest.approx(40.0 + 20.0)
+    assert serve_seconds(stroke, SLUGGISH, SLUGGISH.kinematics) == pytest.approx(40.0 + 20.0)
+
+
+def test_each_run_of_parts_takes_as_long_as_its_stroke():
+    cut, _ = parts((0.0, 0.0, 20.0), (1200.0, 0.0, 20.0), cuts=(300.0, 600.0, 900.0))
+    spans = paced(cut, pilot_of())
+    assert spans[1][1] - spans[1][0] == pytest.approx(30.0 + 20.0)
+    assert spans[2][1] - spans[1][0] == pytest.approx(60.0 + 20.0)
+
+
+def test_a_cut_at_a_bend_costs_nothing_more():
+    cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0), cuts=(300.0,))
+    assert paced(cut, pilot_of()) == [(0.0, pytest.approx(50.0)), (pytest.approx(50.0), pytest.approx(100.0))]
+
+
+def test_an_action_at_a_cut_is_counted_with_the_part_that_it_belongs_to():
+    cut, _ = parts((0.0, 0.0, 20.0), (600.0, 0.0, 20.0), cuts=(300.0,), actions=(photo(300.0),))
+    assert paced(cut, pilot_of())[0] == (0.0, pytest.approx(50.0))
+    other = paced([turned(part) for part in reversed(cut)], pilot_of())
+    assert other[0] == (0.0, pytest.approx(51.0))
+    assert other[1] == (pytest.approx(51.0), pytest.approx(101.0))
+
+
+def test_a_hold_comes_at_the_end_of_the_last_part():
+    cut, _ = parts((0.0, 0.0, 20.0), (400.0, 0.0, 20.0), hold=9.0)
+    assert paced(cut, pilot_of())[-1][1] == pytest.approx(69.0)
+
+
+def test_hops_are_between_parts_that_do_not_meet():
+    one, two = (road((0.0, north, 20.0), (300.0, north, 20.0)).strokes[0] for north in (0.0, 200.0))
+    spans = paced([one, turned(two)], pilot_of())
+    assert spans[1][0] - spans[0][1] == pytest.approx(20.0 + 20.0)
+
+
+def test_points_are_hopped_to_at_their_speed():
+    slow = visit((0.0, 0.0, 20.0), (100.0, 0.0, 20.0), slow_down=0.5).strokes
+    assert paced(slow, pilot_of(robot()))[1][0] == pytest.approx(20.0)
+
+
+def test_nothing_takes_no_time():
+    assert paced([], pilot_of()) == []
+
+
+def test_hops_keep_clear():
+    one, two = visit((0.0, 0.0, 20.0), (100.0, 0.0, 20.0)).strokes
+    around = pilot_of(robot(), areas=(box("wall", 40, -30, 60, 30),))
+    assert paced([one, replace(two)], around)[1][0] > 11.0
