@@ -12,11 +12,14 @@ from math import inf
 from mmrs_core.behaviour.policies import response_to
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.escape import Escapes
-from mmrs_core.runtime.legs import Flow, Leg, stretches
+from mmrs_core.runtime.legs import Flow, Leg, response_stretches
 from mmrs_core.scene import Kinematics, Policy
 
 SLACK = 1e-6
 """Seconds, and seconds at mean power, that rounding may cost."""
+
+ROUNDING = 5e-7
+"""Part of a full charge that robots have beyond it, since planned times follow from rounded places."""
 
 _STAYING = ("HOLD", "CONTINUE", "STOP_THRUST")
 
@@ -25,11 +28,14 @@ class Battery:
     """All batteries of a robot together.
 
     Attributes:
-        capacity: seconds at mean power when they are full; inf for a wired robot.
+        capacity: seconds at mean power when they are full, and a little for rounding; inf for a wired
+            robot.
     """
 
     def __init__(self, kinematics: Kinematics, escapes: Escapes, policies: tuple[Policy, ...]) -> None:
-        self.capacity = _capacity(kinematics)
+        nominal = _capacity(kinematics)
+        self._extra = nominal * ROUNDING if nominal < inf else 0.0
+        self.capacity = nominal + self._extra
         self._kinematics, self._escapes = kinematics, escapes
         self._response = response_to("BATTERY_LOW", policies)
 
@@ -37,7 +43,8 @@ class Battery:
         """Return joules; inf for a wired robot, None where the type does not tell."""
         if charge == inf:
             return inf
-        return charge * self._kinematics.power if self._kinematics.power > 0.0 else None
+        left = max(0.0, charge - self._extra)
+        return left * self._kinematics.power if self._kinematics.power > 0.0 else None
 
     def fault(self, leg: Leg, now: float, flow: Flow) -> Fault | None:
         """Return whether they are empty, or so low that what is left just suffices for the response."""
@@ -69,7 +76,7 @@ class Battery:
         if self._response in _STAYING:
             return inf
         path = self._escapes.straight(self._response, leg.position(time))
-        way = stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=flow)
+        way = response_stretches(path, self._kinematics, flow, under_way=leg.speed > 0.0)
         return leg.charge_at(time) - sum(each.seconds * each.rate for each in way)
 
 

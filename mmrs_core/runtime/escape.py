@@ -31,7 +31,7 @@ class Escapes:
         goal = self._goal(response, here)
         if goal is None:
             return (here,)
-        return self._down((here,) if goal == here else (here, goal))
+        return self._down((here,) if goal[:2] == here[:2] else (here, goal))
 
     def clear(self, response: str, here: Position) -> tuple[Position, ...]:
         """Return the way that keeps from forbidden areas and obstacles.
@@ -39,7 +39,7 @@ class Escapes:
         Where there is none, the robot comes down where it is if it flies, and else stays.
         """
         goal = self._goal(response, here)
-        if goal is None or goal == here:
+        if goal is None or goal[:2] == here[:2]:
             return self.straight(response, here)
         try:
             return self._down(self._space.route(here, goal))

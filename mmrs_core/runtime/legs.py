@@ -123,7 +123,8 @@ def stretches(
     nominal = [_leg_seconds(a, b, speed, kinematics) for a, b in legs]
     whole = sum(nominal)
     length = sum(hypot(*(y - x for x, y in zip(a, b, strict=True))) for a, b in legs)
-    wanted = whole + _acceleration_seconds(length, speed, kinematics.acceleration, stops)
+    pace = length / whole if 0.0 < whole < inf else speed
+    wanted = whole + _acceleration_seconds(length, pace, kinematics.acceleration, stops)
     seconds = min(max(wanted, bounds[0]), bounds[1])
     found = []
     for (start, finish), share in zip(legs, nominal, strict=True):
@@ -135,17 +136,41 @@ def stretches(
     return tuple(found)
 
 
+def response_stretches(
+    path: tuple[Position, ...], kinematics: Kinematics, flow: Flow, *, under_way: bool
+) -> tuple[Stretch, ...]:
+    """Return how a robot travels when it responds to a fault; empty if the flow is too strong for it.
+
+    It stops at every corner. What it is doing takes its time evenly, speeding up and slowing down
+    included: a robot that is under way has that behind it, and goes on at even speed.
+
+    Args:
+        path: straight legs from where it is; one position: it stays there.
+        kinematics: of the robot.
+        flow: velocity of the air or water, east and north, metres per second.
+        under_way: whether it moves already.
+    """
+    found: list[Stretch] = []
+    for number, leg in enumerate(pairwise(path)):
+        stops = 0 if under_way and number == 0 else 2
+        made = stretches(leg, kinematics.cruise, kinematics, (0.0, inf), flow=flow, stops=stops)
+        if not made:
+            return ()
+        found += made
+    return tuple(found)
+
+
 def cost(start: Position, finish: Position, seconds: float, kinematics: Kinematics, flow: Flow) -> float:
-    """Return the power of a stretch as a multiple of the mean power."""
+    """Return the power of a stretch as a multiple of the mean power, zero or more."""
     level = hypot(finish[0] - start[0], finish[1] - start[1])
     if level > 0.0:
         against = -((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
     else:
         against = hypot(*flow)
     climb = (finish[2] - start[2]) / seconds if seconds > 0.0 else 0.0
-    climbing = CLIMBING * max(-1.0, min(1.0, climb / kinematics.climb)) if kinematics.climb > 0.0 else 0.0
+    climbing = CLIMBING * min(1.0, climb / kinematics.climb) if kinematics.climb > 0.0 else 0.0
     headwind = max(0.0, against) / kinematics.fastest if kinematics.fastest > 0.0 else 0.0
-    return 1.0 + climbing + headwind**2
+    return max(0.0, 1.0 + climbing + headwind**2)
 
 
 def bearing(start: Position, finish: Position) -> float | None:

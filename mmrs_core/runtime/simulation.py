@@ -20,7 +20,19 @@ from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
-from mmrs_core.runtime.legs import STILL, Flow, Leg, Stretch, bearing, cost, current, stretches, turn, wind
+from mmrs_core.runtime.legs import (
+    STILL,
+    Flow,
+    Leg,
+    Stretch,
+    bearing,
+    cost,
+    current,
+    response_stretches,
+    stretches,
+    turn,
+    wind,
+)
 from mmrs_core.scene import Position
 
 RECHARGE = (BEHAVIOUR, "Recharge")
@@ -127,14 +139,13 @@ class SimulatedRobot:
         """Do what a fault's response says, from wherever the robot is; only the first call counts."""
         if self._halted:
             return
+        under_way = self._leg(now).speed > 0.0
         self._catch_up(now)
         self._halted, self._move = True, None
         path = self._escapes.clear(response, self._legs[-1].finish)
         if self._legs[-1].charge_at(now) <= SLACK or len(path) < 2:
             return
-        self._append(
-            stretches(path, self._kinematics.cruise, self._kinematics, (0.0, inf), flow=self._flow()), now
-        )
+        self._append(response_stretches(path, self._kinematics, self._flow(), under_way=under_way), now)
         self._cut_where_empty()
 
     def track(self) -> tuple[Sample, ...]:

@@ -1,5 +1,7 @@
 """Robots that respond to a fault keep from what is forbidden on their way."""
 
+from math import inf
+
 import pytest
 import shapely
 
@@ -16,11 +18,11 @@ PITCH = Area("pitch", AreaUse.EMERGENCY, ((120.0, 20.0), (140.0, 20.0), (140.0, 
 TINY = Area("tiny", AreaUse.EMERGENCY, ((101.0, 1.0), (102.0, 1.0), (102.0, 2.0), (101.0, 2.0)))
 
 
-def escapes_among(*areas):
+def escapes_among(*areas, floor=-inf):
     kind = RobotType("t", (), (), 2.0, None, (Capability(0, None, (0, 10)),), (), {}, Part((), {}))
     robot = RobotProgram("r", "t", "NORMAL", 0.0, HOME, (), (), {}, 0, 0)
     program = Program("p", Frame("EPSG:4326", None, None), (robot,))
-    kinematics = Kinematics(cruise=5, slowest=0, fastest=10, climb=3, descent=3, launches=True)
+    kinematics = Kinematics(cruise=5, slowest=0, fastest=10, climb=3, descent=3, floor=floor, launches=True)
     return Escapes(BackendInput(program, robot, kind, {}, {}, {}, {}, (), areas), kinematics, HOME)
 
 
@@ -29,6 +31,12 @@ def test_the_way_home_leads_around_a_forbidden_area_and_down():
     assert (path[0], path[-1]) == (HERE, HOME)
     way = shapely.LineString([point[:2] for point in path[:-1]])
     assert shapely.Polygon(WALL.shell).distance(way) >= 2.0 - 1e-9
+
+
+def test_a_robot_above_home_comes_straight_down_however_low_it_is():
+    low = (0.0, 0.0, 0.5)
+    escapes = escapes_among(floor=1.0)
+    assert escapes.clear("RETURN", low) == escapes.straight("RETURN", low) == (low, HOME)
 
 
 def test_a_robot_that_cannot_get_home_comes_down_where_it_is():

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 import pytest
 
-from mmrs_core.runtime.legs import CLIMBING, Leg, bearing, cost, current, stretches, turn, wind
+from mmrs_core.runtime.legs import (
+    CLIMBING,
+    Leg,
+    bearing,
+    cost,
+    current,
+    response_stretches,
+    stretches,
+    turn,
+    wind,
+)
 from mmrs_core.scene import Kinematics
 
 FLYER = Kinematics(cruise=5.0, slowest=0.0, fastest=10.0, climb=2.0, descent=1.0)
@@ -68,6 +79,45 @@ def test_power_grows_with_the_climb_and_with_the_square_of_the_headwind():
     assert cost(HERE, EAST, 20.0, FLYER, (-5.0, 0.0)) == pytest.approx(1.25)
     assert cost(HERE, EAST, 20.0, FLYER, (5.0, 0.0)) == 1.0
     assert cost(HERE, HERE, 20.0, FLYER, (3.0, 4.0)) == pytest.approx(1.25)
+
+
+@pytest.mark.parametrize("descent", [0.5, 1.0, 2.0, 4.0, 6.0])
+def test_up_and_down_again_takes_what_the_time_takes_however_fast_the_descent(descent):
+    flyer = replace(FLYER, descent=descent)
+    way = (*stretches((HERE, UP), 5.0, flyer, ANY), *stretches((UP, HERE), 5.0, flyer, ANY))
+    assert sum(each.rate * each.seconds for each in way) == pytest.approx(sum(each.seconds for each in way))
+
+
+def test_no_descent_gives_energy_back_beyond_what_flying_takes():
+    assert cost(UP, HERE, 1.0, replace(FLYER, descent=10.0), (0.0, 0.0)) == 0.0
+
+
+SLOW = replace(FLYER, acceleration=1.0)
+
+
+def response(*path, under_way):
+    made = response_stretches(path, SLOW, (0.0, 0.0), under_way=under_way)
+    return [each.seconds for each in made]
+
+
+def test_a_response_stops_at_every_corner():
+    assert response(UP, (100.0, 0.0, 10.0), EAST, under_way=False) == pytest.approx([25.0, 11.0])
+
+
+def test_a_robot_under_way_has_its_first_start_behind_it():
+    assert response(UP, (100.0, 0.0, 10.0), EAST, under_way=True) == pytest.approx([20.0, 11.0])
+
+
+def test_a_robot_that_stays_needs_no_time_to_respond():
+    assert response(HERE, under_way=False) == []
+
+
+def test_there_is_no_response_against_too_much_wind():
+    assert response_stretches((HERE, EAST, UP), SLOW, (-10.0, 0.0), under_way=True) == ()
+
+
+def test_a_climb_gets_to_its_own_pace_only():
+    assert seconds(HERE, (0.0, 0.0, 50.0), kinematics=SLOW) == pytest.approx(25.0 + 2.0)
 
 
 def test_wind_comes_from_its_direction_and_current_goes_to_it():

@@ -269,6 +269,25 @@ def test_a_robot_turns_back_while_its_battery_still_lasts_for_the_way_home(fly):
     assert last(run).energy == pytest.approx(0.0, abs=10.0)
 
 
+def there_and_back():
+    moves = [rise(20.0), go("g", (60, 0, 20)), go("home", (0, 0, 20)), SINK]
+    return program(robot("r", moves, policies=(Policy("BATTERY_LOW", "RETURN"),)))
+
+
+@pytest.mark.parametrize(("acceleration", "seconds"), [(None, 60.0), (0.5, 72.0), (3.0, 62.0)])
+def test_a_planned_return_that_just_suffices_is_no_fault(fly, acceleration, seconds):
+    run = fly(there_and_back(), flyer(lifetime=seconds, acceleration=acceleration))
+    assert run.ending.outcome is Outcome.SUCCESS
+    assert last(run).energy == pytest.approx(0.0, abs=1.0)
+
+
+@pytest.mark.parametrize(("acceleration", "seconds"), [(None, 59.0), (0.5, 59.0), (3.0, 59.0)])
+def test_a_planned_return_that_does_not_suffice_is_cut_short(fly, acceleration, seconds):
+    run = fly(there_and_back(), flyer(lifetime=seconds, acceleration=acceleration))
+    assert run.ending.faults["r"].which == "BATTERY_LOW"
+    assert (last(run).east, last(run).up) == pytest.approx((0.0, 0.0), abs=0.01)
+
+
 def test_an_object_whose_place_nobody_knows_is_found_where_the_robot_is_and_a_note_says_so(fly):
     wreck = Move("g", ((BEHAVIOUR, "GoTo"), MOVE), target=Target(None, "wreck", None))
     run = fly(program(robot("r", [go("near", (30, 0, 0)), wreck])))
