@@ -6,12 +6,13 @@ The entry point for rules is `work_over`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 from math import floor
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import GeometryCollection, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.errors import InfeasibleError
@@ -27,6 +28,9 @@ _SMALLEST = 1e-6
 
 _POCKETS = 5e-4
 """Share of a target that walled-in pockets may have to be left alone."""
+
+_REMEMBERED = 32
+"""Targets at most whose swaths are kept for the next robot."""
 
 _CUTS = 16
 """Places at most at which one stroke may be split."""
@@ -92,14 +96,10 @@ def work_over(
     if not target:
         raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
     closed = _closed(scene, robot, altitude)
-    lines = swaths(
-        _worth(target, closed),
-        width,
-        length=length if action is not None else 0.0,
-        closed=closed,
-        angle=angle,
-        start=start,
-    )
+    worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
+    along = length if action is not None else 0.0
+    begin = None if start is None else (start[0], start[1])
+    lines = _lines(worth, shapely.to_wkb(closed), width, along, angle, begin)
     strokes = tuple(
         _stroke(line, altitude, width, action, device, parameters, speed, slow_down, look) for line in lines
     )
@@ -108,7 +108,7 @@ def work_over(
         holes=tuple(tuple(hole) for hole in holes),
         target=tuple(rings(piece) for piece in target),
         width=width,
-        length=length if action is not None else 0.0,
+        length=along,
         unreachable=max(0.0, asked - area),
     )
     return Work(strokes=strokes, divisible=True, rule=rule, ordered=False, coverage=covered)
@@ -155,6 +155,17 @@ def _worth(target: tuple[Polygon, ...], closed: BaseGeometry) -> tuple[Polygon, 
     if sum(piece.area for piece in walled) > _POCKETS * whole:
         return target
     return tuple(piece for piece in target if piece not in walled)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _lines(
+    target: bytes, closed: bytes, width: float, length: float, angle: float | None, start: Point | None
+) -> tuple[Swath, ...]:
+    """Return the swaths over a target, both geometries as WKB: robots of one clearance share them."""
+    pieces = parts(shapely.from_wkb(target))
+    return tuple(
+        swaths(pieces, width, length=length, closed=shapely.from_wkb(closed), angle=angle, start=start)
+    )
 
 
 def _stroke(

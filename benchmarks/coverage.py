@@ -1,0 +1,162 @@
+"""Measures the strokes over seeded fields against what no strokes can do without.
+
+Strokes of width w over an area A are A/w metres long at least, and actions that cover w by l metres
+come A/(w·l) times at least, both only if nothing is ever covered twice and no hop is needed.
+
+    python benchmarks/coverage.py --seed 1 > benchmarks/results/coverage.txt
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import date
+from itertools import pairwise
+from math import dist, inf, pi
+from time import process_time
+
+import numpy as np
+import shapely
+
+from mmrs_core.planning.coverage import work_over
+from mmrs_core.scene import (
+    Area,
+    AreaUse,
+    Capability,
+    Frame,
+    Part,
+    Ring,
+    Robot,
+    RobotType,
+    Scene,
+    Work,
+)
+
+TYPE = RobotType("drone", (), (), 0.5, None, (Capability(0.0, None, (0.0, 10.0)),), (), {}, Part((), {}))
+ROBOT = Robot("drone", TYPE, (0.0, 0.0, 0.0), True, 0.0, "NORMAL", 1.0)
+ALTITUDE = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A polygon to be covered, and the obstacles in it."""
+
+    name: str
+    shell: Ring
+    width: float
+    obstacles: tuple[Ring, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Ratios:
+    """What a work takes over what it cannot take less than, and the seconds to find it."""
+
+    length: float
+    actions: float
+    seconds: float
+
+
+def main() -> None:
+    """Print a line for each field, and the means."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--seed", type=int, default=1)
+    seed = parser.parse_args().seed
+    print(f"coverage strokes, {date.today().isoformat()}, seed {seed}")
+    print(
+        "swept: metres of strokes and hops / (area / width); photos: the same, and photos / (area / cell)\n"
+    )
+    print(f"{'field':26}{'cells':>7}{'swept':>8}{'s':>7}{'photos: way':>13}{'count':>8}{'s':>7}")
+    rows = []
+    for field in fields(seed):
+        swept, photos = ratios(field, 0.0), ratios(field, field.width)
+        cells = shapely.Polygon(field.shell).area / field.width**2
+        print(
+            f"{field.name:26}{cells:7.0f}{swept.length:8.3f}{swept.seconds:7.2f}"
+            f"{photos.length:13.3f}{photos.actions:8.3f}{photos.seconds:7.2f}"
+        )
+        rows.append((swept.length, swept.seconds, photos.length, photos.actions, photos.seconds))
+    means = np.mean(rows, axis=0)
+    print(f"{'mean':33}{means[0]:8.3f}{means[1]:7.2f}{means[2]:13.3f}{means[3]:8.3f}{means[4]:7.2f}")
+
+
+def fields(seed: int) -> Iterator[Field]:
+    """Yield smooth, ragged, many-cornered and obstructed fields."""
+    rng = np.random.default_rng(seed)
+    for radius in (30.0, 60.0, 150.0):
+        yield Field(f"disc of {radius:g} m", _round(rng, 64, radius, 0.0), 12.0)
+    for noise in (2.0, 5.0, 15.0):
+        yield Field(f"disc of 150 m, +-{noise:g} m", _round(rng, 1000, 150.0, noise), 12.0)
+    for gap in (6.0, 30.0):
+        yield Field(f"comb, gaps of {gap:g} m", _comb(8, 6.0, gap, 72.0), 12.0)
+    for corners in (3, 4, 6, 8, 10):
+        yield Field(f"{corners} corners, small", _star(rng, corners, 150.0), 12.0)
+    for corners in (4, 6, 8, 10, 100, 1000):
+        yield Field(f"{corners} corners, large", _star(rng, corners, 700.0), 20.0)
+    for count in (5, 20):
+        boxes = tuple(_box(rng, 400.0) for _ in range(count))
+        yield Field(f"10 corners, {count} obstacles", _star(rng, 10, 700.0, 0.7), 20.0, boxes)
+
+
+def ratios(field: Field, length: float) -> Ratios:
+    """Measure the strokes over a field; a `length` asks for actions."""
+    areas = tuple(Area("box", AreaUse.OBSTACLE, ring, -inf, inf, 2.0) for ring in field.obstacles)
+    scene = Scene("field", Frame("wgs84", 42.0, 13.0), (), (), (ROBOT,), areas=areas)
+    started = process_time()
+    work = work_over(
+        scene,
+        ROBOT,
+        field.shell,
+        altitude=ALTITUDE,
+        width=field.width,
+        rule="cover",
+        length=length,
+        action="TakePicture" if length else None,
+    )
+    seconds = process_time() - started
+    least = _covered(work) / field.width
+    photos = sum(len(stroke.actions) for stroke in work.strokes)
+    return Ratios(_way(work) / least, photos * length / least, seconds)
+
+
+def _covered(work: Work) -> float:
+    return sum(shapely.Polygon(*piece).area for piece in work.coverage.target) if work.coverage else 0.0
+
+
+def _way(work: Work) -> float:
+    places = [point for stroke in work.strokes for point in stroke.points]
+    return sum(dist(one, two) for one, two in pairwise(places))
+
+
+def _round(rng: np.random.Generator, corners: int, radius: float, noise: float) -> Ring:
+    angles = np.linspace(0.0, 2 * pi, corners, endpoint=False)
+    return _ring(angles, radius + rng.uniform(-noise, noise, corners))
+
+
+def _star(rng: np.random.Generator, corners: int, radius: float, smallest: float = 0.4) -> Ring:
+    """Return a ring about the origin with corners at random angles and distances."""
+    angles = 2 * pi * (np.arange(corners) + rng.uniform(-0.3, 0.3, corners)) / corners
+    return _ring(angles, rng.uniform(smallest * radius, radius, corners))
+
+
+def _ring(angles: np.ndarray, radii: np.ndarray) -> Ring:
+    return tuple(zip((radii * np.cos(angles)).tolist(), (radii * np.sin(angles)).tolist(), strict=True))
+
+
+def _comb(teeth: int, tooth: float, gap: float, depth: float) -> Ring:
+    """Return a comb with a back 12 m high."""
+    edge = [(0.0, 0.0), (teeth * (tooth + gap) - gap, 0.0)]
+    for i in reversed(range(teeth)):
+        left = i * (tooth + gap)
+        edge += [(left + tooth, depth), (left, depth)]
+        edge += [(left, 12.0), (left - gap, 12.0)] if i else []
+    return tuple(edge)
+
+
+def _box(rng: np.random.Generator, reach: float) -> Ring:
+    (x, y), (a, b) = rng.uniform(-reach, reach, 2).tolist(), rng.uniform(8.0, 40.0, 2).tolist()
+    return ((x - a, y - b), (x + a, y - b), (x + a, y + b), (x - a, y + b))
+
+
+if __name__ == "__main__":
+    main()
