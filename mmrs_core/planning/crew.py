@@ -6,7 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.jobs import is_control
-from mmrs_core.planning.materials import Layout, Material, charge_faults, faults, lay_out, layout_of
+from mmrs_core.planning.materials import (
+    Layout,
+    Material,
+    charge_faults,
+    faults,
+    lay_out,
+    layout_of,
+    shortages,
+)
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of, uncertain_seconds
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
@@ -158,6 +166,15 @@ class Crew:
         return "; ".join(
             f"{name}: {self.refusals[task, name]}" for name in self.pilots if (task, name) in self.refusals
         )
+
+    def too_long(self, task: str) -> bool:
+        """Return whether some portion of a task is too long for a sortie of any robot."""
+        return all(self._stuck(task, team) for team in self.teams[task] if team)
+
+    def _stuck(self, task: str, team: Sequence[str]) -> bool:
+        known = [(self.forwards(task, name), self.pilots[name]) for name in team]
+        short = [shortages(material, pilot) for material, pilot in known if material is not None]
+        return any(min(portion) > 1e-9 for portion in zip(*short, strict=True))
 
     def short_of_charge(self, task: str) -> Iterator[str]:
         """Yield, robot by robot, what of a task does not fit into a sortie."""

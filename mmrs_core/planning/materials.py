@@ -210,23 +210,39 @@ def _speed_faults(strokes: Iterable[Stroke], pilot: Pilot) -> Iterator[str]:
 
 def charge_faults(material: Material, pilot: Pilot) -> Iterator[str]:
     """Yield why a robot cannot do some portion even in a sortie of its own, and by how much it is short."""
-    worst, needed = 0, 0.0
-    for i in range(len(material)):
-        try:
-            seconds = _sortie_seconds(material, pilot, i)
-        except UnreachableError as error:
-            yield str(error)
-            return
-        if seconds > needed:
-            worst, needed = i, seconds
-    short = needed - pilot.limit
-    if short > 1e-9:
-        east, north, _ = material.first(worst)
-        what = "it" if material.whole else f"the piece at ({east:.0f}, {north:.0f})"
+    short = shortages(material, pilot)
+    worst = max(range(len(short)), key=short.__getitem__)
+    if short[worst] == inf:
+        yield _why_unreachable(material, pilot, worst)
+    elif short[worst] > 1e-9:
         yield (
-            f"{what} takes {needed:.0f} s there and back, of one charge {pilot.limit:.0f} s may be used:"
-            f" {short:.0f} s short"
+            f"{_words(material, worst)} takes {pilot.limit + short[worst]:.0f} s there and back, of one"
+            f" charge {pilot.limit:.0f} s may be used: {short[worst]:.0f} s short"
         )
+
+
+def _why_unreachable(material: Material, pilot: Pilot, index: int) -> str:
+    try:
+        _sortie_seconds(material, pilot, index)
+    except UnreachableError as error:
+        return str(error)
+    return f"it cannot get to or from {_words(material, index)}"
+
+
+def _words(material: Material, index: int) -> str:
+    east, north, _ = material.first(index)
+    return "it" if material.whole else f"the piece at ({east:.0f}, {north:.0f})"
+
+
+def shortages(material: Material, pilot: Pilot) -> list[float]:
+    """Return by how many seconds each portion is too long for a sortie of its own; inf: no way there."""
+    found = []
+    for index in range(len(material)):
+        try:
+            found.append(_sortie_seconds(material, pilot, index) - pilot.limit)
+        except UnreachableError:
+            found.append(inf)
+    return found
 
 
 def _sortie_seconds(material: Material, pilot: Pilot, index: int) -> float:

@@ -127,9 +127,9 @@ def _reasons(crew: Crew, jobs: Sequence[Job], found: Shortfall) -> list[str]:
     reasons = []
     for job in jobs:
         for task in job.tasks():
-            able, short = crew.able(task), list(crew.short_of_charge(task))
-            if len({reason.split(":")[0] for reason in short}) == len(able):
-                reasons.append(f"task '{task}' is too long for every robot ({'; '.join(short)})")
+            if crew.too_long(task):
+                short = "; ".join(crew.short_of_charge(task))
+                reasons.append(f"task '{task}' is too long for every robot ({short})")
     job = next(job for job in jobs if job.name == found.job)
     return reasons or [_general(crew, job)]
 
@@ -148,10 +148,20 @@ def _general(crew: Crew, job: Job) -> str:
         + (", cannot recharge" if crew.pilots[name].kinematics.recharge is None else "")
         for name in crew.able(task.name)
     )
-    wanted = f" by exactly {task.wanted} robots" if task.wanted is not None else ""
+    robots = "robot" if task.wanted == 1 else "robots"
+    wanted = f" by exactly {task.wanted} {robots}" if task.wanted is not None else ""
     short = "; ".join(crew.short_of_charge(task.name))
     alone = f"; too long for some: {short}" if short else ""
     return (
         f"task '{task.name}' takes {whole:.0f} s and cannot be done{wanted}, after what comes before,"
-        f" by the robots that can do it ({charges}{alone})"
+        f" by the robots that can do it ({charges}{alone}){_short_of_charges(crew, task.name, whole)}"
     )
+
+
+def _short_of_charges(crew: Crew, task: str, whole: float) -> str:
+    """Return by how much the charges of all robots are too small for a task, where none can recharge."""
+    pilots = [crew.pilots[name] for name in crew.able(task)]
+    if any(pilot.kinematics.recharge is not None for pilot in pilots):
+        return ""
+    short = whole - sum(pilot.limit for pilot in pilots)
+    return f": at least {short:.0f} s short" if short > 0.5 else ""

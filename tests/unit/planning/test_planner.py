@@ -222,6 +222,22 @@ def test_a_battery_that_cannot_be_recharged_is_told():
         plan(whole)
 
 
+def test_charges_that_all_together_do_not_suffice_are_told_with_what_is_short():
+    lone = with_kinematics(robot(), endurance=150.0, recharge=None)
+    with pytest.raises(InfeasibleError, match=r"150 s a charge, cannot recharge.*: at least 400 s short"):
+        plan(scene([lone], {"a": folded()}))
+
+
+def test_pieces_that_are_too_long_for_different_robots_are_not_told_to_be_too_long_for_all():
+    west = with_kinematics(robot("west"), endurance=130.0)
+    east = with_kinematics(robot("east", (1000.0, 0.0, 0.0)), endurance=130.0)
+    line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS)
+    sound(scene([west, east], {"a": line}))
+    tasks = {"a": task("a", wanted=1)}
+    with pytest.raises(InfeasibleError, match=r"cannot be done by exactly 1 robot,.*too long for some: west"):
+        plan(scene([west, east], {"a": line}, tasks=tasks))
+
+
 def test_all_reasons_are_given_at_once():
     whole = scene([robot()], {"a": visit((9.0, 9.0, 500.0)), "b": visit((9.0, 9.0, 0.0))})
     with pytest.raises(InfeasibleError) as caught:
