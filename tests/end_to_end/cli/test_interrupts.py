@@ -10,15 +10,22 @@ import pytest
 from mmrs_core.resources import shipped
 
 BEGUN = "import sys; from mmrs_core.cli import main; print('begun', flush=True); main()"
-DELAYS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6)
-THOROUGH = tuple(step * 0.01 for step in range(80))
+DELAYS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6)
+THOROUGH = tuple(step * 0.01 for step in range(2, 80))
+
+
+def heed_interrupts():
+    """Undo what a shell does to commands in the background: it has them ignore interrupts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def interrupted_after(delay, folder):
     """Return exit code, output and errors of a command that is interrupted so long after its entry."""
     mission = shipped("examples") / "carbon-dioxide"
     command = [sys.executable, "-c", BEGUN, "preview", str(mission), "-o", str(folder)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
+    )
     assert process.stdout.readline() == "begun\n"
     time.sleep(delay)
     process.send_signal(signal.SIGINT)
