@@ -136,9 +136,9 @@ def between(stroke: Stroke, begin: float, end: float) -> Stroke:
     if begin <= 0.0 and to_the_end:
         return stroke
     actions = tuple(
-        replace(action, at=action.at - begin)
+        replace(action, at=max(0.0, action.at - begin))
         for action in stroke.actions
-        if begin <= action.at and (action.at < end or to_the_end)
+        if (action.at >= begin - _SAME or begin <= 0.0) and (action.at < end - _SAME or to_the_end)
     )
     return replace(
         stroke,
