@@ -9,7 +9,7 @@ from mmrs_core.contributions.rules import MoveSpec, RobotKind, Rule
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import robot as rl
 from mmrs_core.languages.registry import Registry
-from mmrs_core.scene import Branch, Name, Plan, Policy, Position, Robot, Scene, Signal, Step
+from mmrs_core.scene import Branch, Name, Part, Plan, Policy, Position, Robot, Scene, Signal, Step
 from mmrs_core.transformation.chain import Chain, Deed, Edge, Give, Node, Report, UseDevice
 from mmrs_core.transformation.coordinates import Coordinates
 from mmrs_core.transformation.drafting import draft
@@ -100,7 +100,7 @@ class _Assembly:
             slots=list(self._slots.get(robot.name, {}).values()),
             moves=moves,
             moveTransitions=[self._transition(edge, robot, moves, corners) for edge in chain.edges],
-            policies=[_policy(policy) for policy in self._scene.policies],
+            policies=[_policy(policy) for policy in _policies(robot, self._scene)],
         )
 
     def _move(self, node: Node, index: int) -> bl.Move:
@@ -219,6 +219,20 @@ def _links(robots: list[bl.Robot]) -> Iterator[TraceLink]:
 
 def _pairs(pairs: tuple[tuple[str, str], ...]) -> list[bl.Pair]:
     return [bl.Pair(key=key, value=value) for key, value in pairs]
+
+
+def _policies(robot: Robot, scene: Scene) -> tuple[Policy, ...]:
+    """Return the mission's policies; a robot that is not to come home does not go there for want of energy.
+
+    That is, it comes down where it is, unless the mission or its type declares something else.
+    """
+    declared = robot.type.part.attributes.get("policies")
+    parts = declared if isinstance(declared, tuple) else ()
+    events = {part.attributes.get("event") for part in parts if isinstance(part, Part)}
+    events |= {policy.event for policy in scene.policies}
+    if robot.return_home or "BATTERY_LOW" in events:
+        return scene.policies
+    return (*scene.policies, Policy("BATTERY_LOW", "LAND"))
 
 
 def _policy(policy: Policy) -> rl.Policy:

@@ -289,3 +289,11 @@ def test_altitudes_keep_the_reference_in_which_the_origin_has_one():
     unknown, _ = behaviour_of(plan, frame=Frame("EPSG:4326", 42.0, 13.0, None, "ELLIPSOID"))
     assert (known.altitudeReference, known.robots[0].moves[1].target.altitude) == ("MSL", 730.0)
     assert (unknown.altitudeReference, unknown.robots[0].moves[1].target.altitude) == ("ORIGIN", 30.0)
+
+
+def test_a_robot_that_is_not_to_come_home_lands_when_its_batteries_are_low():
+    plan = plan_of(transit(HOME, (1.0, 0.0, 0.0)))
+    away, _ = behaviour_of(plan, robots=[robot(return_home=False)])
+    back, _ = behaviour_of(plan, robots=[robot()])
+    assert [(each.event, each.response) for each in away.robots[0].policies] == [("BATTERY_LOW", "LAND")]
+    assert list(back.robots[0].policies) == []
