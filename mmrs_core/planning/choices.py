@@ -107,6 +107,7 @@ def _merged(choice: Choice, state: State, ends: Sequence[State]) -> State:
         at=ends[0].at,
         away=True,
         used=max(end.used for end in ends),
+        lead=time - min(end.time - end.lead for end in ends),
         length=max(end.length for end in ends),
         busy=max(end.busy for end in ends),
         sorties=max(end.sorties for end in ends),

@@ -16,7 +16,7 @@ from mmrs_core.planning.materials import (
     shortages,
 )
 from mmrs_core.planning.sorties import Pilot
-from mmrs_core.planning.strokes import length_of, uncertain_seconds
+from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
 from mmrs_core.scene import Part, Robot, Scene, Task, Value, Work
 
@@ -64,12 +64,11 @@ class Crew:
         """
         self.scene, self.fine, self.stacked = scene, fine, altitudes is not None
         self.homebound = homebound_of(scene) if homebound is None else homebound
-        spaces, slack = Spaces(scene), _slack(scene)
-        aloft = altitudes or {}
+        spaces, aloft = Spaces(scene), altitudes or {}
+        fluid = scene.minimum_separation is None
         self.pilots: Mapping[str, Pilot] = {
             robot.name: Pilot(
-                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude)),
-                slack,
+                Travel(robot, spaces.of(robot), aloft.get(robot.name, scene.transit_altitude), fluid=fluid),
                 homebound=robot.name in self.homebound,
             )
             for robot in scene.robots
@@ -205,16 +204,6 @@ def _response_to_low_battery(scene: Scene, robot: Robot) -> str:
         if isinstance(part, Part) and part.attributes.get("event") == _LOW:
             declared.append(part.attributes.get("response"))
     return str(declared[0]) if declared else "RETURN"
-
-
-def _slack(scene: Scene) -> float:
-    """Return by how many seconds the whole mission may be quicker than estimated."""
-    kinematics = {robot.name: kinematics_of(robot) for robot in scene.robots}
-    by_task: dict[str, float] = {}
-    for (task, robot), work in scene.works.items():
-        seconds = sum(uncertain_seconds(stroke, kinematics[robot]) for stroke in work.strokes)
-        by_task[task] = max(by_task.get(task, 0.0), seconds)
-    return sum(by_task.values())
 
 
 def _seconds_of_all(scene: Scene) -> float:

@@ -38,6 +38,7 @@ class Material:
         rule: name of the rule that made it.
         portions: strokes of each portion; robots take runs of portions.
         begins, ends: seconds at which each portion begins and ends, see `paced`.
+        soonest: likewise, (begin, end) where the robot is as quick as it may be.
         entry: where whoever does the first portion goes first; None: nowhere.
         speeds: by portion: at which the robot goes to it, metres per second; None: its cruise.
         whole: whether one robot must do all of it in one sortie.
@@ -48,6 +49,7 @@ class Material:
     portions: tuple[tuple[Stroke, ...], ...]
     begins: tuple[float, ...]
     ends: tuple[float, ...]
+    soonest: tuple[tuple[float, float], ...]
     entry: Position | None
     speeds: tuple[float | None, ...]
     whole: bool
@@ -66,6 +68,10 @@ class Material:
     def seconds(self, begin: int, end: int) -> float:
         """Return the seconds from the beginning of one portion to the end of another, hops included."""
         return self.ends[end] - self.begins[begin]
+
+    def lead(self, begin: int, end: int) -> float:
+        """Return by how many seconds the same may be quicker."""
+        return max(0.0, self.seconds(begin, end) - (self.soonest[end][1] - self.soonest[begin][0]))
 
     def approach(self, index: int) -> Approach:
         """Return how whoever begins with a portion comes there."""
@@ -137,18 +143,28 @@ def lay_out(task: str, work: Work, layout: Layout, pilot: Pilot, *, backwards: b
     portions = layout.portions
     if backwards:
         portions = tuple(tuple(turned(part) for part in reversed(portion)) for portion in reversed(portions))
-    spans = iter(paced([part for portion in portions for part in portion], pilot))
-    of_portions = [[next(spans) for _ in portion] for portion in portions]
+    spans = _of_portions(portions, pilot)
     return Material(
         task=task,
         rule=work.rule,
         portions=portions,
-        begins=tuple(own[0][0] for own in of_portions),
-        ends=tuple(own[-1][1] for own in of_portions),
+        begins=tuple(begin for begin, _ in spans),
+        ends=tuple(end for _, end in spans),
+        soonest=_of_portions(portions, pilot, soonest=True),
         entry=_entry(work, pilot),
         speeds=tuple(approach_speed(portion[0], pilot.kinematics) for portion in portions),
         whole=not work.divisible,
     )
+
+
+def _of_portions(
+    portions: Sequence[Sequence[Stroke]], pilot: Pilot, *, soonest: bool = False
+) -> tuple[tuple[float, float], ...]:
+    """Return (begin, end) of each portion."""
+    parts = [part for portion in portions for part in portion]
+    spans = iter(paced(parts, pilot, soonest=soonest))
+    own = [[next(spans) for _ in portion] for portion in portions]
+    return tuple((each[0][0], each[-1][1]) for each in own)
 
 
 def _entry(work: Work, pilot: Pilot) -> Position | None:

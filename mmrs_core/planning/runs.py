@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 from mmrs_core.planning.materials import Material
@@ -133,16 +133,17 @@ class Run:
 
     def _after(self, sortie: _Sortie, portion: int, *, final: bool) -> State:
         material, state = self.material, sortie.state
+        lead = state.lead + material.lead(sortie.first, portion)
         if not self._record:
             seconds = material.seconds(sortie.first, portion)
-            return self._pilot.skip(state, seconds, 0.0, material.last(portion))
+            return replace(self._pilot.skip(state, seconds, 0.0, material.last(portion)), lead=lead)
         strokes = material.strokes(sortie.first, portion)
         for i, stroke in enumerate(strokes):
             state = self._pilot.hop(state, stroke, material.task)
             first = i == 0 and sortie.first == self.begin
             last = final and i == len(strokes) - 1
             state = self._pilot.serve(state, stroke, material.task, material.rule, first, last)
-        return state
+        return replace(state, lead=lead)
 
 
 def _largest(low: int, high: int, holds: Callable[[int], bool]) -> int:

@@ -98,6 +98,7 @@ class _Scheduling:
             name: pilot.start(decisions.delays.get(name, 0.0)) for name, pilot in crew.pilots.items()
         }
         self._ends: dict[str, Mapping[str, float]] = {}
+        self._soonest: dict[str, Mapping[str, float]] = {}
         self._spans: dict[str, tuple[float, float]] = {}
         self._busy: set[str] = set()
 
@@ -119,15 +120,14 @@ class _Scheduling:
 
     def _do(self, job: Job) -> bool:
         if not job.tasks():
-            self._ends[job.name] = {
-                name: end for before in job.after for name, end in self._ends[before].items()
-            }
+            for known in (self._ends, self._soonest):
+                known[job.name] = {name: end for before in job.after for name, end in known[before].items()}
             return True
         done = self._chosen(job) if job.choice is not None else self._shared(job)
         if done is None:
             return False
         self._states = done.states
-        self._ends[job.name] = done.ends
+        self._ends[job.name], self._soonest[job.name] = done.ends, done.soonest
         self._spans[job.name] = (done.begin, max(done.ends.values()))
         self._busy |= done.ends.keys()
         return True
@@ -146,8 +146,9 @@ class _Scheduling:
     def _at_once(self, sharing: Sharing) -> Done:
         after = {share.candidate.pilot.robot.name: share.run.state(share.end) for share in sharing.shares}
         ends = {name: state.time for name, state in after.items()}
+        soonest = {name: state.time - state.lead for name, state in after.items()}
         begin = min(share.run.started() for share in sharing.shares)
-        return Done({**self._states, **after}, begin, ends, sharing.back)
+        return Done({**self._states, **after}, begin, ends, soonest, sharing.back)
 
     def _in_turns(self, sharing: Sharing) -> Done | None:
         parts = [
@@ -159,12 +160,14 @@ class _Scheduling:
     def _ready(self, job: Job, robot: str, earliest: float | None) -> Ready:
         """Return what a robot's share of a job waits for: every other robot's share of those before."""
         others = {
-            signal_name(before, name): end
+            signal_name(before, name): (end, self._soonest[before][name])
             for before in job.after
             for name, end in self._ends[before].items()
             if name != robot
         }
-        return Ready(max(others.values(), default=0.0), tuple(others), earliest)
+        time = max((end for end, _ in others.values()), default=0.0)
+        soonest = max((end for _, end in others.values()), default=0.0)
+        return Ready(time, tuple(others), earliest, soonest)
 
     def _chosen(self, job: Job) -> Done | None:
         """Give a choice to the robot that is back first after its longest arm."""
@@ -188,7 +191,8 @@ class _Scheduling:
             return None
         begin = end.trail[1].begin if end.trail is not None else end.time
         back = end.time + pilot.exit_seconds(end.at)
-        return Done({**states, name: end}, begin, {name: end.time}, back)
+        soonest = {name: end.time - end.lead}
+        return Done({**states, name: end}, begin, {name: end.time}, soonest, back)
 
     def _earliest(self, job: Job) -> float | None:
         times = [self._tasks[name].earliest for name in job.tasks()]

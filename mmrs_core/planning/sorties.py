@@ -31,6 +31,7 @@ class State:
         at: where it is.
         away: whether it has left home since it was last there to stay.
         used: seconds on this charge.
+        lead: seconds by which it may be here earlier.
         length: metres travelled. busy: seconds away from home. sorties: times it left home.
         trail: its steps so far, last one first.
     """
@@ -39,6 +40,7 @@ class State:
     at: Position
     away: bool = False
     used: float = 0.0
+    lead: float = 0.0
     length: float = 0.0
     busy: float = 0.0
     sorties: int = 0
@@ -60,7 +62,7 @@ class Ready:
     """What must have happened before a share of work may begin.
 
     Attributes:
-        time: estimated, seconds; when the signals will have been given.
+        time: seconds, by when the signals will have been given; soonest: when that may be.
         signals: that it waits for.
         earliest: seconds before which it may not begin by the clock; None: none.
     """
@@ -68,11 +70,7 @@ class Ready:
     time: float = 0.0
     signals: tuple[str, ...] = ()
     earliest: float | None = None
-
-    @property
-    def open(self) -> float:
-        """When the share may begin, seconds."""
-        return max(self.time, self.earliest or 0.0)
+    soonest: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,16 +90,14 @@ class Approach:
 class Pilot:
     """Moves one robot's state on; every way of doing something is a short function of the state."""
 
-    def __init__(self, travel: Travel, slack: float = 0.0, *, homebound: bool = True) -> None:
+    def __init__(self, travel: Travel, *, homebound: bool = True) -> None:
         """Make it.
 
         Args:
             travel: ways of the robot.
-            slack: seconds by which others may be later, and the robot earlier, than estimated: so much
-                longer may a wait for others be.
             homebound: whether it always keeps enough to go home, even if it may stay where it ends.
         """
-        self.travel, self.slack = travel, slack
+        self.travel = travel
         self.robot, self.kinematics = travel.robot, travel.kinematics
         self.homebound = homebound or self.robot.return_home
         power = self.kinematics.power * self.kinematics.draw
@@ -192,7 +188,7 @@ class Pilot:
     def _from_home(self, state: State, approach: Approach, ready: Ready, task: str) -> State:
         """Wait at home for signals and clock, then go; wait for the rest of the clock where work begins."""
         there = self._along(self._wait(state, replace(ready, earliest=None), task), approach, task)
-        if ready.earliest is None or there.time >= ready.earliest:
+        if ready.earliest is None or there.time - there.lead >= ready.earliest:
             return there
         travel = there.time - max(state.time, ready.time)
         later = max(0.0, ready.earliest - travel)
@@ -200,18 +196,26 @@ class Pilot:
         return self._wait(self._along(start, approach, task), Ready(earliest=ready.earliest), task)
 
     def _wait(self, state: State, ready: Ready, task: str) -> State:
-        clock = ready.earliest if ready.earliest is not None and ready.earliest > state.time else None
+        """Wait until a clock says, for certain, that it is time, and until all signals are given.
+
+        By the clock a robot waits for a certain time, so that it must wait longer if it may be early.
+        """
+        soonest = state.time - state.lead
+        late = ready.earliest is not None and ready.earliest > soonest + _SAME
+        clock = (ready.earliest or 0.0) + state.lead if late else None
         if not ready.signals and clock is None:
             return state
-        end = max(state.time, ready.open)
+        end = max(state.time, ready.time, clock or 0.0)
         step = Await(state.time, end, task, ready.signals, clock)
         waited = end - state.time
-        longest = max(waited, ready.time + self.slack - state.time) if ready.signals else waited
+        longest = max(waited, ready.time - soonest) if ready.signals else waited
+        soonest_end = max(soonest if clock is None else clock - state.lead, ready.soonest)
         counts = state.away or not self.kinematics.launches
         return replace(
             state,
             time=end,
             used=state.used + (longest if counts else 0.0),
+            lead=end - soonest_end,
             busy=state.busy + (waited if state.away else 0.0),
             trail=(state.trail, step),
         )
@@ -243,6 +247,7 @@ class Pilot:
             at=goal,
             away=True,
             used=state.used + way.seconds,
+            lead=state.lead + way.lead,
             length=state.length + way.length,
             busy=state.busy + way.seconds,
             sorties=state.sorties + 1,
@@ -257,6 +262,7 @@ class Pilot:
             time=end,
             at=way.route[-1],
             used=state.used + way.seconds,
+            lead=state.lead + way.lead,
             length=state.length + way.length,
             busy=state.busy + way.seconds,
             trail=(state.trail, Transit(state.time, end, task, way.route, speed)),
@@ -269,12 +275,13 @@ class Pilot:
             return state
         return self._follow(state, self.travel.hop(state.at, goal), task, self._approach_speed(stroke))
 
-    def hop_seconds(self, here: Position, stroke: Stroke) -> float:
-        """Return how long that takes."""
+    def hop_seconds(self, here: Position, stroke: Stroke, *, soonest: bool = False) -> float:
+        """Return how long that takes at most, or at least."""
         goal = stroke.points[0]
         if here == goal:
             return 0.0
-        return self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke)).seconds
+        way = self.travel.at_speed(self.travel.hop(here, goal), self._approach_speed(stroke))
+        return way.seconds - way.lead if soonest else way.seconds
 
     def _approach_speed(self, stroke: Stroke) -> float | None:
         return approach_speed(stroke, self.kinematics)
@@ -349,6 +356,7 @@ class Pilot:
             at=at,
             away=False,
             used=state.used + way.seconds,
+            lead=state.lead + way.lead,
             length=state.length + way.length,
             busy=state.busy + way.seconds,
             trail=trail,

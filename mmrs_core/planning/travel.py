@@ -25,12 +25,14 @@ class Way:
         seconds: of the whole way, launch or recovery included.
         length: metres, likewise.
         height: to which it launches before, or from which it comes down after; None: neither.
+        lead: seconds by which it may be quicker where the robot does not stop at corners.
     """
 
     route: tuple[Position, ...]
     seconds: float
     length: float
     height: float | None = None
+    lead: float = 0.0
 
 
 class Spaces:
@@ -60,15 +62,18 @@ def kinematics_of(robot: Robot) -> Kinematics:
 class Travel:
     """Ways of one robot; remembered, as plans ask for the same ones again and again."""
 
-    def __init__(self, robot: Robot, space: Space, transit_altitude: float | None) -> None:
+    def __init__(
+        self, robot: Robot, space: Space, transit_altitude: float | None, *, fluid: bool = True
+    ) -> None:
         """Make it for a robot.
 
         Args:
             robot: with its kinematics.
             space: its space.
             transit_altitude: height at which it goes between home and tasks, where it may and can.
+            fluid: whether it may go on without a stop where nothing is done.
         """
-        self.robot, self.space = robot, space
+        self.robot, self.space, self.fluid = robot, space, fluid
         self.kinematics = kinematics_of(robot)
         aloft = transit_altitude if self.kinematics.launches else None
         self._altitude = None if aloft is None else self._within(aloft)
@@ -124,7 +129,8 @@ class Travel:
             return way
         rates = rates_of(self.kinematics, speed)
         seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(way.route))
-        return replace(way, seconds=way.seconds - self.space.seconds(way.route) + seconds)
+        whole = way.seconds - self.space.seconds(way.route) + seconds
+        return replace(way, seconds=whole, lead=self._lead(way.route, rates))
 
     def come_down(self, start: Position) -> Way:
         """Return the way down to the ground where the robot is; for robots that need not return.
@@ -145,7 +151,13 @@ class Travel:
         return Way((start,), seconds, length_of(column), ground)
 
     def _way(self, route: tuple[Position, ...]) -> Way:
-        return Way(route, self.space.seconds(route), length_of(route))
+        lead = self._lead(route, self.space.rates)
+        return Way(route, self.space.seconds(route), length_of(route), lead=lead)
+
+    def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
+        if not self.fluid:
+            return 0.0
+        return sum(rates.from_stop_to_stop(*leg) - rates.leg(*leg) for leg in pairwise(route))
 
     def _outward(self, goal: Position) -> Way | str:
         if not self.kinematics.launches:
@@ -159,7 +171,7 @@ class Travel:
                 continue
             climb = height - self.robot.home[2]
             seconds = self.kinematics.launch + self.space.rates.rise(climb) + way.seconds
-            return Way(way.route, seconds, way.length + climb, height)
+            return Way(way.route, seconds, way.length + climb, height, way.lead)
         return best
 
     def _inward(self, start: Position) -> Way | str:
@@ -174,7 +186,7 @@ class Travel:
                 continue
             drop = height - self.robot.home[2]
             seconds = way.seconds + self.space.rates.rise(-drop) + self.kinematics.recovery
-            return Way(way.route, seconds, way.length + drop, height)
+            return Way(way.route, seconds, way.length + drop, height, way.lead)
         return best
 
     def _launch_heights(self, other: Position) -> list[float]:

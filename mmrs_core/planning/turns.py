@@ -33,13 +33,15 @@ class Done:
 
     Attributes:
         states: of all robots after it.
-        begin: seconds at which it began; ends: by robot that has a share, when that ended.
+        begin: seconds at which it began; ends: by robot that has a share, when that ended; soonest: when
+            that may have been at the earliest.
         back: when the last of these is back, seconds.
     """
 
     states: States
     begin: float
     ends: Mapping[str, float]
+    soonest: Mapping[str, float]
     back: float
 
 
@@ -63,7 +65,7 @@ def turn_of(name: str, states: States, pilots: Mapping[str, Pilot], task: str) -
     others = [state.time for other, state in found.items() if other != name and state.sorties]
     if not found[name].away and others:
         pilot = pilots[name]
-        found[name] = pilot.stay_until(found[name], max(others) + pilot.slack + _BETWEEN, task)
+        found[name] = pilot.stay_until(found[name], max(others) + _BETWEEN, task)
     return found
 
 
@@ -71,7 +73,7 @@ def in_turns(
     parts: Sequence[Part], states: States, pilots: Mapping[str, Pilot], *, record: bool
 ) -> Done | None:
     """Return what has become of parts of a job done one after the other; None if one cannot be done."""
-    begins, ends, back = [], {}, 0.0
+    begins, ends, soonest, back = [], {}, {}, 0.0
     for part in parts:
         name, pilot = part.pilot.robot.name, part.pilot
         turn = turn_of(name, states, pilots, part.material.task)
@@ -83,6 +85,6 @@ def in_turns(
         end = run.state(part.end)
         states = {**turn, name: end}
         begins.append(run.started())
-        ends[name] = end.time
+        ends[name], soonest[name] = end.time, end.time - end.lead
         back = max(back, run.back(part.end))
-    return Done(states, min(begins), ends, back)
+    return Done(states, min(begins), ends, soonest, back)

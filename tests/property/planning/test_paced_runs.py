@@ -60,3 +60,18 @@ def test_without_inertia_every_run_takes_exactly_what_is_counted(parts, data):
     first = data.draw(st.integers(0, len(parts) - 1))
     run = seconds_of(parts[first:], pilot)
     assert abs(spans[-1][1] - spans[first][0] - run) < 1e-6
+
+
+@given(cut_roads(), st.data())
+def test_the_soonest_is_never_later_than_the_latest_and_even_speed_without_actions(parts, data):
+    pilot = pilot_with(0.5)
+    late, soon = paced(parts, pilot), paced(parts, pilot, soonest=True)
+    first = data.draw(st.integers(0, len(parts) - 1))
+    last = data.draw(st.integers(first, len(parts) - 1))
+    quickest = soon[last][1] - soon[first][0]
+    assert quickest <= late[last][1] - late[first][0] + 1e-6
+    assert quickest <= seconds_of(parts[first : last + 1], pilot) + 1e-6
+    steady = pilot_with(float("inf"))
+    if not any(part.actions for part in parts[first : last + 1]):
+        even = seconds_of(parts[first : last + 1], steady)
+        assert quickest <= even + 1e-6

@@ -72,3 +72,19 @@ def test_hops_keep_clear():
     one, two = visit((0.0, 0.0, 20.0), (100.0, 0.0, 20.0)).strokes
     around = pilot_of(robot(), areas=(box("wall", 40, -30, 60, 30),))
     assert paced([one, replace(two)], around)[1][0] > 11.0
+
+
+def test_at_the_soonest_a_robot_goes_on_where_nothing_is_done():
+    bend, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0), cuts=(150.0,))
+    assert paced(bend, pilot_of(), soonest=True)[-1][1] == pytest.approx(60.0)
+
+
+def test_at_the_soonest_a_robot_still_stops_between_two_actions():
+    cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), cuts=(), actions=(photo(0.0), photo(300.0)))
+    assert paced(cut, pilot_of(), soonest=True)[-1][1] == pytest.approx(50.0 + 2.0)
+
+
+def test_where_robots_stop_at_every_corner_the_soonest_is_what_is_planned():
+    cut, _ = parts((0.0, 0.0, 20.0), (300.0, 0.0, 20.0), (300.0, 300.0, 20.0))
+    strict = pilot_of(minimum_separation=5.0)
+    assert paced(cut, strict, soonest=True) == paced(cut, strict)

@@ -166,6 +166,30 @@ def test_an_earliest_time_is_kept_by_the_clock():
     assert found.robots[0].busy < 60.0
 
 
+def test_an_earliest_time_is_kept_even_by_a_robot_that_does_not_stop_at_corners():
+    sluggish = with_kinematics(robot(), acceleration=0.5)
+    works = {"a": visit((300.0, 0.0, 20.0)), "b": visit((300.0, 300.0, 20.0))}
+    after, tasks = [("a", "b")], {"b": task("b", earliest=130.0)}
+    found = sound(scene([sluggish], works, after=after, tasks=tasks))
+    wait = next(step for step in steps_of(found, "r1", Await) if step.until is not None)
+    without_stops = wait.begin - 2 * 20.0
+    assert without_stops + (wait.until - wait.begin) >= 130.0 - 1e-6
+
+
+def test_a_robot_does_not_wait_aloft_longer_than_its_charge_bears_if_it_is_early():
+    sluggish = with_kinematics(robot("r1"), acceleration=0.5, endurance=190.0, recharge=60.0)
+    other = with_kinematics(robot("r2", (40.0, 0.0, 0.0)), cruise=5.0)
+    works = {
+        "first": {"r1": visit((150.0, 0.0, 20.0), (150.0, 150.0, 20.0))},
+        "long": {"r2": visit((150.0, 40.0, 20.0), hold=70.0)},
+        "b": {"r1": visit((150.0, 20.0, 20.0))},
+    }
+    whole = scene((sluggish, other), works, after=[("first", "b"), ("long", "b")])
+    assert len(steps_of(sound(whole), "r1", Recharge)) == 1
+    stopping = replace(whole, minimum_separation=0.0)
+    assert len(steps_of(sound(stopping), "r1", Recharge)) == 0
+
+
 def test_a_deadline_that_cannot_be_kept_is_refused_with_how_late_it_is():
     whole = scene([robot()], {"a": visit((1000.0, 0.0, 20.0))}, tasks={"a": task("a", deadline=100.0)})
     with pytest.raises(InfeasibleError, match=r"its deadline is 100 s: 12 s late"):
