@@ -164,7 +164,7 @@ class Kinematics:
 
     Attributes:
         cruise: metres per second by travel mode, within the capability's limits.
-        slowest, fastest: limits of commanded speed, metres per second.
+        slowest, fastest: limits of commanded speed over ground, metres per second.
         climb, descent: metres per second, vertical.
         acceleration: metres per second squared; inf where it does not matter.
         turn_rate: degrees per second.
@@ -178,6 +178,8 @@ class Kinematics:
         recharge: seconds from empty to full at home; None where impossible.
         launches: whether the robot climbs from its home before it travels and descends onto it
             at the end (a drone does; an underwater vehicle or rover does not).
+        own_speed: largest speed through the air or the water that it moves in, metres per second;
+            `fastest` is what is left of it against the wind or the current. None: nothing is lost.
     """
 
     cruise: float
@@ -197,6 +199,7 @@ class Kinematics:
     draw: float = 1.0
     recharge: float | None = None
     launches: bool = False
+    own_speed: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -129,7 +129,7 @@ def stretches(
     found = []
     for (start, finish), share in zip(legs, nominal, strict=True):
         own = seconds * (share / whole if whole > 0.0 else 1.0 / len(legs))
-        slower = _slowed(start, finish, own, kinematics.fastest, flow)
+        slower = _slowed(start, finish, own, _own_speed(kinematics), flow)
         if slower is None:
             return ()
         found.append(Stretch(start, finish, slower, cost(start, finish, slower, kinematics, flow)))
@@ -169,7 +169,8 @@ def cost(start: Position, finish: Position, seconds: float, kinematics: Kinemati
         against = hypot(*flow)
     climb = (finish[2] - start[2]) / seconds if seconds > 0.0 else 0.0
     climbing = CLIMBING * min(1.0, climb / kinematics.climb) if kinematics.climb > 0.0 else 0.0
-    headwind = max(0.0, against) / kinematics.fastest if kinematics.fastest > 0.0 else 0.0
+    own_speed = _own_speed(kinematics)
+    headwind = max(0.0, against) / own_speed if own_speed > 0.0 else 0.0
     return max(0.0, 1.0 + climbing + headwind**2)
 
 
@@ -213,12 +214,16 @@ def _acceleration_seconds(length: float, speed: float, acceleration: float, stop
     return sqrt(2.0 * stops * length / acceleration) - length / speed
 
 
-def _slowed(start: Position, finish: Position, seconds: float, fastest: float, flow: Flow) -> float | None:
+def _own_speed(kinematics: Kinematics) -> float:
+    return kinematics.fastest if kinematics.own_speed is None else kinematics.own_speed
+
+
+def _slowed(start: Position, finish: Position, seconds: float, own_speed: float, flow: Flow) -> float | None:
     """Return how long the stretch takes in the flow; None if the robot cannot make headway."""
     level = hypot(finish[0] - start[0], finish[1] - start[1])
     if flow == STILL or level <= 0.0 or seconds <= 0.0:
         return seconds
     along = ((finish[0] - start[0]) * flow[0] + (finish[1] - start[1]) * flow[1]) / level
-    inside = along**2 - flow[0] ** 2 - flow[1] ** 2 + fastest**2
+    inside = along**2 - flow[0] ** 2 - flow[1] ** 2 + own_speed**2
     largest = along + sqrt(inside) if inside >= 0.0 else 0.0
     return max(seconds, level / largest) if largest > 1e-6 else None

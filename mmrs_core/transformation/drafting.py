@@ -118,9 +118,14 @@ class _Drafting:
         node.after.extend(self._deed(action) for action in spec.after)
 
     def _commanded(self, speed: float | None) -> float | None:
-        """Return a speed to be commanded; None where it is the robot's cruise."""
-        cruise = self._robot.kinematics.cruise if self._robot.kinematics else speed
-        return None if speed is None or cruise is None or abs(speed - cruise) < 1e-9 else speed
+        """Return a speed to be commanded; None where the robot's travel mode alone says as much."""
+        kinematics = self._robot.kinematics
+        if kinematics is None:
+            return None
+        against_flow = kinematics.own_speed is not None and kinematics.fastest < kinematics.own_speed
+        if against_flow and kinematics.cruise >= kinematics.fastest:
+            return kinematics.cruise if speed is None else speed
+        return None if speed is None or abs(speed - kinematics.cruise) < 1e-9 else speed
 
     def _deed(self, action: ActionAt) -> UseDevice:
         device = action.device or self._only_device(action.action)

@@ -16,6 +16,9 @@ SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
 ANYWHERE = frozenset({"grounded", "airborne", "moving"})
 AFLOAT = frozenset({"airborne", "moving"})
 
+_HEADWAY = 0.1
+"""Metres per second that a robot must make against wind or current to go anywhere."""
+
 
 def capability_for(robot_type: RobotType, payload: float) -> Capability:
     """Return the capability that was measured with the smallest payload not below this one.
@@ -49,28 +52,32 @@ def kinematics_for(
 ) -> Kinematics:
     """Return the kinematics that follow from a robot type's own figures.
 
-    Cruise is the travel mode's share of the largest speed, never under the smallest. The mean power
-    is what empties the batteries in the lifetime; against the flow it grows by (flow / largest speed)².
-    Robot kinds add their limits of height.
+    Cruise is the travel mode's share of the largest speed, never under the smallest. Against the flow a
+    robot goes over ground at its largest speed less the flow's; no more is commanded on any way, so that
+    all ways take as long in any direction. The mean power is what empties the batteries in the lifetime;
+    against the flow it grows by (flow / largest speed)². Robot kinds add their limits of height.
 
     Args:
         flow: name of the environment's attribute with the speed of the wind or current that the robot
             travels in; empty: none.
 
     Raises:
-        InfeasibleError: if the type has no capability for the robot's payload.
+        InfeasibleError: if the type has no capability for the robot's payload, or cannot go against the
+            flow.
     """
     capability = capability_for(robot.type, robot.payload)
-    slowest, fastest = capability.speed
+    slowest, own_speed = capability.speed
+    against = scene.environment.get(flow, 0.0)
+    fastest = _over_ground(slowest, own_speed, against)
     stored = sum(battery.energy for battery in robot.type.batteries)
     lifetime = capability.lifetime
     usable = 1.0 - scene.reserve
     return Kinematics(
-        cruise=max(slowest, SHARE_OF_LARGEST_SPEED[robot.travel_mode] * fastest),
+        cruise=min(fastest, max(slowest, SHARE_OF_LARGEST_SPEED[robot.travel_mode] * own_speed)),
         slowest=slowest,
         fastest=fastest,
-        climb=capability.climb_rate or fastest,
-        descent=capability.descent_rate or fastest,
+        climb=capability.climb_rate or own_speed,
+        descent=capability.descent_rate or own_speed,
         acceleration=capability.acceleration or inf,
         turn_rate=capability.turn_rate or 90.0,
         floor=floor,
@@ -80,10 +87,21 @@ def kinematics_for(
         endurance=inf if lifetime is None else lifetime * usable,
         energy=stored * usable if stored else inf,
         power=stored / lifetime if stored and lifetime else 0.0,
-        draw=1.0 + (scene.environment.get(flow, 0.0) / fastest) ** 2 if fastest > 0.0 else 1.0,
+        draw=1.0 + (against / own_speed) ** 2 if own_speed > 0.0 else 1.0,
         recharge=_recharge(robot.type),
         launches=launches,
+        own_speed=own_speed,
     )
+
+
+def _over_ground(slowest: float, own_speed: float, against: float) -> float:
+    """Return the speed over ground that a robot can keep in every direction, metres per second."""
+    fastest = own_speed - against
+    if against > 0.0 and fastest < max(slowest, _HEADWAY):
+        raise InfeasibleError(
+            f"goes at {slowest:g} to {own_speed:g} m/s, too slow against {against:g} m/s of wind or current"
+        )
+    return fastest if against > 0.0 else own_speed
 
 
 def _recharge(robot_type: RobotType) -> float | None:

@@ -36,6 +36,19 @@ def test_the_travel_mode_decides_the_cruise_speed(drone, scene, mode, speed):
     assert kinematics(drone(travel_mode=mode), scene).cruise == speed
 
 
+@pytest.mark.parametrize(("mode", "speed"), [("SAFE", 8.0), ("NORMAL", 10.0), ("AGGRESSIVE", 10.0)])
+def test_a_drone_cruises_no_faster_than_it_can_against_the_wind(drone, scene, mode, speed):
+    windy = replace(scene, environment={"windSpeed": 6.0})
+    found = kinematics(drone(travel_mode=mode), windy)
+    assert (found.cruise, found.fastest, found.own_speed) == (speed, 10.0, 16.0)
+
+
+def test_wind_that_leaves_less_than_the_smallest_speed_is_refused(drone, scene):
+    windy = replace(scene, environment={"windSpeed": 13.0})
+    with pytest.raises(InfeasibleError, match="4 to 16 m/s, too slow against 13 m/s"):
+        kinematics(drone(), windy)
+
+
 def test_the_reserve_is_taken_off_lifetime_and_energy(drone, scene):
     found = kinematics(drone(), scene)
     assert (found.endurance, found.energy, found.power) == (750.0, 375_000.0, 500.0)

@@ -103,6 +103,15 @@ def test_every_robot_starts_and_stops_once():
     assert kinds_of(model.robots[0].moves) == ["Start", "GoTo", "Stop"]
 
 
+@pytest.mark.parametrize(("fastest", "speed"), [(2.0, None), (1.5, 1.5)])
+def test_a_cruise_that_the_wind_slows_down_is_commanded(fastest, speed):
+    made = robot()
+    slowed = replace(made.kinematics, fastest=fastest, own_speed=2.0)
+    steps = transit(HOME, (10.0, 0.0, 0.0))
+    model, _ = behaviour_of(plan_of(steps), robots=[replace(made, kinematics=slowed)])
+    assert model.robots[0].moves[1].speed == speed
+
+
 def test_robots_without_work_do_not_occur():
     model, _ = behaviour_of(plan_of(transit(HOME, (1.0, 0.0, 0.0))), plan_of(name="idle"))
     assert [each.id for each in model.robots] == ["one"]
