@@ -202,7 +202,20 @@ class Maker:
         landing = self.ring(shapes.ngon((0.0, -SIZE - 90.0), 20.0, 6, 0.0))
         emergency = [self.make(CONTEXT, "Area", name="landing", shell=landing)]
         return self.make(
-            CONTEXT, "Context", forbiddenAreas=forbidden, obstacles=obstacles, emergencyAreas=emergency
+            CONTEXT,
+            "Context",
+            forbiddenAreas=forbidden,
+            obstacles=obstacles,
+            emergencyAreas=emergency,
+            environment=None if self.solvable else self._wind(),
+        )
+
+    def _wind(self):
+        return self.make(
+            CONTEXT,
+            "Environment",
+            windSpeed=self.random.uniform(0.0, 7.0),
+            windDirection=self.random.uniform(0.0, 360.0),
         )
 
     def _types(self):

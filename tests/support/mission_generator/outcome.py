@@ -83,6 +83,7 @@ def _carry_out(folder, contributions, outcome):
         outcome.complaints.append(f"replay: ends with {replayed.outcome}; {run.ending}")
     outcome.makespan = run.ending.time
     outcome.complaints += list(_intrusions(scene, run.tracks))
+    outcome.complaints += list(_overdrafts(scene, run.tracks))
     outcome.coverage = dict(_coverage(scene, program))
     for task, share in outcome.coverage.items():
         if share < 0.999:
@@ -122,6 +123,15 @@ def _intrusions(scene, tracks):
             distances = shapely.distance(shape, near) if len(near) else np.array([inf])
             if distances.min() < keep - NEAR:
                 yield f"track of '{name}' comes to {distances.min():.3f} m of '{area.name}', not {keep:.3f} m"
+
+
+def _overdrafts(scene, tracks):
+    """Yield where a robot uses up some of the reserve that it must keep."""
+    for name, track in tracks.items():
+        full = sum(battery.energy for battery in scene.robot(name).type.batteries)
+        least = min(sample.energy for sample in track)
+        if least < full * scene.reserve * (1.0 - NEAR):
+            yield f"'{name}' has {least:.0f} J left, not {full * scene.reserve:.0f} J"
 
 
 def _parts_between(points, low, high):
