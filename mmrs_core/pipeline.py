@@ -94,7 +94,7 @@ def valid_models(
 
 def ground(models: ModelSet) -> Scene:
     """Return the mission in the local frame."""
-    from mmrs_core.languages.grounding import ground as grounded
+    from mmrs_core.languages.grounding.scenes import ground as grounded
 
     return grounded(models)
 

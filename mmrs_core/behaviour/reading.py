@@ -11,10 +11,10 @@ from mmrs_core.diagnostics import Diagnostic, Place, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, container_of, metaclass_of, place_of
-from mmrs_core.languages.grounding import policies_of
-from mmrs_core.languages.grounding_coordinates import ground_of
-from mmrs_core.languages.grounding_frame import fault
-from mmrs_core.languages.grounding_parts import part_of
+from mmrs_core.languages.grounding.coordinates import ground_of
+from mmrs_core.languages.grounding.frame import fault
+from mmrs_core.languages.grounding.parts import part_of
+from mmrs_core.languages.grounding.scenes import policies_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Name, Position, Value
 

@@ -17,9 +17,9 @@ from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.grounding import area_of, ground_of, part_of, robot_type_of
-from mmrs_core.languages.grounding_parts import names_of
-from mmrs_core.languages.grounding_values import children, number
+from mmrs_core.languages.grounding.parts import names_of
+from mmrs_core.languages.grounding.scenes import area_of, ground_of, part_of, robot_type_of
+from mmrs_core.languages.grounding.values import children, number
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import context_in, robot_files_in
 from mmrs_core.languages.reading import read_model

@@ -53,7 +53,7 @@ def export(
     json: Json = False,
 ) -> int:
     """Write all languages side by side as an Eclipse project."""
-    from mmrs_core.languages.export import export_metamodels
+    from mmrs_core.languages.metamodels.export import export_metamodels
 
     registry = settings_of(call).plugins().contributions.languages
     return _written(export_metamodels(registry, directory, force=force), json)

@@ -167,7 +167,7 @@ class Metaclass:
     @property
     def eclass(self) -> object:
         """The same class as pyecore knows it, an ``EClass``; always the same object."""
-        from mmrs_core.languages.pyecore_classes import eclass_of  # pyecore costs 0.2 s of start-up
+        from mmrs_core.languages.ecore_api.classes import eclass_of  # pyecore costs 0.2 s of start-up
 
         return eclass_of(self)
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
-from mmrs_core.languages.documents import Draft
 from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
+from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.documents import Draft
 from mmrs_core.languages.element import Source
 from mmrs_core.languages.model import Model
+from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.references.resolution import resolve
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.resolution import resolve
-from mmrs_core.languages.xmi_reader import XmiReader
-from mmrs_core.languages.xml_events import Document, read_bytes
+from mmrs_core.languages.xmi.events import Document, read_bytes
+from mmrs_core.languages.xmi.reader import XmiReader
 
 
 class Reading:

@@ -8,11 +8,11 @@ from functools import cache
 from pathlib import Path
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.assembly import Assembly
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.locating import Located, locate_all
 from mmrs_core.languages.metaclass import Metaclass, Package
+from mmrs_core.languages.metamodels.assembly import Assembly
+from mmrs_core.languages.metamodels.locating import Located, locate_all
 from mmrs_core.languages.naming import nearest
 from mmrs_core.resources import shipped
 

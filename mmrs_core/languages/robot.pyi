@@ -1,4 +1,4 @@
-"""Made by mmrs_core.languages.stubs from urn:mmrs:robot:1.0; not to be edited."""
+"""Made by mmrs_core.languages.metamodels.stubs from urn:mmrs:robot:1.0; not to be edited."""
 
 from collections.abc import Iterable
 from typing import Final, Literal, TypeAlias

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.xmi_writer import XmiWriter
+from mmrs_core.languages.xmi.writer import XmiWriter
 
 
 def to_xmi(

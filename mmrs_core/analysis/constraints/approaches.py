@@ -11,7 +11,7 @@ from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, is_kind, metaclass_of
-from mmrs_core.languages.grounding_values import child, children, number
+from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
 

@@ -8,7 +8,7 @@ from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, ROBOT, f
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element, Unknown, descendants, is_set, metaclass_of
-from mmrs_core.languages.grounding_values import text
+from mmrs_core.languages.grounding.values import text
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.languages.modelset import ModelSet
 

@@ -10,8 +10,8 @@ from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, is_set, metaclass_of
-from mmrs_core.languages.grounding_frame import coordinates_of
-from mmrs_core.languages.grounding_values import child, children, number, text, texts
+from mmrs_core.languages.grounding.frame import coordinates_of
+from mmrs_core.languages.grounding.values import child, children, number, text, texts
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
 

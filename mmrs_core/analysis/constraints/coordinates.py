@@ -9,7 +9,7 @@ from mmrs_core.analysis.constraints.findings import BEHAVIOUR, CONTEXT, MISSION,
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.geometry.frames import known_crs
 from mmrs_core.languages.element import Element, path_of, root_of
-from mmrs_core.languages.grounding_frame import (
+from mmrs_core.languages.grounding.frame import (
     Reference,
     circles_among,
     coordinates_of,
@@ -20,7 +20,7 @@ from mmrs_core.languages.grounding_frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 
 

@@ -10,8 +10,8 @@ from mmrs_core.analysis.constraints.sketch import Sketch, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of
-from mmrs_core.languages.grounding_frame import coordinates_of, is_geographic, on_earth, origin_of
-from mmrs_core.languages.grounding_values import children, number
+from mmrs_core.languages.grounding.frame import coordinates_of, is_geographic, on_earth, origin_of
+from mmrs_core.languages.grounding.values import children, number
 from mmrs_core.languages.modelset import ModelSet
 
 FAR = 50_000.0

@@ -9,7 +9,7 @@ from mmrs_core.analysis.constraints.findings import BEHAVIOUR, finding, listed
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of, descendants, is_kind
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
-from mmrs_core.languages.grounding_values import text
+from mmrs_core.languages.grounding.values import text
 
 MISSION = "urn:mmrs:mission:1.0"
 CONTEXT = "urn:mmrs:context:1.0"

@@ -9,7 +9,7 @@ from heapq import heappop, heappush
 
 from mmrs_core.analysis.constraints.findings import MISSION
 from mmrs_core.languages.element import Element, is_kind
-from mmrs_core.languages.grounding_values import child, children
+from mmrs_core.languages.grounding.values import child, children
 
 
 class Order:

@@ -17,7 +17,7 @@ from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.geometry.segments import legs_of, prism_distance
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding_values import child, children, number
+from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
 

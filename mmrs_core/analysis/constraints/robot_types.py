@@ -9,7 +9,7 @@ from mmrs_core.analysis.constraints.findings import ROBOT, called, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 
 LARGEST_ROBOT = 50.0

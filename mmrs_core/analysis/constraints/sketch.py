@@ -18,10 +18,10 @@ from shapely.geometry import Polygon
 
 from mmrs_core.analysis.constraints.order import Order
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding_coordinates import Ground, ground_of
-from mmrs_core.languages.grounding_parts import heights_of, ring_of, use_of
-from mmrs_core.languages.grounding_robot import half_diagonal
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.coordinates import Ground, ground_of
+from mmrs_core.languages.grounding.parts import heights_of, ring_of, use_of
+from mmrs_core.languages.grounding.robots import half_diagonal
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import AreaUse, Position, Ring
 

@@ -9,8 +9,8 @@ from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
 from mmrs_auv.names import AUV_MOVEMENT
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding_coordinates import ground_of
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.coordinates import ground_of
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
 

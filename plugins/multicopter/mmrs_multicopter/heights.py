@@ -7,8 +7,8 @@ from math import inf
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding_coordinates import Ground, ground_of
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.coordinates import Ground, ground_of
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.kinds import LOWEST_FLIGHT
 from mmrs_multicopter.names import DRONE

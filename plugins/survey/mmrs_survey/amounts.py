@@ -10,8 +10,8 @@ from shapely.geometry import Polygon
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding_coordinates import ground_of
-from mmrs_core.languages.grounding_values import children, number, text
+from mmrs_core.languages.grounding.coordinates import ground_of
+from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
 from mmrs_survey import names

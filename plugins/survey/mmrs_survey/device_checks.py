@@ -8,7 +8,7 @@ from math import isfinite
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, container_of, label_of, metaclass_of
-from mmrs_core.languages.grounding_values import children, number, text
+from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_survey.camera import CAMERA_KEYS
 from mmrs_survey.names import SURVEY

@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.languages.datatypes import DataType
-from mmrs_core.languages.export import export_metamodels
 from mmrs_core.languages.metaclass import Enumeration
+from mmrs_core.languages.metamodels.export import export_metamodels
 
 pytestmark = pytest.mark.peer
 

@@ -7,7 +7,7 @@ import pytest
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.export import export_metamodels, exported_names
+from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import to_xmi, write_model
 

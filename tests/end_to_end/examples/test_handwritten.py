@@ -6,7 +6,7 @@ from mmrs_core import pipeline
 from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.grounding import robot_type_of
+from mmrs_core.languages.grounding.scenes import robot_type_of
 from mmrs_core.languages.reading import read_model
 from mmrs_core.runtime.run import simulate
 

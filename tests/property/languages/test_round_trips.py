@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import parse_real, render_real
+from mmrs_core.languages.ecore_api.bridge import from_pyecore, to_pyecore
 from mmrs_core.languages.element import contents, held, metaclass_of
 from mmrs_core.languages.metaclass import Enumeration
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.pyecore_bridge import from_pyecore, to_pyecore
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.writing import to_xmi
 

@@ -150,6 +150,6 @@ def test_every_code_has_a_meaning_and_every_meaning_a_code():
 
     import mmrs_core.languages as languages
 
-    sources = Path(languages.__file__).parent.glob("*.py")
+    sources = Path(languages.__file__).parent.rglob("*.py")
     text = "".join(source.read_text() for source in sources if source.name != "codes.py")
     assert set(re.findall(r'"((?:XMI|ECO|PRJ)\d{3})"', text)) == set(CODES)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.languages.export import export_metamodels, exported_names
+from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
 PROJECT = Path(__file__).parents[3]

@@ -10,7 +10,7 @@ from mmrs_core.diagnostics import Place
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import behaviour, context, mission, robot
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding import area_of, ground, ground_of, part_of, robot_type_of
+from mmrs_core.languages.grounding.scenes import area_of, ground, ground_of, part_of, robot_type_of
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import core_registry
 from mmrs_core.scene import AreaUse, Part, Policy

@@ -5,8 +5,8 @@ import os
 import pytest
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages import xml_events
 from mmrs_core.languages.reading import read_model, read_text
+from mmrs_core.languages.xmi import events as xml_events
 
 ROOT = b'<m:Mission xmlns:m="urn:mmrs:mission:1.0"'
 

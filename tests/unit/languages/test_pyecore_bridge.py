@@ -8,8 +8,8 @@ pyecore = pytest.importorskip("pyecore.ecore")
 
 from mmrs_core.errors import PluginError, UnsupportedError  # noqa: E402
 from mmrs_core.languages import mission  # noqa: E402
+from mmrs_core.languages.ecore_api.bridge import from_pyecore, to_pyecore  # noqa: E402
 from mmrs_core.languages.model import Model  # noqa: E402
-from mmrs_core.languages.pyecore_bridge import from_pyecore, to_pyecore  # noqa: E402
 from mmrs_core.languages.reading import read_model  # noqa: E402
 from mmrs_core.languages.registry import MetamodelSource, registry_with  # noqa: E402
 from mmrs_core.languages.writing import to_xmi  # noqa: E402
@@ -130,8 +130,8 @@ def test_what_is_no_epackage_is_refused(tmp_path):
 def test_the_tables_are_what_pyecore_loads(everything):
     from pyecore.resources import URI, ResourceSet
 
-    from mmrs_core.languages.ecore_tables import read_tables
-    from mmrs_core.languages.pyecore_tables import package_table
+    from mmrs_core.languages.ecore_api.tables import package_table
+    from mmrs_core.languages.metamodels.tables import read_tables
 
     resources = ResourceSet()
     for package in everything.packages:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.languages.hrefs import linked_file, relative_href
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.references.hrefs import linked_file, relative_href
 from mmrs_core.languages.writing import to_xmi, write_model
 
 

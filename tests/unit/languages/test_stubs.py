@@ -3,7 +3,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import mmrs_core.languages as languages
-from mmrs_core.languages.stubs import write_core_stubs
+from mmrs_core.languages.metamodels.stubs import write_core_stubs
 
 
 def test_the_committed_stubs_say_what_the_metamodels_say(core, tmp_path):
@@ -12,7 +12,7 @@ def test_the_committed_stubs_say_what_the_metamodels_say(core, tmp_path):
     assert [path.name for path in made] == ["robot.pyi", "mission.pyi", "context.pyi", "behaviour.pyi"]
     for path in made:
         committed = (folder / path.name).read_text()
-        assert path.read_text() == committed, "run python -m mmrs_core.languages.stubs"
+        assert path.read_text() == committed, "run python -m mmrs_core.languages.metamodels.stubs"
 
 
 def test_every_class_and_enumeration_is_in_its_stub(core):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element, Source, held, metaclass_of, root_of
-from mmrs_core.languages.hrefs import relative_href
+from mmrs_core.languages.references.hrefs import relative_href
 
 
 class Addresses:

@@ -7,7 +7,7 @@ from typing import TypeAlias, get_args
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.element import Element, descendants, is_kind, place_of
-from mmrs_core.languages.grounding_values import child, children, literal, number, text
+from mmrs_core.languages.grounding.values import child, children, literal, number, text
 from mmrs_core.scene import AltitudeReference, Frame
 
 MISSION = "urn:mmrs:mission:1.0"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.classes import implementation_class, interface_class
 from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declared_type
-from mmrs_core.languages.ecore_tables import ClassTable, FeatureTable, PackageTable
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.locating import Directory, Located
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metamodels.classes import implementation_class, interface_class
+from mmrs_core.languages.metamodels.locating import Directory, Located
+from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
 from mmrs_core.languages.naming import nearest, python_name
 
 _Key = tuple[str, str]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.geometry.frames import LocalFrame, known_crs
 from mmrs_core.languages.element import Element, place_of
-from mmrs_core.languages.grounding_frame import (
+from mmrs_core.languages.grounding.frame import (
     Reference,
     coordinates_of,
     fault,
@@ -25,7 +25,7 @@ from mmrs_core.languages.grounding_frame import (
     origin_of,
     reference_in,
 )
-from mmrs_core.languages.grounding_values import child, number, text
+from mmrs_core.languages.grounding.values import child, number, text
 from mmrs_core.scene import Frame, Point, Position
 
 

@@ -6,9 +6,9 @@ from math import hypot
 
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.element import Element, metaclass_of, place_of
-from mmrs_core.languages.grounding_frame import fault
-from mmrs_core.languages.grounding_parts import NO_GROUND, part_of
-from mmrs_core.languages.grounding_values import child, children, number, text
+from mmrs_core.languages.grounding.frame import fault
+from mmrs_core.languages.grounding.parts import NO_GROUND, part_of
+from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.scene import Battery, Capability, Device, DeviceAction, RobotType
 
 MILLIAMPERE_HOUR = 3.6

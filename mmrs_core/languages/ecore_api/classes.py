@@ -8,8 +8,8 @@ from pyecore import ecore
 
 from mmrs_core.errors import InternalError
 from mmrs_core.languages.datatypes import ECORE, DataType
-from mmrs_core.languages.ecore_tables import GENMODEL
 from mmrs_core.languages.metaclass import Enumeration, Feature, Literal, Metaclass, Package
+from mmrs_core.languages.metamodels.tables import GENMODEL
 
 _OWN_ECORE = frozenset(("EStringToStringMapEntry",))
 """Classes of Ecore that pyecore has as data types only."""

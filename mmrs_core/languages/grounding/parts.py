@@ -15,9 +15,9 @@ from mmrs_core.languages.element import (
     path_of,
     place_of,
 )
-from mmrs_core.languages.grounding_coordinates import Ground
-from mmrs_core.languages.grounding_frame import MISSION, is_geographic, is_relative
-from mmrs_core.languages.grounding_values import children, number
+from mmrs_core.languages.grounding.coordinates import Ground
+from mmrs_core.languages.grounding.frame import MISSION, is_geographic, is_relative
+from mmrs_core.languages.grounding.values import children, number
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.scene import Area, AreaUse, Frame, Part, Position, Ring, Value
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from mmrs_core.languages.addresses import Addresses
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.xml_events import XMI, XSI
+from mmrs_core.languages.xmi.events import XMI, XSI
 
 _ATTRIBUTE_ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\n": "&#xA;", "\t": "&#x9;", "\r": "&#xD;"}
 _IN_ATTRIBUTE = re.compile('[&<"\n\t\r]')

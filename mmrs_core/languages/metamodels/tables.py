@@ -8,7 +8,7 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.metaclass import Literal
-from mmrs_core.languages.xml_events import XSI, Document, read_bytes
+from mmrs_core.languages.xmi.events import XSI, Document, read_bytes
 
 GENMODEL = "http://www.eclipse.org/emf/2002/GenModel"
 

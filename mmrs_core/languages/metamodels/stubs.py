@@ -1,6 +1,7 @@
 """Stub files (.pyi) that tell type checkers and editors what the classes of a language offer.
 
-``python -m mmrs_core.languages.stubs`` writes those of the core languages anew after a metamodel was changed.
+``python -m mmrs_core.languages.metamodels.stubs`` writes those of the core languages anew after a
+metamodel was changed.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def stub_text(package: Package, modules: Mapping[str, str]) -> str:
     used = {ns_uri for metaclass in package.metaclasses for ns_uri in _referred(metaclass)} - {package.ns_uri}
     imports = sorted(modules[ns_uri] for ns_uri in used)
     head = [
-        f'"""Made by mmrs_core.languages.stubs from {package.ns_uri}; not to be edited."""',
+        f'"""Made by mmrs_core.languages.metamodels.stubs from {package.ns_uri}; not to be edited."""',
         "",
         "from collections.abc import Iterable",
         "from typing import Final, Literal, TypeAlias",

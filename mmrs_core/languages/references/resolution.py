@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.addresses import Addresses
 from mmrs_core.languages.datatypes import shown
-from mmrs_core.languages.documents import Draft, Pending
 from mmrs_core.languages.element import Element, Unknown, descendants, label_of
-from mmrs_core.languages.hrefs import linked_file
 from mmrs_core.languages.links import raw, store
 from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.references.addresses import Addresses
+from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.references.hrefs import linked_file
 
 _HELPED_FAULTS = 20
 """Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""

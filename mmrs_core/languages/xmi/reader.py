@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.documents import Draft, Pending
 from mmrs_core.languages.element import Element, Unknown, held, label_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.naming import nearest, typo_of
+from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.xml_events import XMI, XSI, Document
+from mmrs_core.languages.xmi.events import XMI, XSI, Document
 
 _TYPE = f"{XSI} type"
 _XMI_TYPE = f"{XMI} type"

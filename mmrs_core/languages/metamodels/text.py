@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 from xml.sax.saxutils import quoteattr
 
 from mmrs_core.languages.datatypes import ECORE, DataType
-from mmrs_core.languages.ecore_tables import GENMODEL
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.xml_events import XMI, XSI
+from mmrs_core.languages.metamodels.tables import GENMODEL
+from mmrs_core.languages.xmi.events import XMI, XSI
 
 Address = Callable[[str], str]
 """From an nsURI to what stands before the name of one of its classes, such as ``mission.ecore#//``."""

@@ -11,13 +11,13 @@ from pathlib import Path
 
 from mmrs_core.errors import MmrsError
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.ecore_tables import PackageTable
-from mmrs_core.languages.ecore_text import package_text
-from mmrs_core.languages.locating import Directory, Located
 from mmrs_core.languages.metaclass import Package
+from mmrs_core.languages.metamodels.locating import Directory, Located
+from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file
-from mmrs_core.languages.xml_events import Document, read_bytes
+from mmrs_core.languages.xmi.events import Document, read_bytes
 
 _REFERENCE = re.compile(r"""\b(eType|eSuperTypes|eOpposite|eClassifier|eKeys)=(["'])(.*?)\2""", re.DOTALL)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.ecore_tables import PackageTable, read_tables
+from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ def _open(ecore: Path | object, provider: str) -> Iterable[Located]:
         for table in read_tables(ecore):
             yield from _flat(Located(table, provider, ecore.resolve(), ecore))
         return
-    from mmrs_core.languages.pyecore_tables import package_table  # pyecore costs 0.2 s of start-up
+    from mmrs_core.languages.ecore_api.tables import package_table  # pyecore costs 0.2 s of start-up
 
     yield from _flat(Located(package_table(ecore), provider, None, ecore))
 

@@ -7,7 +7,8 @@ from typing import Any
 from pyecore import ecore
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.ecore_tables import (
+from mmrs_core.languages.metaclass import Literal
+from mmrs_core.languages.metamodels.tables import (
     GENMODEL,
     ClassTable,
     DataTypeTable,
@@ -15,7 +16,6 @@ from mmrs_core.languages.ecore_tables import (
     FeatureTable,
     PackageTable,
 )
-from mmrs_core.languages.metaclass import Literal
 
 
 def package_table(package: object) -> PackageTable:

@@ -8,10 +8,10 @@ from typing import Any
 from pyecore import ecore
 
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.languages.ecore_api.classes import eclass_of
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of, root_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.pyecore_classes import eclass_of
 from mmrs_core.languages.registry import Registry
 
 _RESERVED = frozenset((*dir(ecore.EObject), *vars(ecore.EObject())))

@@ -1,0 +1,1 @@
+"""Metamodels and models as pyecore's own API knows them."""

@@ -1,0 +1,1 @@
+"""How elements are referred to in files, within one and across several."""

@@ -1,0 +1,1 @@
+"""Models as XML: XMI as Eclipse writes it, read and written."""
