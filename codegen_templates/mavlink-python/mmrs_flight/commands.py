@@ -9,7 +9,6 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from .faults import Refused
 from .link import Link, Message
 
-TRIES = 5
 ANSWER_SECONDS = 1.5
 PROGRESS_SECONDS = 60.0
 _RETRIED = {mavlink.MAV_RESULT_TEMPORARILY_REJECTED}
@@ -19,7 +18,7 @@ class Unanswered(Refused):
     """The vehicle did not answer a command at all."""
 
 
-def command(link: Link, number: int, *params: float, tries: int = TRIES) -> None:
+def command(link: Link, number: int, *params: float, tries: int | None = None) -> None:
     """Have the vehicle carry out a command, and return when it says that it does.
 
     Sends again, with the confirmation counted up, when no answer comes or the vehicle asks for
@@ -28,12 +27,13 @@ def command(link: Link, number: int, *params: float, tries: int = TRIES) -> None
     Args:
         number: a MAV_CMD.
         params: up to seven; the rest is 0.
-        tries: how often to send at most.
+        tries: how often to send at most; None: as often as the link says.
 
     Raises:
         Unanswered: no answer to any of the tries.
         Refused: the vehicle does not do it.
     """
+    tries = link.tries if tries is None else tries
     padded = [*params, *[0.0] * (7 - len(params))]
     answer: Message | None = None
     with link.inbox("COMMAND_ACK") as inbox:

@@ -21,6 +21,7 @@ GROUND_SYSTEM = 255
 GROUND_COMPONENT = 190
 HEARTBEAT_SECONDS = 1.0
 GLANCE_SECONDS = 0.2
+TRIES = 5
 
 
 class Link:
@@ -30,6 +31,7 @@ class Link:
         guard: called again and again during every wait; raises what should end it.
         system, component: the vehicle's address; 0 until it was heard of.
         garbled: how many frames could not be read.
+        tries: how often to send at most what is not answered.
     """
 
     def __init__(self, port: Port, clock: Clock, system: int = 0, key: bytes | None = None) -> None:
@@ -46,6 +48,7 @@ class Link:
         self.system = system
         self.component = 0
         self.garbled = 0
+        self.tries = TRIES
         self._wanted = system
         self._port = port
         self._mav = mavlink.MAVLink(port, srcSystem=GROUND_SYSTEM, srcComponent=GROUND_COMPONENT)

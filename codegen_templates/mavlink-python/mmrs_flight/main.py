@@ -17,7 +17,7 @@ from .ardupilot import MavlinkVehicle
 from .clock import Clock
 from .dry import DryVehicle
 from .faults import CRASHED, LINK_LOST, STOPPED, Fault
-from .link import Link
+from .link import TRIES, Link
 from .log import Log, Records
 from .objects import Locator
 from .pilot import Condition, Desk, Pilot
@@ -59,6 +59,7 @@ class Options:
     home_tolerance: float
     system: int
     patience: float
+    tries: int
     key: bytes | None
 
 
@@ -220,7 +221,7 @@ def _vehicle(
         return DryVehicle(options.clock, robot.home, watch.check), watch
     link = Link(open_port(options.links[robot.id]), options.clock, options.system, options.key)
     stack.callback(link.close)
-    link.guard = watch.check
+    link.guard, link.tries = watch.check, options.tries
     say(f"{robot.id!a}: waits for a vehicle at {options.links[robot.id]}")
     if not link.wait(lambda: link.component, options.patience * options.clock.speedup):
         raise Fault(LINK_LOST, f"no vehicle at {options.links[robot.id]}")
@@ -261,6 +262,7 @@ def _parser(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--acceptance", type=float, default=0.5, help="metres from a place that count as there")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
     add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
+    add("--tries", type=int, default=TRIES, help="how often to send at most what a vehicle does not answer")
     add("--system", type=int, default=0, help="MAVLink system of the vehicle; 0: whichever speaks first")
     add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
@@ -284,6 +286,8 @@ def _options(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
     speedup = given.speedup or (DRY_SPEEDUP if given.dry_run else 1.0)
     if speedup <= 0:
         parser.error("--speedup must be positive")
+    if given.tries < 1:
+        parser.error("--tries must be at least 1")
     return Options(
         links,
         given.log,
@@ -296,6 +300,7 @@ def _options(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: An
         given.home_tolerance,
         given.system,
         given.patience,
+        given.tries,
         _key(parser, given.signing_key),
     )
 

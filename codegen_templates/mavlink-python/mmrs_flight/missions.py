@@ -18,7 +18,6 @@ NAMES = {MISSION: "mission", FENCE: "fence", RALLY: "rally points"}
 
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT
 NO_FRAME = mavlink.MAV_FRAME_MISSION
-TRIES = 5
 ANSWER_SECONDS = 1.5
 _SAME_FRAME = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: RELATIVE}
 
@@ -44,11 +43,11 @@ def upload(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
         Refused: the vehicle does not accept it, or does not answer.
     """
     result: int | None = None
-    for attempt in range(TRIES):
+    for attempt in range(link.tries):
         result = _clear(link, kind) if not items else _transfer(link, items, kind)
         if result == mavlink.MAV_MISSION_ACCEPTED:
             return
-        if attempt + 1 < TRIES:
+        if attempt + 1 < link.tries:
             link.wait(lambda: None, 1.0)
     answer = "nothing" if result is None else f"'{_result(result)}'"
     raise Refused(f"{NAMES[kind]}: the vehicle answers {answer} to the upload")
@@ -88,7 +87,7 @@ def _transfer(link: Link, items: Sequence[Item], kind: int) -> int | None:
     with link.inbox(*kinds) as inbox:
         last: Message = count
         tries = 0
-        while tries < TRIES:
+        while tries < link.tries:
             link.send(last)
             message = link.wait(
                 lambda: _first(inbox, lambda m: _of(m, kind)), link.clock.patience(ANSWER_SECONDS)
@@ -121,7 +120,7 @@ def _fetch(link: Link, inbox: deque[Message], seq: int, kind: int) -> Item:
 
 
 def _asked(link: Link, ask: Message, inbox: deque[Message], fits: Callable[[Message], bool]) -> Message:
-    for _ in range(TRIES):
+    for _ in range(link.tries):
         link.send(ask)
         answer = link.wait(lambda: _first(inbox, fits), link.clock.patience(ANSWER_SECONDS))
         if answer is not None:
