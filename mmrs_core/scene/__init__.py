@@ -1,0 +1,92 @@
+"""What stands between the stages from models to plans: plain frozen values in one local frame.
+
+Positions are (east, north, up) in metres from the mission's origin; speeds are metres per second,
+times and durations seconds, energies joules, masses kilograms. Angles keep the unit of the model
+(degrees) only inside `attributes`, under the model's own names. Every task, robot type and area
+carries its metaclasses as ((nsURI, name), ...), most specific first, so that plug-ins choose by
+metaclass without seeing a model.
+"""
+
+from mmrs_core.scene.missions import Dependency, Scene, Task
+from mmrs_core.scene.places import Area, AreaUse, Frame
+from mmrs_core.scene.plans import (
+    Await,
+    Branch,
+    Launch,
+    Plan,
+    Recharge,
+    Recover,
+    RobotPlan,
+    Serve,
+    Signal,
+    Step,
+    Transit,
+)
+from mmrs_core.scene.robots import (
+    Battery,
+    Capability,
+    Device,
+    DeviceAction,
+    Kinematics,
+    Policy,
+    Robot,
+    RobotType,
+)
+from mmrs_core.scene.values import (
+    AltitudeReference,
+    Metaclasses,
+    Name,
+    Part,
+    Point,
+    PolicyEvent,
+    PolicyResponse,
+    Position,
+    Ring,
+    TravelMode,
+    Value,
+)
+from mmrs_core.scene.works import ActionAt, Coverage, Look, Stroke, Work
+
+__all__ = [
+    "ActionAt",
+    "AltitudeReference",
+    "Area",
+    "AreaUse",
+    "Await",
+    "Battery",
+    "Branch",
+    "Capability",
+    "Coverage",
+    "Dependency",
+    "Device",
+    "DeviceAction",
+    "Frame",
+    "Kinematics",
+    "Launch",
+    "Look",
+    "Metaclasses",
+    "Name",
+    "Part",
+    "Plan",
+    "Point",
+    "Policy",
+    "PolicyEvent",
+    "PolicyResponse",
+    "Position",
+    "Recharge",
+    "Recover",
+    "Ring",
+    "Robot",
+    "RobotPlan",
+    "RobotType",
+    "Scene",
+    "Serve",
+    "Signal",
+    "Step",
+    "Stroke",
+    "Task",
+    "Transit",
+    "TravelMode",
+    "Value",
+    "Work",
+]

@@ -1,0 +1,142 @@
+"""What every robot does, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mmrs_core.scene.values import Position
+from mmrs_core.scene.works import Stroke
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One item of a robot's plan, with the estimated times at which it begins and ends.
+
+    Attributes:
+        begin, end: seconds after the mission's start.
+        task: the task that it serves or leads to; empty: none in particular.
+    """
+
+    begin: float
+    end: float
+    task: str
+
+
+@dataclass(frozen=True, slots=True)
+class Launch(Step):
+    """Leaves home: from `at` on the ground straight up to the height `up`."""
+
+    at: Position
+    up: float
+
+
+@dataclass(frozen=True, slots=True)
+class Transit(Step):
+    """Travels along straight legs; `route` begins where the robot is, at least two points.
+
+    `speed`: commanded, metres per second; None: the robot's cruise.
+    """
+
+    route: tuple[Position, ...]
+    speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Serve(Step):
+    """Does a stroke; the robot is at its first point. `speed`: commanded, metres per second.
+
+    `first` and `last` tell the robot's first and last stroke of this task.
+    """
+
+    stroke: Stroke
+    speed: float
+    rule: str
+    first: bool = False
+    last: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Await(Step):
+    """Waits, where it is, until every one of these signals was given.
+
+    `until` is an earliest time that a clock, not a robot, ends the wait at; None: none.
+    """
+
+    signals: tuple[str, ...]
+    until: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Signal(Step):
+    """Tells other robots that this one's part of `task` has ended.
+
+    Attributes:
+        signal: unique in the plan.
+        receivers: names of the robots that await it, at least one, not this one.
+    """
+
+    signal: str
+    receivers: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Recover(Step):
+    """Comes down where it is, from `at` to the height `up` of the ground there."""
+
+    at: Position
+    up: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recharge(Step):
+    """Waits at home for full batteries, after a recovery and before the next launch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Branch(Step):
+    """Does one of several sequences of steps, by conditions tested in order.
+
+    Attributes:
+        arms: (condition, steps); the condition of the last arm is None: the else arm. Every arm
+            begins where the robot is and ends at `exit`.
+    """
+
+    arms: tuple[tuple[str | None, tuple[Step, ...]], ...]
+    exit: Position
+
+
+@dataclass(frozen=True, slots=True)
+class RobotPlan:
+    """What one robot does.
+
+    Attributes:
+        steps: in order; empty for a robot that is not needed.
+        length: metres travelled; busy: seconds from launch to the last recovery; energy: joules;
+            sorties: how many times it leaves home.
+    """
+
+    robot: str
+    steps: tuple[Step, ...]
+    length: float = 0.0
+    busy: float = 0.0
+    energy: float = 0.0
+    sorties: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Who does what, when, and by which way.
+
+    Attributes:
+        robots: in the scene's order, robots without work included.
+        makespan: seconds until the last robot has finished.
+        begins, ends: by task, seconds after the mission's start.
+        notes: assumptions that people must know, such as flat terrain.
+    """
+
+    robots: tuple[RobotPlan, ...]
+    makespan: float
+    begins: Mapping[str, float]
+    ends: Mapping[str, float]
+    notes: tuple[str, ...] = ()

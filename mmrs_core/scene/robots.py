@@ -1,0 +1,160 @@
+"""Types of robot, what a robot of the team can do, and how it answers faults."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+
+from mmrs_core.diagnostics import Place
+from mmrs_core.scene.values import Metaclasses, Part, PolicyEvent, PolicyResponse, Position, TravelMode
+
+
+@dataclass(frozen=True, slots=True)
+class Capability:
+    """How a type of robot moves with a payload of one weight; None is not known.
+
+    Attributes:
+        payload: kilograms that the figures hold for.
+        lifetime: seconds on full batteries.
+        speed: (smallest, largest), metres per second.
+        acceleration: largest, metres per second squared.
+        climb_rate, descent_rate: largest, metres per second.
+        turn_rate: largest, degrees per second.
+    """
+
+    payload: float
+    lifetime: float | None
+    speed: tuple[float, float]
+    acceleration: float | None = None
+    climb_rate: float | None = None
+    descent_rate: float | None = None
+    turn_rate: float | None = None
+    part: Part = field(default_factory=lambda: Part((), {}))
+
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """A battery: joules when full, seconds to recharge or None where that is impossible."""
+
+    energy: float
+    recharge_time: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceAction:
+    """An action that a device supports: its name, seconds it takes, and its parameters' keys."""
+
+    name: str
+    duration: float
+    parameters: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """A device of a robot type."""
+
+    id: str
+    actions: Mapping[str, DeviceAction]
+    properties: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotType:
+    """A type of robot.
+
+    Attributes:
+        name: as missions refer to it.
+        metaclasses: of the robot type itself, most specific first.
+        capability_metaclasses: of its movement capabilities (the first one's), most specific first.
+        half_diagonal: half the diagonal of the robot's outer dimensions, metres.
+        capabilities: sorted by payload, at least one.
+        part: the whole type, with all attributes that plug-ins add.
+    """
+
+    name: str
+    metaclasses: Metaclasses
+    capability_metaclasses: Metaclasses
+    half_diagonal: float
+    max_payload: float | None
+    capabilities: tuple[Capability, ...]
+    batteries: tuple[Battery, ...]
+    devices: Mapping[str, Device]
+    part: Part
+
+
+@dataclass(frozen=True, slots=True)
+class Kinematics:
+    """What a robot can do on this mission, after payload and travel mode; made by its robot kind.
+
+    Attributes:
+        cruise: metres per second by travel mode, within the capability's limits.
+        slowest, fastest: limits of commanded speed over ground, metres per second.
+        climb, descent: metres per second, vertical.
+        acceleration: metres per second squared; inf where it does not matter.
+        turn_rate: degrees per second.
+        floor, ceiling: heights above the origin between which the robot may move, metres.
+        launch: seconds that launching takes beside the climb; recovery: likewise for landing.
+        endurance: usable seconds of one sortie, reserve taken off; inf for wired robots.
+        energy: usable joules of one sortie, reserve taken off; inf for wired robots.
+        power: mean power in watts; 0 where nothing is known of energy.
+        draw: by how much the power may exceed the mean for long, as a factor of one or more: what it
+            takes to travel against the wind or current all the time.
+        recharge: seconds from empty to full at home; None where impossible.
+        launches: whether the robot climbs from its home before it travels and descends onto it
+            at the end (a drone does; an underwater vehicle or rover does not).
+        own_speed: largest speed through the air or the water that it moves in, metres per second;
+            `fastest` is what is left of it against the wind or the current. None: nothing is lost.
+    """
+
+    cruise: float
+    slowest: float
+    fastest: float
+    climb: float
+    descent: float
+    acceleration: float = inf
+    turn_rate: float = 90.0
+    floor: float = -inf
+    ceiling: float = inf
+    launch: float = 0.0
+    recovery: float = 0.0
+    endurance: float = inf
+    energy: float = inf
+    power: float = 0.0
+    draw: float = 1.0
+    recharge: float | None = None
+    launches: bool = False
+    own_speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A robot of the team.
+
+    Attributes:
+        name: unique in the team.
+        kind: name of its robot kind; empty until the scene is expanded.
+        clearance: half the robot's diagonal plus the mission's position error, metres; the safety
+            distance of each area comes on top.
+        kinematics: None until the scene is expanded.
+    """
+
+    name: str
+    type: RobotType
+    home: Position
+    return_home: bool
+    payload: float
+    travel_mode: TravelMode
+    clearance: float
+    kind: str = ""
+    kinematics: Kinematics | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What a robot does about a fault, once it has lasted `after` seconds (None: the platform's default)."""
+
+    event: PolicyEvent
+    response: PolicyResponse
+    after: float | None = None

@@ -1,0 +1,104 @@
+"""What a task is made of for one kind of robot: strokes, and what is done along them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mmrs_core.scene.values import Position, Ring
+
+
+@dataclass(frozen=True, slots=True)
+class ActionAt:
+    """A device action along a stroke.
+
+    Attributes:
+        at: arc length from the stroke's first point, metres.
+        device: identifier of the device; empty: the only one of the robot that supports the action.
+        parameters: (key, value) pairs.
+    """
+
+    at: float
+    action: str
+    device: str = ""
+    parameters: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a device points at on the way: a position, with the angle of BL's Heading in degrees."""
+
+    at: Position
+    device: str = ""
+    angle_degrees: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A stretch of work that is done in one go, in this direction unless reversible.
+
+    Attributes:
+        points: (east, north, up), at least one; consecutive points are joined by straight lines.
+        actions: ordered by arc length.
+        look: orientation on the way and while holding; None: the way the robot goes.
+        speed: largest speed on it, metres per second; None: the robot's cruise.
+        slow_down: factor on the robot's cruise speed, 0 to 1; None: 1. QUICK work has speed=inf.
+        hold: seconds to hold at the last point, after which actions there are done.
+        cuts: arc lengths inside the stroke at which the work may be split, ascending.
+        reversible: whether it may be done from its last point to its first.
+        object: description of an object to go up to after the last point; None: none.
+        object_distance: metres from it at the end; object_tolerance: how far it may be from the
+            last point, metres, None where unknown.
+    """
+
+    points: tuple[Position, ...]
+    actions: tuple[ActionAt, ...] = ()
+    look: Look | None = None
+    speed: float | None = None
+    slow_down: float | None = None
+    hold: float = 0.0
+    cuts: tuple[float, ...] = ()
+    reversible: bool = False
+    object: str | None = None
+    object_distance: float = 0.0
+    object_tolerance: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What area a work covers, for checks and reports.
+
+    Attributes:
+        shell, holes: the polygon asked for, (east, north).
+        target: the parts of it that the robot's clearance leaves, as (shell, holes) polygons.
+        width: of the strip that a stroke covers, metres, centred on the stroke; length: of what one
+            action covers along the way, centred on the action's point; 0 where actions do not matter.
+        unreachable: square metres of the polygon asked for that are outside the target.
+    """
+
+    shell: Ring
+    holes: tuple[Ring, ...]
+    target: tuple[tuple[Ring, tuple[Ring, ...]], ...]
+    width: float
+    length: float
+    unreachable: float
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a task is made of for one kind of robot; says nothing of who, when, or how to get there.
+
+    Attributes:
+        strokes: in an order that is good to follow; hops between them are routed by the planner.
+        divisible: whether several robots, or several sorties, may share the strokes.
+        ordered: whether the strokes must be done in this order.
+        rule: name of the rule that made it.
+        entry: where the first share begins before its first stroke; None: at the first stroke.
+        coverage: for works over an area.
+    """
+
+    strokes: tuple[Stroke, ...]
+    divisible: bool
+    rule: str
+    ordered: bool = True
+    entry: Position | None = None
+    coverage: Coverage | None = None
