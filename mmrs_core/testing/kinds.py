@@ -1,0 +1,159 @@
+"""What models of a metamodel can be made of: which classes fit where, and which trees end."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from math import inf
+
+from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.registry import Registry
+
+Step = tuple[Feature, Metaclass]
+"""A containment, and the class of what is put into it."""
+
+
+class Kinds:
+    """Concrete classes that trees are made of.
+
+    Attributes:
+        height: levels of containment that an element of the class needs at least, by class; inf for
+            those that no finite tree holds.
+    """
+
+    def __init__(self, concrete: Iterable[Metaclass]) -> None:
+        self._concrete = tuple(concrete)
+        self._fitting: dict[tuple[Metaclass, str], tuple[Metaclass, ...]] = {}
+        self.height: Mapping[Metaclass, float] = self._heights()
+
+    def fitting(self, wanted: Metaclass, near: str = "") -> tuple[Metaclass, ...]:
+        """Return the concrete classes whose elements are of a class, lowest first.
+
+        Args:
+            wanted: the class; for Ecore's EObject, which everything is, only classes of one package.
+            near: nsURI of that package.
+        """
+        key = (wanted, near if wanted.key == (ECORE, "EObject") else "")
+        if key not in self._fitting:
+            found = [kind for kind in self._concrete if fits(kind, wanted, near)]
+            self._fitting[key] = tuple(found)
+        return self._fitting[key]
+
+    def growable(self, wanted: Metaclass, near: str, room: float) -> tuple[Metaclass, ...]:
+        """Return the classes among the fitting ones whose elements need no more levels than there is room.
+
+        Where none does, those that need fewest; nothing if none can be finite.
+        """
+        finite = [kind for kind in self.fitting(wanted, near) if self.height[kind] < inf]
+        low = [kind for kind in finite if self.height[kind] <= room]
+        least = min((self.height[kind] for kind in finite), default=inf)
+        return tuple(low or [kind for kind in finite if self.height[kind] == least])
+
+    def inside(self, kinds: Iterable[Metaclass]) -> frozenset[Metaclass]:
+        """Return all classes that can stand in trees whose root is of one of these, themselves included."""
+        found = set(kinds)
+        pending = list(found)
+        while pending:
+            for _, kind in self.steps(pending.pop()):
+                if kind not in found:
+                    found.add(kind)
+                    pending.append(kind)
+        return frozenset(found)
+
+    def steps(self, kind: Metaclass) -> Iterator[Step]:
+        """Yield what can be put where into an element of a class."""
+        for feature in kind.features:
+            if feature.containment and isinstance(feature.type, Metaclass):
+                for inner in self.growable(feature.type, feature.owner.ns_uri, inf):
+                    yield feature, inner
+
+    def way(self, start: Metaclass, wanted: Metaclass, free: Iterable[Feature]) -> tuple[Step, ...]:
+        """Return the shortest way down from an element of a class to one of another; empty if none is.
+
+        Args:
+            start: class of the element that the way begins at.
+            wanted: class that its end is of.
+            free: the containments of that element that have room.
+        """
+        open_features = frozenset(free)
+        first = [(step,) for step in self.steps(start) if step[0] in open_features]
+        pending: deque[tuple[Step, ...]] = deque(first)
+        seen: set[Metaclass] = set()
+        while pending:
+            path = pending.popleft()
+            end = path[-1][1]
+            if fits(end, wanted, end.ns_uri):
+                return path
+            if end not in seen:
+                seen.add(end)
+                pending.extend((*path, step) for step in self.steps(end))
+        return ()
+
+    def _heights(self) -> Mapping[Metaclass, float]:
+        heights = dict.fromkeys(self._concrete, inf)
+        changed = True
+        while changed:
+            changed = False
+            for kind in self._concrete:
+                height = max((1 + self._lowest(each, heights) for each in _needed(kind)), default=0.0)
+                if height < heights[kind]:
+                    heights[kind], changed = height, True
+        return heights
+
+    def _lowest(self, feature: Feature, heights: Mapping[Metaclass, float]) -> float:
+        assert isinstance(feature.type, Metaclass)  # it is a reference
+        return min((heights[each] for each in self.fitting(feature.type, feature.owner.ns_uri)), default=inf)
+
+
+def kinds_below(registry: Registry, root: Metaclass) -> Kinds:
+    """Return the classes that valid trees with such a root can hold.
+
+    Raises:
+        ValueError: if there is no valid tree with such a root; says why.
+    """
+    concrete = [
+        kind for package in registry.everything for kind in package.metaclasses if kind.implementation
+    ]
+    while True:
+        kinds = Kinds(concrete)
+        if kinds.height.get(root, inf) == inf:
+            raise ValueError(f"{root.name}: no finite element of it is valid by itself")
+        inside = kinds.inside([root])
+        lacking = {kind: feature for kind in inside for feature in _unmet(kind, inside)}
+        if root in lacking:
+            feature = lacking[root]
+            raise ValueError(
+                f"{root.name}: no element of it is valid by itself: "
+                f"{feature.name} refers to {feature.type.name}, which cannot stand inside it"
+            )
+        if not lacking:
+            return Kinds(kind for kind in concrete if kind in inside)
+        concrete = [kind for kind in concrete if kind not in lacking]
+
+
+def _unmet(kind: Metaclass, inside: Iterable[Metaclass]) -> Iterator[Feature]:
+    """Yield the references that elements of a class must have, and to which nothing inside the tree fits."""
+    for feature in needed_references(kind):
+        assert isinstance(feature.type, Metaclass)  # it is a reference
+        wanted = feature.type
+        if not any(fits(other, wanted, other.ns_uri) for other in inside):
+            yield feature
+
+
+def needed_references(kind: Metaclass) -> Iterator[Feature]:
+    """Yield the references across the tree that elements of a class must have."""
+    for feature in kind.features:
+        if feature.is_reference and feature.required and not feature.containment and not feature.is_container:
+            yield feature
+
+
+def _needed(kind: Metaclass) -> Iterator[Feature]:
+    return (feature for feature in kind.features if feature.containment and feature.required)
+
+
+def fits(kind: Metaclass, wanted: Metaclass, near: str) -> bool:
+    """Return whether elements of a class are of another; of Ecore's EObject, those of one package are."""
+    if wanted.key == (ECORE, "EObject"):
+        return kind.ns_uri == near
+    return wanted.key in kind.ancestry

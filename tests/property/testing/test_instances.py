@@ -1,0 +1,130 @@
+"""Random instances are valid, and reach all that a metamodel allows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, find, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.element import descendants, held, is_kind, metaclass_of
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.registry import MetamodelSource, registry_with
+from mmrs_core.languages.writing import to_xmi
+from mmrs_core.testing.instances import instances_of
+
+HERE = Path(__file__).parent
+PROJECT = HERE.parents[2]
+RELAXED = settings(
+    deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+KNOTS = "urn:test:knots"
+
+
+@pytest.fixture(scope="module")
+def registry():
+    """The core, the plug-ins, a foreign metamodel, and one whose references are all hard to fill."""
+    files = sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
+    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in files]
+    zoo = MetamodelSource("urn:test:zoo", PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore", "zoo")
+    return registry_with([*sources, zoo, MetamodelSource(KNOTS, HERE / "knots.ecore", "knots")])
+
+
+def whole(root):
+    return [root, *descendants(root)]
+
+
+def an_instance_is_valid(registry, data):
+    package = data.draw(st.sampled_from(registry.packages))
+    root = data.draw(instances_of(registry, package.ns_uri))
+    assert [str(fault) for fault in check_conformance(Model("m", (root,)), registry)] == []
+
+
+@RELAXED
+@given(data=st.data())
+def test_instances_of_every_metamodel_are_valid(registry, data):
+    an_instance_is_valid(registry, data)
+
+
+@pytest.mark.thorough
+@settings(RELAXED, max_examples=2000)
+@given(data=st.data())
+def test_many_instances_of_every_metamodel_are_valid(registry, data):
+    an_instance_is_valid(registry, data)
+
+
+@RELAXED
+@given(data=st.data())
+def test_files_keep_what_makes_an_instance_valid(registry, data):
+    root = data.draw(instances_of(registry, data.draw(st.sampled_from((KNOTS, "urn:mmrs:mission:1.0")))))
+    again = read_text(to_xmi([root], registry), "again.xmi", registry)
+    assert [*again.diagnostics, *check_conformance(again, registry)] == []
+
+
+@pytest.mark.parametrize("feature", ["tight", "pairs", "either", "partner"])
+@RELAXED
+@given(data=st.data())
+def test_references_that_must_lead_somewhere_do(registry, feature, data):
+    root = data.draw(instances_of(registry, KNOTS, "Rope"))
+    for element in whole(root):
+        for each in metaclass_of(element).features:
+            if each.name == feature:
+                assert len(held(element, each)) >= each.lower
+
+
+def found(strategy, wanted):
+    profile = settings(RELAXED, max_examples=2000, database=None, phases=[Phase.generate])
+    return find(strategy, wanted, settings=profile)
+
+
+def test_subclasses_of_other_metamodels_are_drawn_too(registry):
+    tasks = instances_of(registry, "urn:mmrs:mission:1.0", "Task")
+    assert found(tasks, lambda task: is_kind(task, "urn:mmrs:survey:1.0", "RoadTask"))
+
+
+def test_identifiers_differ_in_every_instance(registry):
+    keepers = instances_of(registry, "urn:test:zoo", "Zoo", values=SAME_BADGES)
+    assert found(keepers, lambda zoo: len({k.badge for k in zoo.keepers if k.badge}) > 1)
+
+
+SAME_BADGES = {("http://www.eclipse.org/emf/2002/Ecore", "EString"): st.sampled_from("ab")}
+
+
+@RELAXED
+@given(data=st.data())
+def test_identifiers_are_never_used_twice(registry, data):
+    zoo = data.draw(instances_of(registry, "urn:test:zoo", "Zoo", values=SAME_BADGES))
+    badges = [each.badge for each in whole(zoo) if is_kind(each, "urn:test:zoo", "Keeper") and each.badge]
+    assert len(badges) == len(set(badges))
+
+
+@pytest.mark.parametrize("feature", ["favourites", "star", "anything"])
+def test_references_that_may_lead_somewhere_sometimes_do(registry, feature):
+    zoos = instances_of(registry, "urn:test:zoo", "Zoo")
+    assert found(zoos, lambda zoo: held(zoo, metaclass_of(zoo).feature(feature)))
+
+
+def test_a_class_that_needs_what_cannot_stand_inside_it_is_refused(registry):
+    with pytest.raises(ValueError, match=r"UnicastNotify: .* slot refers to Slot, which cannot stand inside"):
+        instances_of(registry, "urn:mmrs:behaviour:1.0", "UnicastNotify")
+
+
+def test_a_class_that_contains_itself_without_end_is_refused(registry):
+    with pytest.raises(ValueError, match="Endless: no finite element"):
+        instances_of(registry, KNOTS, "Endless")
+
+
+def test_an_abstract_class_without_subclasses_is_refused(registry):
+    with pytest.raises(ValueError, match="no class that elements can be made of"):
+        instances_of(registry, KNOTS, "Ghost")
+
+
+def test_more_levels_make_deeper_trees(registry):
+    def depth(element):
+        return 1 + max((depth(cub) for cub in element.cubs), default=0)
+
+    cubs = instances_of(registry, "urn:test:zoo", "Lion", levels=4)
+    assert found(cubs, lambda lion: depth(lion) > 3)
