@@ -13,9 +13,10 @@ from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.grounding.coordinates import ground_of
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.planning.devices import figure
 from mmrs_core.scene import Position
 from mmrs_survey import names
-from mmrs_survey.camera import IMAGE_KEYS, Footprint, figure
+from mmrs_survey.camera import IMAGE_KEYS, Footprint
 from mmrs_survey.device_checks import devices_for
 
 MANY = 20_000

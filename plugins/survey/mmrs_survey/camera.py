@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.devices import figure
 
 SENSOR_KEYS = ("sensor.width", "sensor.height")
 IMAGE_KEYS = ("image.width", "image.height")
@@ -63,12 +64,3 @@ def footprint_of(properties: Mapping[str, str], distance: float, resolution: flo
             f"{resolution:.4g} m is asked for"
         )
     return seen
-
-
-def figure(properties: Mapping[str, str], key: str) -> float | None:
-    """Return the number above zero that a property holds; None where there is none."""
-    try:
-        found = float(properties[key])
-    except (KeyError, ValueError):
-        return None
-    return found if 0.0 < found < float("inf") else None

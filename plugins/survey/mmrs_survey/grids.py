@@ -7,12 +7,12 @@ from dataclasses import replace
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.coverage import work_over
+from mmrs_core.planning.devices import device_for
+from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
-from mmrs_survey.attributes import holes, number, position, ring, text
+from mmrs_core.scene.attributes import holes, number, position, ring, text
 from mmrs_survey.camera import CAMERA_KEYS, Footprint, footprint_at, footprint_of
-from mmrs_survey.devices import device_for
 from mmrs_survey.names import PHOTO_GRID_TASK
-from mmrs_survey.places import refuse_blocked, refuse_heights
 
 RULE = "photo_grid"
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.devices import device_for
+from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
-from mmrs_survey.attributes import flag, number, position, positions, text
-from mmrs_survey.devices import device_for
+from mmrs_core.scene.attributes import flag, number, position, positions, text
 from mmrs_survey.lines import at_altitude, cuts_between, even_distances, length_of, passes, without_repeats
 from mmrs_survey.names import ROAD_TASK
-from mmrs_survey.places import refuse_blocked, refuse_heights
 
 
 def road_work(task: Task, robot: Robot, scene: Scene) -> Work:

@@ -1,6 +1,8 @@
-"""Which device of a robot does the action that a task asks for."""
+"""Which device of a robot does the action that a task asks for, and what its properties say."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Device, RobotType
@@ -47,3 +49,12 @@ def carried(robot_type: RobotType, device_id: str) -> str:
     if device_id and device_id not in robot_type.devices:
         raise InfeasibleError(f"has no device '{device_id}'")
     return device_id
+
+
+def figure(properties: Mapping[str, str], key: str) -> float | None:
+    """Return the number above zero that a property holds; None where there is none."""
+    try:
+        found = float(properties[key])
+    except (KeyError, ValueError):
+        return None
+    return found if 0.0 < found < float("inf") else None

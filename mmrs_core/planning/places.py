@@ -39,7 +39,7 @@ def refuse_blocked(robot: Robot, scene: Scene, points: Sequence[Position], what:
     Raises:
         InfeasibleError: it does not; names the area and what is short.
     """
-    for area in scene.kept_from():
+    for area in scene.kept_from(robot):
         short = area.safety_distance + robot.clearance - _distance(points, area)
         if short > 1e-6:
             raise InfeasibleError(f"{what} comes {_metres(short)} too near to '{area.name}'")
@@ -75,7 +75,7 @@ def _distance(points: Sequence[Position], area: Area) -> float:
 def _is_clear(robot: Robot, scene: Scene, points: Sequence[Position]) -> bool:
     return all(
         _distance(points, area) >= MARGIN * (area.safety_distance + robot.clearance)
-        for area in scene.kept_from()
+        for area in scene.kept_from(robot)
     )
 
 

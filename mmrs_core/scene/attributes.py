@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TypeGuard
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.scene import Part, Position, Ring, Value
+from mmrs_core.scene.values import Part, Position, Ring, Value
 
 
 def number(part: Part, name: str) -> float | None:
