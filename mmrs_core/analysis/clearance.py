@@ -16,7 +16,7 @@ from math import inf
 import numpy as np
 
 from mmrs_core.analysis.distance import Floats, prism_distances
-from mmrs_core.analysis.figures import half_diagonal_of, type_of
+from mmrs_core.analysis.figures import MissingFigureError, half_diagonal_of, kinematics_of, type_of
 from mmrs_core.analysis.motion import Motion, motions
 from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged, not_checked, safe
 from mmrs_core.behaviour.program import RobotProgram
@@ -40,15 +40,25 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if input.areas is None:
         yield not_checked(NAME, robot, "no context was given")
         return
-    areas = [area for area in input.areas if area.use is not AreaUse.EMERGENCY]
+    areas = [
+        area for area in input.areas if area.use is not AreaUse.EMERGENCY and area.concerns(robot.type_name)
+    ]
     if not areas:
         yield safe(NAME, robot, "nothing in the context is forbidden or in the way")
         return
-    own = half_diagonal_of(type_of(input, robot)) + input.position_error
+    own = half_diagonal_of(type_of(input, robot)) + input.position_error + _turning_radius(input, robot)
     motion = motions(input)[robot.id]
     segments = _segments(motion)
     margins = list(_margins(segments, areas, own)) if segments.moves else []
     yield from judged(NAME, robot, "m", (_described(robot, margin) for margin in margins), motion.gaps)
+
+
+def _turning_radius(input: CheckInput, robot: RobotProgram) -> float:
+    """Return how far from its way the robot may be where it turns; 0 where nobody knows how it moves."""
+    try:
+        return kinematics_of(input, robot).turning_radius
+    except MissingFigureError:
+        return 0.0
 
 
 def _segments(motion: Motion) -> _Segments:

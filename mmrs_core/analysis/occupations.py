@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import dist, hypot, inf
 
@@ -92,7 +92,7 @@ def occupations_of(input: CheckInput, robot: RobotProgram) -> Iterator[Occupatio
     states, times = states_of(input, robot), times_of(input)
     legs: dict[int, list[Leg]] = defaultdict(list)
     for leg in motions(input)[robot.id].legs:
-        legs[leg.move].append(leg)
+        legs[leg.move].append(replace(leg, radius=leg.radius + kinematics.turning_radius))
     for index in sorted(states.before):
         if (robot.id, index) in times.earliest and not states.only_grounded(index):
             for leg in legs[index]:

@@ -10,6 +10,7 @@ from mmrs_core.analysis.constraints import check_behaviour
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import report
+from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import behaviour as bl
@@ -73,7 +74,8 @@ def load_behaviour(
     """
     files = read_behaviour_files(workshop, file, context=context, robots=robots)
     program, behaviour = _valid(workshop, files)
-    return Loaded(program, _place(behaviour, files), _elements(behaviour, files.context))
+    elements = _elements(behaviour, files.context)
+    return Loaded(program, _place(behaviour, files, elements, workshop), elements)
 
 
 def read_behaviour_files(
@@ -163,11 +165,15 @@ def _valid(workshop: Workshop, files: BehaviourFiles) -> tuple[Program, bl.Behav
     return program_of(files.behaviour, workshop.contributions), files.behaviour
 
 
-def _place(behaviour: bl.Behaviour, files: BehaviourFiles) -> Place:
+def _place(
+    behaviour: bl.Behaviour, files: BehaviourFiles, elements: tuple[Part, ...], workshop: Workshop
+) -> Place:
     types = {name: robot_type_of(root) for name, root in files.types.items()}
     if files.context is None:
         return Place(types)
-    return Place(types, _areas(behaviour, files.context), _environment(files.context))
+    barred = barriers(elements, types.values(), workshop.contributions.robot_kinds)
+    areas = (*_areas(behaviour, files.context), *barred)
+    return Place(types, areas, _environment(files.context))
 
 
 def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.scene import (
     ActionAt,
+    Area,
     Kinematics,
     Look,
     Name,
+    Part,
     PolicyEvent,
     PolicyResponse,
     Position,
@@ -88,6 +90,8 @@ class RobotKind:
         recover: moves that bring it down where it is.
         travel: moves along straight legs; the first position is where the robot is.
         policies: response by event, where the models say nothing.
+        barrier: the area that robots of a type keep out of because of an element of the context, such as
+            water that is too deep for them; None where the element does not hinder them.
     """
 
     name: str
@@ -97,6 +101,7 @@ class RobotKind:
     recover: Callable[[], tuple[MoveSpec, ...]]
     travel: Callable[[tuple[Position, ...]], tuple[MoveSpec, ...]]
     policies: Mapping[PolicyEvent, PolicyResponse] = field(default_factory=dict)
+    barrier: Callable[[RobotType, Part], Area | None] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,3 +143,24 @@ def robot_kind_of(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> Rob
     if by_type is None or (by_capability is not None and by_type == ("urn:mmrs:robot:1.0", "Robot")):
         return kinds[by_capability] if by_capability else (kinds[by_type] if by_type else None)
     return kinds[by_type]
+
+
+def barriers(
+    elements: Iterable[Part], types: Iterable[RobotType], kinds: Mapping[Name, RobotKind]
+) -> tuple[Area, ...]:
+    """Return the areas that elements of a context are to robots of certain types only.
+
+    Args:
+        elements: grounded, in the context's order.
+        types: of the robots; sorted here, so that their order does not matter.
+        kinds: of robots, by metaclass.
+    """
+    found = []
+    known = sorted(types, key=lambda each: each.name)
+    for element in elements:
+        for robot_type in known:
+            kind = robot_kind_of(robot_type, kinds)
+            area = kind.barrier(robot_type, element) if kind is not None and kind.barrier else None
+            if area is not None:
+                found.append(replace(area, types=frozenset({robot_type.name})))
+    return tuple(found)

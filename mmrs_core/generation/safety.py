@@ -29,6 +29,11 @@ from mmrs_core.scene import (
 )
 
 
+def areas_of(robot: RobotProgram, input: TargetInput) -> tuple[Area, ...]:
+    """Return the areas that concern a robot."""
+    return tuple(area for area in input.areas if area.concerns(robot.type_name))
+
+
 def fence_of(areas: Iterable[Area]) -> tuple[Ring, ...]:
     """Return the shells that no vehicle may enter at any height, as drawn.
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from mmrs_core.planning.crew import Crew, homebound_of
 from mmrs_core.planning.jobs import Job, is_control
 from mmrs_core.planning.schedule import Schedule, signal_name
-from mmrs_core.planning.sorties import State
+from mmrs_core.planning.states import State
 from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step
 
 _NOTES = (

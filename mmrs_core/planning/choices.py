@@ -8,7 +8,8 @@ from dataclasses import replace
 from mmrs_core.planning.jobs import Choice
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import Run
-from mmrs_core.planning.sorties import Approach, Pilot, Ready, State
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import Approach, Ready, State
 from mmrs_core.scene import Branch, Position
 
 MaterialOf = Callable[[str], "Material | None"]

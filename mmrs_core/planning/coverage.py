@@ -128,7 +128,7 @@ def grown_areas(scene: Scene, robot: Robot, altitude: float) -> list[Polygon]:
     """Return the areas that a robot keeps from at a height, grown by its clearance."""
     return [
         grow(area.shell, area.safety_distance + robot.clearance)
-        for area in scene.kept_from()
+        for area in scene.kept_from(robot)
         if blocks_at(area, robot.clearance, altitude)
     ]
 

@@ -26,13 +26,15 @@ class Rates:
     """Metres per second, level, up and down; a rate that is not positive rules that way out.
 
     Ways are chosen by even speed; plans count time with a standstill at both ends of every leg, speeding
-    up and slowing down at `acceleration`, metres per second squared.
+    up and slowing down at `acceleration`, metres per second squared, and with `shunting`, the seconds that
+    turning takes before a level leg.
     """
 
     cruise: float
     climb: float
     descent: float
     acceleration: float = float("inf")
+    shunting: float = 0.0
 
     def upright(self, rise: float) -> float:
         """Return the seconds of an upright way; inf where it is ruled out."""
@@ -48,7 +50,8 @@ class Rates:
 
     def from_stop_to_stop(self, start: Position, end: Position) -> float:
         """Return the seconds of a straight leg that begins and ends at a standstill."""
-        return self._with_stops(dist(start, end), self.leg(start, end))
+        turning = self.shunting if start[:2] != end[:2] else 0.0
+        return turning + self._with_stops(dist(start, end), self.leg(start, end))
 
     def rise(self, metres: float) -> float:
         """Return the seconds of an upright way that begins and ends at a standstill."""

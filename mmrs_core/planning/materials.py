@@ -9,7 +9,8 @@ from math import inf
 
 from mmrs_core.errors import UnreachableError
 from mmrs_core.planning.pacing import paced
-from mmrs_core.planning.sorties import Approach, Pilot
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import Approach
 from mmrs_core.planning.strokes import (
     approach_speed,
     can_turn,

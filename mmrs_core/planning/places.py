@@ -25,6 +25,8 @@ def refuse_heights(robot: Robot, points: Iterable[Position]) -> None:
         return
     floor, ceiling = robot.kinematics.floor, robot.kinematics.ceiling
     for _, _, up in points:
+        if floor == ceiling and abs(up - floor) > 1e-6:
+            raise InfeasibleError(f"stays on its level at {_metres(floor)}, cannot get to {_metres(up)}")
         if up > ceiling + 1e-6:
             raise InfeasibleError(
                 f"{_metres(up)} is {_metres(up - ceiling)} above the ceiling {_metres(ceiling)}"

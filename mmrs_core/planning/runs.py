@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from mmrs_core.planning.materials import Material
-from mmrs_core.planning.sorties import Pilot, Ready, State
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import Ready, State
 
 _ANY_TIME = Ready()
 
@@ -136,7 +137,7 @@ class Run:
         lead = state.lead + material.lead(sortie.first, portion)
         if not self._record:
             seconds = material.seconds(sortie.first, portion)
-            return replace(self._pilot.skip(state, seconds, 0.0, material.last(portion)), lead=lead)
+            return replace(state.later(seconds, 0.0, material.last(portion)), lead=lead)
         strokes = material.strokes(sortie.first, portion)
         for i, stroke in enumerate(strokes):
             state = self._pilot.hop(state, stroke, material.task)

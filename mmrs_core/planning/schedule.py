@@ -12,7 +12,7 @@ from mmrs_core.planning.crew import Crew
 from mmrs_core.planning.jobs import Job
 from mmrs_core.planning.runs import Run
 from mmrs_core.planning.sharing import Candidate, Sharing, share_out
-from mmrs_core.planning.sorties import Ready, State
+from mmrs_core.planning.states import Ready, State
 from mmrs_core.planning.turns import Done, Part, States, in_turns, turn_of
 from mmrs_core.scene import Task
 

@@ -9,7 +9,8 @@ from math import dist, inf
 
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import Run
-from mmrs_core.planning.sorties import Pilot, Ready, State
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import Ready, State
 
 _HALVINGS = 12
 _CLOSE = 4e-3

@@ -7,84 +7,17 @@ against the wind or current times time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from math import inf
-from typing import TypeAlias
 
 from mmrs_core.errors import UnreachableError
+from mmrs_core.planning.states import Approach, Ready, State
 from mmrs_core.planning.strokes import approach_speed, commanded_speed, length_of, serve_seconds
 from mmrs_core.planning.travel import Travel, Way
-from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Step, Stroke, Transit
-
-Trail: TypeAlias = "tuple[Trail, Step] | None"
+from mmrs_core.scene import Await, Launch, Position, Recharge, Recover, Serve, Stroke, Transit
 
 _SAME = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """Where a robot is in its plan.
-
-    Attributes:
-        time: seconds after the mission's start.
-        at: where it is.
-        away: whether it has left home since it was last there to stay.
-        used: seconds on this charge.
-        lead: seconds by which it may be here earlier.
-        length: metres travelled. busy: seconds away from home. sorties: times it left home.
-        trail: its steps so far, last one first.
-    """
-
-    time: float
-    at: Position
-    away: bool = False
-    used: float = 0.0
-    lead: float = 0.0
-    length: float = 0.0
-    busy: float = 0.0
-    sorties: int = 0
-    trail: Trail = None
-
-    def steps(self) -> tuple[Step, ...]:
-        """Return the steps so far, in order."""
-        return tuple(reversed(list(_backwards(self.trail))))
-
-
-def _backwards(trail: Trail) -> Iterator[Step]:
-    while trail is not None:
-        trail, step = trail
-        yield step
-
-
-@dataclass(frozen=True, slots=True)
-class Ready:
-    """What must have happened before a share of work may begin.
-
-    Attributes:
-        time: seconds, by when the signals will have been given; soonest: when that may be.
-        signals: that it waits for.
-        earliest: seconds before which it may not begin by the clock; None: none.
-    """
-
-    time: float = 0.0
-    signals: tuple[str, ...] = ()
-    earliest: float | None = None
-    soonest: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Approach:
-    """How a robot comes to a piece of work.
-
-    Attributes:
-        via: places to go to; all ways but the first one are within the task. The last is where the work
-            begins.
-        speed: commanded, metres per second; None: the robot's cruise.
-    """
-
-    via: tuple[Position, ...]
-    speed: float | None = None
 
 
 class Pilot:
@@ -241,32 +174,12 @@ class Pilot:
         end = state.time + way.seconds
         if len(way.route) > 1 and way.route[0] != way.route[-1]:
             trail = (trail, Transit(time, end, task, way.route, speed))
-        return replace(
-            state,
-            time=end,
-            at=goal,
-            away=True,
-            used=state.used + way.seconds,
-            lead=state.lead + way.lead,
-            length=state.length + way.length,
-            busy=state.busy + way.seconds,
-            sorties=state.sorties + 1,
-            trail=trail,
-        )
+        return replace(state.after(way, goal, trail), sorties=state.sorties + 1)
 
     def _follow(self, state: State, way: Way, task: str, speed: float | None) -> State:
         way = self.travel.at_speed(way, speed)
-        end = state.time + way.seconds
-        return replace(
-            state,
-            time=end,
-            at=way.route[-1],
-            used=state.used + way.seconds,
-            lead=state.lead + way.lead,
-            length=state.length + way.length,
-            busy=state.busy + way.seconds,
-            trail=(state.trail, Transit(state.time, end, task, way.route, speed)),
-        )
+        step = Transit(state.time, state.time + way.seconds, task, way.route, speed)
+        return state.after(way, way.route[-1], (state.trail, step))
 
     def hop(self, state: State, stroke: Stroke, task: str) -> State:
         """Return the state after the quickest way to the next stroke of a task."""
@@ -292,20 +205,8 @@ class Pilot:
         speed = commanded_speed(stroke, self.kinematics)
         end = state.time + seconds
         step = Serve(state.time, end, task, stroke, speed, rule, first, last)
-        return replace(
-            self.skip(state, seconds, length_of(stroke.points), stroke.points[-1]), trail=(state.trail, step)
-        )
-
-    def skip(self, state: State, seconds: float, length: float, at: Position) -> State:
-        """Return the state so many seconds and metres later, without steps."""
-        return replace(
-            state,
-            time=state.time + seconds,
-            at=at,
-            used=state.used + seconds,
-            length=state.length + length,
-            busy=state.busy + seconds,
-        )
+        done = state.later(seconds, length_of(stroke.points), stroke.points[-1])
+        return replace(done, trail=(state.trail, step))
 
     def home(self, state: State, task: str = "") -> State:
         """Return the state at home, after recovery.
@@ -350,17 +251,7 @@ class Pilot:
             trail = (trail, Transit(state.time, end - down, task, way.route))
         if self.kinematics.launches:
             trail = (trail, Recover(end - down, end, task, last, at[2]))
-        return replace(
-            state,
-            time=end,
-            at=at,
-            away=False,
-            used=state.used + way.seconds,
-            lead=state.lead + way.lead,
-            length=state.length + way.length,
-            busy=state.busy + way.seconds,
-            trail=trail,
-        )
+        return replace(state.after(way, at, trail), away=False)
 
     def _recharged(self, state: State, task: str) -> State:
         end = state.time + (self.kinematics.recharge or 0.0)

@@ -59,7 +59,7 @@ def serve_seconds(stroke: Stroke, robot: Robot, kinematics: Kinematics) -> float
 
 def rates_of(kinematics: Kinematics, speed: float) -> Rates:
     """Return the rates of a robot at a commanded speed, metres per second."""
-    return Rates(speed, kinematics.climb, kinematics.descent, kinematics.acceleration)
+    return Rates(speed, kinematics.climb, kinematics.descent, kinematics.acceleration, kinematics.shunting)
 
 
 def stops_of(stroke: Stroke) -> list[Position]:

@@ -36,19 +36,21 @@ class Way:
 
 
 class Spaces:
-    """The spaces of a scene's robots; robots of one clearance, band and speed share theirs."""
+    """The spaces of a scene's robots; robots of one clearance, band, speed and surroundings share theirs."""
 
     def __init__(self, scene: Scene) -> None:
-        self._areas = tuple(scene.kept_from())
-        self._spaces: dict[tuple[float, float, float, Rates], Space] = {}
+        self._scene = scene
+        self._spaces: dict[tuple[float, float, float, Rates, frozenset[int]], Space] = {}
 
     def of(self, robot: Robot) -> Space:
         """Return the space of a robot whose kinematics are known."""
         kinematics = kinematics_of(robot)
-        rates = Rates(kinematics.cruise, kinematics.climb, kinematics.descent, kinematics.acceleration)
-        key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates)
+        rates = rates_of(kinematics, kinematics.cruise)
+        areas = tuple(self._scene.kept_from(robot))
+        alike = frozenset(map(id, areas))
+        key = (robot.clearance, kinematics.floor, kinematics.ceiling, rates, alike)
         if key not in self._spaces:
-            self._spaces[key] = Space(self._areas, *key[:3], rates=rates)
+            self._spaces[key] = Space(areas, *key[:3], rates=rates)
         return self._spaces[key]
 
 
@@ -155,9 +157,8 @@ class Travel:
         return Way(route, self.space.seconds(route), length_of(route), lead=lead)
 
     def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
-        if not self.fluid:
-            return 0.0
-        return sum(rates.from_stop_to_stop(*leg) - rates.leg(*leg) for leg in pairwise(route))
+        quickest = rates.leg if self.fluid else replace(rates, shunting=0.0).from_stop_to_stop
+        return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
 
     def _outward(self, goal: Position) -> Way | str:
         if not self.kinematics.launches:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_core.planning.materials import Material
 from mmrs_core.planning.runs import Run
-from mmrs_core.planning.sorties import Pilot, Ready, State
+from mmrs_core.planning.sorties import Pilot
+from mmrs_core.planning.states import Ready, State
 
 _BETWEEN = 1.0
 """Seconds from one robot's coming home to the next one's leaving: times follow from rounded places."""

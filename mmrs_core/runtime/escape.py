@@ -20,7 +20,8 @@ class Escapes:
 
     def __init__(self, given: BackendInput, kinematics: Kinematics, home: Position) -> None:
         self._given, self._kinematics, self._home = given, kinematics, home
-        self._clearance = given.type.half_diagonal + given.program.position_error
+        own = given.type.half_diagonal + given.program.position_error
+        self._clearance = own + kinematics.turning_radius
 
     def straight(self, response: str, here: Position) -> tuple[Position, ...]:
         """Return the way as if nothing stood in it; `here` alone where the robot stays."""
@@ -76,7 +77,8 @@ class Escapes:
         return Space(kept_from, self._clearance, self._kinematics.floor, self._kinematics.ceiling)
 
     def _areas(self, use: AreaUse) -> tuple[Area, ...]:
-        return tuple(area for area in self._given.areas if area.use is use)
+        concerned = self._given.type.name
+        return tuple(area for area in self._given.areas if area.use is use and area.concerns(concerned))
 
     def _keep(self, area: Area) -> float:
         return area.safety_distance + self._clearance

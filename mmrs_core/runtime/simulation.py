@@ -173,6 +173,8 @@ class SimulatedRobot:
             return
         if len(path) == 1:
             found = (self._turning(move, found[0], bounds),)
+        elif stops == 2 and kinematics.turning_radius > 0.0:
+            found = (*self._shunted(found[0]), *found)
         self._append(found, now, move.heading, free=move.is_a(RECHARGE))
         if all(bearing(each.start, each.finish) is None for each in found):
             self._hold_against_wind(sum(each.seconds for each in found))
@@ -185,6 +187,13 @@ class SimulatedRobot:
         seconds = abs(turn(self._legs[-1].headings[1], goal)) / self._kinematics.turn_rate
         seconds = min(max(seconds, bounds[0]), bounds[1])
         return Stretch(stretch.start, stretch.finish, seconds, stretch.rate)
+
+    def _shunted(self, first: Stretch) -> tuple[Stretch, ...]:
+        """Return the stay in which a robot that cannot turn on the spot comes round to where it goes."""
+        goal = bearing(first.start, first.finish)
+        angle = 0.0 if goal is None else abs(turn(self._legs[-1].headings[1], goal))
+        seconds = angle / self._kinematics.turn_rate
+        return (Stretch(first.start, first.start, seconds, 1.0),) if seconds > 0.0 else ()
 
     def _append(
         self, found: tuple[Stretch, ...], now: float, look: Heading | None = None, *, free: bool = False

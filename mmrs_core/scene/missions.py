@@ -84,6 +84,10 @@ class Scene:
         """Return the robot of that name."""
         return next(robot for robot in self.robots if robot.name == name)
 
-    def kept_from(self) -> Iterator[Area]:
-        """Yield the areas that robots keep away from: forbidden ones and obstacles."""
-        return (area for area in self.areas if area.use is not AreaUse.EMERGENCY)
+    def kept_from(self, robot: Robot) -> Iterator[Area]:
+        """Yield the areas that a robot keeps away from: forbidden ones, obstacles, ground it cannot pass."""
+        return (
+            area
+            for area in self.areas
+            if area.use is not AreaUse.EMERGENCY and area.concerns(robot.type.name)
+        )

@@ -28,6 +28,7 @@ class Area:
         low: height of its lower side above the origin, metres; -inf where unlimited.
         high: height of its upper side; inf where unlimited.
         safety_distance: distance to keep from each side, metres, zero or more.
+        types: names of the robot types that it concerns; None: all.
     """
 
     name: str
@@ -37,6 +38,11 @@ class Area:
     high: float = inf
     safety_distance: float = 0.0
     part: Part = field(default_factory=lambda: Part((), {}))
+    types: frozenset[str] | None = None
+
+    def concerns(self, robot_type: str) -> bool:
+        """Return whether robots of the type of that name must heed the area."""
+        return self.types is None or robot_type in self.types
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,6 +105,8 @@ class Kinematics:
             at the end (a drone does; an underwater vehicle or rover does not).
         own_speed: largest speed through the air or the water that it moves in, metres per second;
             `fastest` is what is left of it against the wind or the current. None: nothing is lost.
+        turning_radius: of its narrowest curve, metres; 0: it turns on the spot. Else it shunts where it
+            stops: it keeps within so far of that place, and takes up to 180° / `turn_rate`.
     """
 
     cruise: float
@@ -125,6 +127,15 @@ class Kinematics:
     recharge: float | None = None
     launches: bool = False
     own_speed: float | None = None
+    turning_radius: float = 0.0
+
+    @property
+    def shunting(self) -> float:
+        """Return the longest time to turn before a leg, seconds; 0 for robots that turn on the spot.
+
+        These turn while they set out, which is not counted.
+        """
+        return 180.0 / self.turn_rate if self.turning_radius > 0.0 else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +145,8 @@ class Robot:
     Attributes:
         name: unique in the team.
         kind: name of its robot kind; empty until the scene is expanded.
-        clearance: half the robot's diagonal plus the mission's position error, metres; the safety
-            distance of each area comes on top.
+        clearance: half the robot's diagonal plus the mission's position error, metres, and once it is
+            expanded the radius that it turns in; the safety distance of each area comes on top.
         kinematics: None until the scene is expanded.
     """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from mmrs_core.contributions.rules import RobotKind, Rule, most_specific, robot_kind_of
+from mmrs_core.contributions.rules import RobotKind, Rule, barriers, most_specific, robot_kind_of
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Device, Kinematics, Name, Robot, Scene, Task, Work
 from mmrs_core.transformation.fitness import out_of_reach, unfit
@@ -15,14 +15,16 @@ CONTROL_TASK = ("urn:mmrs:mission:1.0", "ControlTask")
 
 
 def expand(scene: Scene, rules: Mapping[Name, Rule], robot_kinds: Mapping[Name, RobotKind]) -> Scene:
-    """Return the scene with every robot's kinematics, and the work of every task for every robot.
+    """Return the scene with every robot's kinematics and barriers, and the work of every task for each.
 
     Raises:
         InfeasibleError: if a task can be done by no robot, or a robot is of no known kind; lists all
             of them, each with the reason for each robot.
     """
     robots = tuple(_with_kinematics(robot, scene, robot_kinds) for robot in scene.robots)
-    scene = replace(scene, robots=robots)
+    types = {robot.type.name: robot.type for robot in robots}
+    barred = barriers(scene.elements, types.values(), robot_kinds)
+    scene = replace(scene, robots=robots, areas=(*scene.areas, *barred))
     works: dict[tuple[str, str], Work] = {}
     refusals: dict[tuple[str, str], str] = {}
     for task in scene.tasks:
@@ -41,9 +43,11 @@ def _with_kinematics(robot: Robot, scene: Scene, kinds: Mapping[Name, RobotKind]
             f"robot '{robot.name}': no installed plug-in knows how robots of type '{robot.type.name}' move"
         )
     try:
-        return replace(robot, kind=kind.name, kinematics=kind.kinematics(robot, scene))
+        kinematics = kind.kinematics(robot, scene)
     except InfeasibleError as error:
         raise InfeasibleError(f"robot '{robot.name}': {error}") from error
+    clearance = robot.clearance + kinematics.turning_radius
+    return replace(robot, kind=kind.name, kinematics=kinematics, clearance=clearance)
 
 
 def _expand_task(

@@ -26,7 +26,7 @@ class Corners:
     """
 
     def __init__(self, robot: Robot, scene: Scene, chain: Chain) -> None:
-        areas = list(scene.kept_from())
+        areas = list(scene.kept_from(robot))
         self._shapes = np.array([shapely.Polygon(area.shell) for area in areas], dtype=object)
         self._keep = np.array([area.safety_distance + robot.clearance for area in areas])
         self._robot, self._chain = robot, chain
@@ -47,6 +47,8 @@ class Corners:
             return False
         if start is not None and _turn(start, corner, end) < STRAIGHT:
             return True
+        if self._robot.kinematics is not None and self._robot.kinematics.turning_radius > 0.0:
+            return False
         return self._is_clear(corner, first.spec.speed)
 
     def _is_clear(self, corner: Position, speed: float | None) -> bool:

@@ -151,14 +151,16 @@ def stopping_seconds(start: Position, end: Position, speed: float, kinematics: K
     """Return how long a straight leg takes that begins and ends at a standstill.
 
     The robot speeds up and slows down at its largest acceleration, and may be too near to get up to speed.
+    One that cannot turn on the spot may have to turn right round first.
     """
     even, length = leg_seconds(start, end, speed, kinematics), dist(start, end)
     if even <= 0.0:
         return even
     pace = length / even
+    turning = kinematics.shunting if start[:2] != end[:2] else 0.0
     if length >= pace**2 / kinematics.acceleration:
-        return even + pace / kinematics.acceleration
-    return 2.0 * sqrt(length / kinematics.acceleration)
+        return turning + even + pace / kinematics.acceleration
+    return turning + 2.0 * sqrt(length / kinematics.acceleration)
 
 
 def path_seconds(
@@ -167,12 +169,13 @@ def path_seconds(
     """Return how long a move along a path takes at its commanded or its robot's cruise speed.
 
     The robot stops after every leg; where the move flows into the next or out of the one before, it may
-    be as quick as at even speed.
+    be as quick as at even speed. One that cannot turn on the spot may go the right way already.
     """
     speed = min(max(move.speed or kinematics.cruise, kinematics.slowest), kinematics.fastest)
     whole = sum(stopping_seconds(a, b, speed, kinematics) for a, b in pairwise(path))
     if not move.flows:
-        return whole, whole
+        turning = sum(kinematics.shunting for a, b in pairwise(path) if a[:2] != b[:2])
+        return whole - turning, whole
     return sum(leg_seconds(a, b, speed, kinematics) for a, b in pairwise(path)), whole
 
 

@@ -177,7 +177,7 @@ def _robot_faults(scene, robot, plan):
 def keeps_clear(scene, robot, points, faults, step=0.5):
     """Add a fault for each area that a polyline, sampled every half metre, comes too near to."""
     line = list(points) if len(points) > 1 else [points[0], points[0]]
-    for area in scene.kept_from():
+    for area in scene.kept_from(robot):
         shape, needed = shapely.Polygon(area.shell), area.safety_distance + robot.clearance
         for one, two in pairwise(line):
             places = np.linspace(one, two, int(dist(one, two) / step) + 2)

@@ -15,6 +15,7 @@ from mmrs_core.generation.mavlink.actions import action_of
 from mmrs_core.generation.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.generation.mavlink.runs import Run, runs_of
 from mmrs_core.generation.safety import (
+    areas_of,
     clearance_of,
     escape_from,
     explicit,
@@ -49,7 +50,7 @@ class RobotView:
 
 def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     """Return a robot as the template sees it."""
-    areas, program = input.areas, input.program
+    areas, program = areas_of(robot, input), input.program
     clearance = clearance_of(input.types.get(robot.type_name), program.position_error)
     geographic = not program.frame.is_local
     fence, points = (fence_of(areas), refuges(areas, clearance)) if geographic else ((), ())
@@ -181,7 +182,7 @@ def _escapes(
     for move in context.robot.moves:
         if move.target is None or move.target.position is None:
             continue
-        place = escape_from(move.target.position, points, input.areas, clearance)
+        place = escape_from(move.target.position, points, areas_of(context.robot, input), clearance)
         if place is not None:
             yield move.id, place_of(place, context)
 

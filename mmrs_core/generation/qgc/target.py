@@ -13,7 +13,7 @@ from mmrs_core.generation.escaping import file_stems
 from mmrs_core.generation.qgc.flight import sorties_of
 from mmrs_core.generation.qgc.items import Item, item_json
 from mmrs_core.generation.qgc.refusals import refusals
-from mmrs_core.generation.safety import clearance_of, fence_of, refuges
+from mmrs_core.generation.safety import areas_of, clearance_of, fence_of, refuges
 from mmrs_core.generation.vehicles import capability_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Point, Position
@@ -51,6 +51,7 @@ def plan_of(
     """
     frame = input.program.frame
     clearance = clearance_of(context.type, input.program.position_error)
+    areas = areas_of(context.robot, input)
     return {
         "fileType": "Plan",
         "version": 1,
@@ -68,9 +69,9 @@ def plan_of(
         "geoFence": {
             "version": 2,
             "circles": [],
-            "polygons": [_polygon(ring, context) for ring in fence_of(input.areas)],
+            "polygons": [_polygon(ring, context) for ring in fence_of(areas)],
         },
-        "rallyPoints": {"version": 2, "points": _rally(context, refuges(input.areas, clearance), sortie)},
+        "rallyPoints": {"version": 2, "points": _rally(context, refuges(areas, clearance), sortie)},
     }
 
 

@@ -80,8 +80,9 @@ def test_the_simulated_run_lasts_about_as_long_as_planned(example, run_of):
 
 def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
     for name, track in run_of(example).tracks.items():
-        clearance = example.scene.robot(name).clearance
-        for area in example.scene.kept_from():
+        robot = example.scene.robot(name)
+        clearance = robot.clearance
+        for area in example.scene.kept_from(robot):
             shape = shapely.Polygon(area.shell)
             kept = area.safety_distance + clearance
             for sample in track:

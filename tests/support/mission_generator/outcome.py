@@ -111,8 +111,8 @@ def _intrusions(scene, tracks):
     Below and above an obstacle the vertical distance alone is looked at, which is never more than
     what was asked for.
     """
-    areas = list(scene.kept_from())
     for name, track in tracks.items():
+        areas = list(scene.kept_from(scene.robot(name)))
         own = scene.robot(name).clearance
         points = np.array([(sample.east, sample.north, sample.up) for sample in track])
         for area in areas:
@@ -176,7 +176,7 @@ def _target(scene, task, robots):
     holes = [[point[:2] for point in ring.attributes["points"]] for ring in attributes["holes"]]
     target = shapely.Polygon(shell, holes)
     own = max(scene.robot(name).clearance for name in robots)
-    for area in scene.kept_from():
+    for area in scene.kept_from(scene.robot(min(robots))):
         keep = own + area.safety_distance
         if area.low - keep < attributes["altitude"] < area.high + keep:
             target = target.difference(shapely.Polygon(area.shell).buffer(keep, quad_segs=64))
