@@ -15,7 +15,8 @@ SQUARE = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0))
 
 
 def robot_type(name):
-    return RobotType(name, (ROBOT,), (), 0.5, None, (Capability(0.0, None, (0.0, 1.0)),), (), {}, Part((), {}))
+    capability = Capability(0.0, None, (0.0, 1.0))
+    return RobotType(name, (ROBOT,), (), 0.5, None, (capability,), (), {}, Part((), {}))
 
 
 def robot(name):
