@@ -1,4 +1,4 @@
-"""Models from XMI files: all faults reported, nothing fetched, nothing opened outside the project."""
+"""Models from XMI and JSON: all faults reported, nothing fetched, nothing opened outside the project."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Source
+from mmrs_core.languages.json_form.reader import JsonReader
+from mmrs_core.languages.json_form.tree import Tree, is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.resolution import resolve
@@ -47,9 +49,13 @@ class Reading:
 
     def parse(self, data: bytes, source: Source) -> Draft:
         """Read the text of a file; errors as in `open`."""
-        document, draft = Document(data, source.file), Draft(source)
+        draft = Draft(source)
         with _collector_at_rest():
-            document.parse(XmiReader(document, draft, self._registry))
+            if is_json(data, source.file):
+                JsonReader(Tree(data, source.file), draft, self._registry).read()
+            else:
+                document = Document(data, source.file)
+                document.parse(XmiReader(document, draft, self._registry))
         source.roots = tuple(draft.roots)
         self._unresolved.append(draft)
         return draft
@@ -87,7 +93,7 @@ def read_model(path: Path, registry: Registry, *, root: Path | None = None) -> M
     """Return the model in a file, and every fault of it.
 
     Args:
-        path: an XMI file.
+        path: an XMI file, or a JSON file by its ending or its content.
         registry: the metamodels it may use.
         root: the folder that references to other files must not leave; by default the file's own.
 
@@ -104,7 +110,7 @@ def read_text(data: bytes, file: str, registry: Registry) -> Model:
     """Return the model in a text, which messages call ``file``; references to other files are refused.
 
     Raises:
-        UnreadableError: if it is not well-formed XML, has a DOCTYPE, or nests too deeply.
+        UnreadableError: if it is not well-formed XML or JSON, has a DOCTYPE, or nests too deeply.
     """
     if not isinstance(data, bytes):
         raise UnreadableError(f"{file}: expected bytes, not {type(data).__name__}")

@@ -1,4 +1,4 @@
-"""Models into XMI files: deterministic, and never half a file."""
+"""Models into files, XMI or JSON: deterministic, and never half a file."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.writer import XmiWriter
 
@@ -34,6 +35,17 @@ def to_xmi(
     return XmiWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
 
 
+def to_json(
+    roots: Sequence[Element],
+    registry: Registry,
+    *,
+    schema_location: Mapping[str, str] | None = None,
+    file: Path | None = None,
+) -> bytes:
+    """Return the text of a model in our JSON form, in UTF-8; arguments and errors as in `to_xmi`."""
+    return JsonWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
+
+
 def write_model(
     roots: Sequence[Element],
     path: Path,
@@ -41,13 +53,14 @@ def write_model(
     *,
     schema_location: Mapping[str, str] | None = None,
 ) -> None:
-    """Write a model into a file, whole or not at all.
+    """Write a model into a file, whole or not at all: as JSON if its name ends in ``.json``, else as XMI.
 
     Raises:
         ValueError: as `to_xmi`; nothing is written then.
         OSError: if the folder cannot be written to; the file is as it was before.
     """
-    replace_file(path, to_xmi(roots, registry, schema_location=schema_location, file=path))
+    text = to_json if path.suffix.lower() == ".json" else to_xmi
+    replace_file(path, text(roots, registry, schema_location=schema_location, file=path))
 
 
 def replace_file(path: Path, data: bytes) -> None:

@@ -1,0 +1,66 @@
+"""Values of attributes between memory and JSON: numbers and truth values plain, all else as text."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from decimal import Decimal
+
+from mmrs_core.languages.datatypes import DataType, shown
+from mmrs_core.languages.json_form.tree import Node, Number
+from mmrs_core.languages.metaclass import Enumeration
+
+_EXACT = 2**53
+"""Beyond this, many readers of JSON round whole numbers."""
+_CHARACTERS = ("char", "java.lang.Character")
+_LONE = re.compile("[\ud800-\udfff]")
+
+
+def quoted(text: str) -> str:
+    """Return a text as JSON writes it; halves of surrogate pairs as escapes, since no UTF-8 holds them."""
+    written = json.dumps(text, ensure_ascii=False)
+    return _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)
+
+
+def written(kind: DataType | Enumeration, value: object) -> str:
+    """Return a value as it stands in a file; `kind` must accept it."""
+    if isinstance(kind, Enumeration):
+        return quoted(kind.render(value))
+    if kind.java_class in _CHARACTERS:
+        return quoted(str(value))
+    if kind.python is bool:
+        return "true" if value else "false"
+    if kind.python is float and math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
+        return repr(float(value))  # type: ignore[arg-type]
+    if kind.python is int and abs(int(value)) < _EXACT:  # type: ignore[call-overload]
+        return str(value)
+    return quoted(kind.render(value))
+
+
+def parsed(kind: DataType | Enumeration, value: object) -> object:
+    """Return the value that a file states, for an attribute of that type; null is not asked about.
+
+    Raises:
+        ValueError: if the type does not allow it; the message begins with the value.
+    """
+    if isinstance(value, bool):
+        if isinstance(kind, DataType) and kind.python is bool:
+            return value
+        raise ValueError(f"{'true' if value else 'false'}: not of the type {kind.name}")
+    if isinstance(value, Number):
+        return _number(kind, value)
+    if not isinstance(value, str):
+        what = "an object" if isinstance(value, Node) else "a list" if isinstance(value, list) else "null"
+        raise ValueError(f"{what}: not a value of the type {kind.name}")
+    if isinstance(kind, DataType) and kind.java_class in _CHARACTERS and len(value) == 1:
+        return value
+    return kind.parse(value)
+
+
+def _number(kind: DataType | Enumeration, value: Number) -> object:
+    if isinstance(kind, DataType) and (
+        kind.python in (int, float, Decimal) or kind.java_class in _CHARACTERS
+    ):
+        return kind.parse(str(value))
+    raise ValueError(f"{shown(str(value))}: a number, not of the type {kind.name}; write it in quotes")

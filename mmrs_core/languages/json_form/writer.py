@@ -1,0 +1,164 @@
+"""From elements to JSON: one object an element, short ones on one line, no defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
+from mmrs_core.languages.json_form.layout import formatted, laid_out
+from mmrs_core.languages.json_form.reader import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
+from mmrs_core.languages.json_form.unknown import stated
+from mmrs_core.languages.json_form.values import quoted, written
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.addresses import Addresses
+from mmrs_core.languages.registry import Registry
+
+_Children = tuple[Feature, tuple[object, ...]]
+_Piece = str | tuple[Element, Feature | None, int]
+"""What is still to be written: text, or an element with how deep it stands."""
+
+
+class JsonWriter:
+    """Writes one document."""
+
+    def __init__(self, roots: Sequence[Element], registry: Registry, file: Path | None) -> None:
+        self._roots = roots
+        self._registry = registry
+        self._addresses = Addresses(roots, file)
+        self._prefixes: dict[str, str] = {}
+        self._pieces: list[str] = []
+
+    def document(self, schema_location: Mapping[str, str]) -> str:
+        """Return the whole text.
+
+        Raises:
+            ValueError: if a value has the wrong type, or a reference leads to an element in no file.
+        """
+        single = len(self._roots) == 1 and not isinstance(self._roots[0], Unknown)
+        body = self._only(self._roots[0]) if single else self._several()
+        self._write(body[::-1])
+        used = sorted((prefix, ns_uri) for ns_uri, prefix in self._prefixes.items())
+        head = [f'  "{LANGUAGES}": {_entries(used)},\n'] if used else []
+        head += [f'  "{PLACES}": {_entries(sorted(schema_location.items()))},\n'] if schema_location else []
+        return "{\n" + "".join(head) + "".join(self._pieces) + "\n}\n"
+
+    def _only(self, root: Element) -> list[_Piece]:
+        return self._lines(*self._said(root, None), 0)
+
+    def _several(self) -> list[_Piece]:
+        jobs: list[_Piece] = [f'  "{ROOTS}": [']
+        for index, root in enumerate(self._roots):
+            jobs += [",\n    " if index else "\n    ", (root, None, 2)]
+        return [*jobs, "\n  ]" if self._roots else "]"]
+
+    def _write(self, jobs: list[_Piece]) -> None:
+        while jobs:
+            job = jobs.pop()
+            if isinstance(job, str):
+                self._pieces.append(job)
+            else:
+                self._element(*job, jobs)
+
+    def _element(self, element: Element, feature: Feature | None, depth: int, jobs: list[_Piece]) -> None:
+        if isinstance(element, Unknown):
+            node = stated(element, lambda name: self._short(name, element._mmrs_scope))
+            self._pieces.append(formatted(node, depth))
+            return
+        members, children = self._said(element, feature)
+        if not children:
+            self._pieces.append(laid_out(members, depth))
+            return
+        pieces = ["{\n", *self._lines(members, children, depth), "\n" + "  " * depth + "}"]
+        jobs.extend(reversed(pieces))
+
+    def _said(self, element: Element, feature: Feature | None) -> tuple[list[str], list[_Children]]:
+        """Return the members that hold plain values, and those that hold elements."""
+        metaclass = metaclass_of(element)
+        members: list[str] = []
+        if feature is None or metaclass is not feature.type:
+            prefix = self._prefix(metaclass.ns_uri, self._registry.package(metaclass.ns_uri).prefix)
+            members.append(f'"{TYPE}": {quoted(f"{prefix}:{metaclass.name}")}')
+        identifier = self._addresses.identifier(element)
+        if identifier is not None:
+            members.append(f'"{ID}": {quoted(identifier)}')
+        children: list[_Children] = []
+        for each in metaclass.features:
+            if not each.stored or each.is_container or not holds(element, each):
+                continue
+            if each.containment:
+                children.append((each, held(element, each)))
+            else:
+                members.append(f"{_key(each)}: {self._plain(element, each, held(element, each))}")
+        return members, children
+
+    def _lines(self, members: list[str], children: list[_Children], depth: int) -> list[_Piece]:
+        """Return what stands between the braces of an object, a line for each member."""
+        margin = "  " * (depth + 1)
+        pieces: list[_Piece] = [",\n".join(margin + member for member in members)]
+        for feature, values in children:
+            pieces.append(f"{',' + chr(10) if pieces[-1] else ''}{margin}{_key(feature)}: ")
+            pieces += self._contained(feature, values, depth + 1)
+        return pieces
+
+    def _contained(self, feature: Feature, values: tuple[object, ...], depth: int) -> Iterator[_Piece]:
+        if not feature.many:
+            yield self._one(feature, values[0], depth)
+            return
+        yield "["
+        for index, value in enumerate(values):
+            yield ("," if index else "") + "\n" + "  " * (depth + 1)
+            yield self._one(feature, value, depth + 1)
+        yield "\n" + "  " * depth + "]"
+
+    def _one(self, feature: Feature, value: object, depth: int) -> _Piece:
+        if not isinstance(value, Element):
+            raise ValueError(f"{feature.name}: {value!r} is no element")
+        if self._addresses.stands_elsewhere(value):
+            return laid_out([f'"{REF}": {quoted(self._address(value, value, feature))}'], depth)
+        return value, feature, depth
+
+    def _plain(self, element: Element, feature: Feature, values: tuple[object, ...]) -> str:
+        kind = feature.type
+        if isinstance(kind, Metaclass):
+            texts = [self._address(element, value, feature) for value in values if isinstance(value, Element)]
+            parts = [quoted(text) for text in texts]
+        else:
+            for value in values:
+                if not kind.accepts(value):
+                    where = f"{path_of(element)}: {feature.name}"
+                    raise ValueError(f"{where}: {value!r} is not of the type {kind.name}")
+            parts = [written(kind, value) for value in values]
+        if feature.many:
+            return f"[{', '.join(parts)}]"
+        return parts[0] if parts else "null"
+
+    def _address(self, element: Element, target: Element, feature: Feature) -> str:
+        if self._addresses.stands_here(target):
+            return self._addresses.fragment(target)
+        try:
+            return self._addresses.href(target)
+        except ValueError as fault:
+            raise ValueError(f"{path_of(element)}: {feature.name}: {fault}") from None
+
+    def _short(self, name: str, scope: Mapping[str, str]) -> str:
+        """Return the type of an element whose metamodel is not installed, by the prefix it had."""
+        ns_uri, _, local = name.rpartition("#")
+        had = next((prefix for prefix, uri in scope.items() if uri == ns_uri and prefix), "p")
+        return f"{self._prefix(ns_uri, had)}:{local}" if ns_uri else name
+
+    def _prefix(self, ns_uri: str, wanted: str) -> str:
+        if ns_uri not in self._prefixes:
+            taken = set(self._prefixes.values())
+            numbered = (f"{wanted or 'p'}_{number}" for number in range(1, len(taken) + 2))
+            free = (prefix for prefix in (wanted or "p", *numbered) if prefix not in taken)
+            self._prefixes[ns_uri] = next(free)
+        return self._prefixes[ns_uri]
+
+
+def _key(feature: Feature) -> str:
+    return quoted(f"${feature.name}" if feature.name.startswith("$") else feature.name)
+
+
+def _entries(pairs: Iterable[tuple[str, str]]) -> str:
+    return laid_out([f"{quoted(name)}: {quoted(value)}" for name, value in pairs], 1)
