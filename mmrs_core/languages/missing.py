@@ -22,6 +22,9 @@ DISTRIBUTIONS = MappingProxyType(
 """The distributions that bring our own plug-ins' metamodels, by nsURI without its version."""
 
 
+_KEPT = "the element is kept as it is"
+
+
 def stem_of(ns_uri: str) -> str:
     """Return an nsURI without the version at its end.
 
@@ -32,21 +35,21 @@ def stem_of(ns_uri: str) -> str:
     return match[1] if match else ns_uri
 
 
-def missing_metamodel(ns_uri: str, name: str, registry: Registry) -> tuple[str, str]:
-    """Return message and hint for an element of a class of a metamodel that is not installed.
+def hint_for(ns_uri: str, registry: Registry) -> str:
+    """Return what to do about a metamodel that a model needs and that is not installed.
 
     The hint names another version that is installed, a metamodel of nearly the same name, or the plug-in
-    that brings it, with its distribution where that is known.
+    that brings it, by its distribution where that is known.
     """
     stem = stem_of(ns_uri)
-    message = f"{ns_uri}: no such metamodel, needed for {name}"
     installed = [package.ns_uri for package in registry.packages]
     others = [known for known in installed if stem_of(known) == stem]
     if others:
-        hint = f"{' and '.join(others)} is installed, and no migration leads there from this version"
-        return message, f"{hint}; the element is kept as it is"
-    distribution = DISTRIBUTIONS.get(stem, "")
-    brings = f"install {distribution}, which brings it" if distribution else "install the one that brings it"
-    missing = f"a plug-in is missing: {brings}; the element is kept as it is"
-    guess = "" if distribution else typo_of(ns_uri, installed)
-    return message, f"{guess} else {missing}" if guess else missing
+        known = " and ".join(others)
+        return f"{known} is installed, but no migration leads there from this version; {_KEPT}"
+    distribution = DISTRIBUTIONS.get(stem)
+    if distribution:
+        return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {_KEPT}"
+    guess = typo_of(ns_uri, installed)
+    missing = f"a plug-in is missing: install the one that brings {ns_uri}; {_KEPT}"
+    return f"{guess} else {missing}" if guess else missing

@@ -51,7 +51,7 @@ class Reading:
         """Read the text of a file; errors as in `open`."""
         draft = Draft(source)
         with _collector_at_rest():
-            if is_json(data, source.file):
+            if is_json(source.file):
                 JsonReader(Tree(data, source.file), draft, self._registry).read()
             else:
                 document = Document(data, source.file)
@@ -93,7 +93,7 @@ def read_model(path: Path, registry: Registry, *, root: Path | None = None) -> M
     """Return the model in a file, and every fault of it.
 
     Args:
-        path: an XMI file, or a JSON file by its ending or its content.
+        path: an XMI file, or one of JSON, whose name ends in .json.
         registry: the metamodels it may use.
         root: the folder that references to other files must not leave; by default the file's own.
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.json_form.tree import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.writer import XmiWriter
@@ -59,7 +60,7 @@ def write_model(
         ValueError: as `to_xmi`; nothing is written then.
         OSError: if the folder cannot be written to; the file is as it was before.
     """
-    text = to_json if path.suffix.lower() == ".json" else to_xmi
+    text = to_json if is_json(path.name) else to_xmi
     replace_file(path, text(roots, registry, schema_location=schema_location, file=path))
 
 

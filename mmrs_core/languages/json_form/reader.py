@@ -10,7 +10,7 @@ from mmrs_core.languages.json_form.tree import Node, Tree, Words
 from mmrs_core.languages.json_form.unknown import kept
 from mmrs_core.languages.json_form.values import parsed
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.missing import missing_metamodel
+from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
@@ -29,6 +29,7 @@ class JsonReader:
         self._draft = draft
         self._registry = registry
         self._languages: Mapping[str, str] = {}
+        self._missing: dict[str, str] = {}
 
     def read(self) -> None:
         """Make all elements of the file."""
@@ -139,8 +140,10 @@ class JsonReader:
     def _keep(
         self, node: Node, ns_uri: str, name: str, owner: Element | None, feature: Feature | None
     ) -> None:
-        message, hint = missing_metamodel(ns_uri, name, self._registry)
-        self._fault("XMI001", message, node, owner, hint, key=TYPE)
+        if ns_uri not in self._missing:
+            self._missing[ns_uri] = hint_for(ns_uri, self._registry)
+        message = f"{ns_uri}: no such metamodel, needed for {name}"
+        self._fault("XMI001", message, node, owner, self._missing[ns_uri], key=TYPE)
         try:
             unknown = kept(node, f"{ns_uri}#{name}", self._languages)
         except ValueError as fault:

@@ -7,7 +7,8 @@ from typing import NamedTuple
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, Unknown, held, label_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.naming import nearest, typo_of
+from mmrs_core.languages.missing import hint_for
+from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
@@ -221,11 +222,7 @@ class XmiReader:
 
     def _no_metamodel(self, ns_uri: str, name: str, owner: Element | None) -> None:
         if ns_uri not in self._missing:
-            guess = typo_of(ns_uri, (package.ns_uri for package in self._registry.packages))
-            missing = (
-                f"a plug-in is missing: install the one that brings {ns_uri}; the element is kept as it is"
-            )
-            self._missing[ns_uri] = f"{guess} else {missing}" if guess else missing
+            self._missing[ns_uri] = hint_for(ns_uri, self._registry)
         message = f"{ns_uri}: no such metamodel, needed for {name}"
         self._fault("XMI001", message, owner, self._missing[ns_uri])
 
