@@ -68,6 +68,28 @@ def docs(call: typer.Context, directory: Folder, json: Json = False) -> int:
     return _written(write_pages(registry, directory), json)
 
 
+@app.command("stubs")
+def stubs(
+    call: typer.Context,
+    file: Annotated[Path, typer.Argument(metavar="FILE.ecore", help="The metamodel.")],
+    directory: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write. By default beside FILE."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Write typed stubs (.pyi) of a metamodel, for completion in editors and for type checkers.
+
+    Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
+    """
+    from mmrs_core.generation.stubs.write import write_stubs
+    from mmrs_core.languages.metamodels.files import registry_of_files
+
+    installed = settings_of(call).plugins().contributions.metamodels
+    registry, ns_uris = registry_of_files([file], installed)
+    return _written(write_stubs(registry, ns_uris, directory or file.parent), json)
+
+
 def _written(paths: tuple[Path, ...] | list[Path], json: bool) -> int:
     if json:
         say_json({"files": list(paths)})

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, Undefined
 
@@ -21,12 +22,21 @@ from mmrs_core.generation.escaping import (
 
 
 def environment_of(target: Target) -> Environment:
-    """Return the environment in which a target's templates are rendered.
+    """Return the environment in which a target's templates are rendered."""
+    return environment_in(target.templates, target.filters)
+
+
+def environment_in(folder: Path, more: Mapping[str, Callable[..., str]]) -> Environment:
+    """Return the environment in which the templates of a folder are rendered.
 
     Undefined names are errors, so is a value that is written without a filter.
+
+    Args:
+        folder: of the templates.
+        more: filters beside the usual ones, by name.
     """
     environment = Environment(
-        loader=FileSystemLoader(target.templates),
+        loader=FileSystemLoader(folder),
         undefined=StrictUndefined,
         autoescape=False,
         finalize=_encoded,
@@ -34,14 +44,14 @@ def environment_of(target: Target) -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    filters: dict[str, Callable[[object], str]] = {
+    filters: dict[str, Callable[..., str]] = {
         "py": python_literal,
         "json": json_literal,
         "comment": comment,
         "cell": cell,
         "identifier": identifier,
         "name": name,
-        **target.filters,
+        **more,
     }
     environment.filters["py_lines"] = python_lines
     environment.filters.update({key: _coded(encode) for key, encode in filters.items()})
@@ -66,10 +76,10 @@ def _encoded(value: object) -> object:
     raise ValueError(f"{value!r} is written without a filter that encodes it")
 
 
-def _coded(encode: Callable[[object], str]) -> Callable[[object], Code]:
-    def coded(value: object) -> Code:
+def _coded(encode: Callable[..., str]) -> Callable[..., Code]:
+    def coded(value: object, *options: object) -> Code:
         if isinstance(value, Undefined):
             str(value)
-        return Code(encode(value))
+        return Code(encode(value, *options))
 
     return coded

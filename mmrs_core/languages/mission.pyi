@@ -1,7 +1,7 @@
-"""Made by mmrs_core.languages.metamodels.stubs from urn:mmrs:mission:1.0; not to be edited."""
+"""Typed stubs of urn:mmrs:mission:1.0, made by "mmrs metamodel stubs"; not to be edited."""
 
 from collections.abc import Iterable
-from typing import Final, Literal, TypeAlias
+from typing import Final
 
 from mmrs_core.languages import robot
 from mmrs_core.languages.element import Element

@@ -1,4 +1,4 @@
-"""Made by mmrs_core.languages.metamodels.stubs from urn:mmrs:robot:1.0; not to be edited."""
+"""Typed stubs of urn:mmrs:robot:1.0, made by "mmrs metamodel stubs"; not to be edited."""
 
 from collections.abc import Iterable
 from typing import Final, Literal, TypeAlias
@@ -8,14 +8,19 @@ from mmrs_core.languages.element import Element
 NS_URI: Final[str]
 
 RangingSystem: TypeAlias = Literal["SONAR", "RADAR", "LIDAR", "SODAR"]
+"""Systems for navigation, detection and ranging."""
 
 TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
+"""How a robot trades speed against caution."""
 
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
+"""What altitudes are measured from."""
 
 PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT"]
+"""Faults that a policy answers."""
 
 PolicyResponse: TypeAlias = Literal["HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"]
+"""What a robot does about a fault."""
 
 class Robot(Element):
     """A type of robot. Every robot of a mission names the type that it is of."""
