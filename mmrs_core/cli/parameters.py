@@ -51,7 +51,7 @@ def _files_of(path: Path) -> tuple[Path, ...]:
 
     found = robot_files_in(path)
     if not found:
-        raise UnreadableError(f"{path}: no robot type (*.xmi) in this folder")
+        raise UnreadableError(f"{path}: no robot type (*.xmi, *.json) in this folder")
     return found
 
 
@@ -63,8 +63,10 @@ def behaviour_file(given: Path) -> Path:
     """
     if not given.is_dir():
         return given
-    file = given / "behaviour.xmi"
-    if not file.is_file():
+    from mmrs_core.languages.modelset import model_in
+
+    file = model_in(given, "behaviour")
+    if file is None or not file.is_file():
         raise UnreadableError(f"{given}: no behaviour.xmi in this folder; 'mmrs plan {given}' makes one")
     return file
 

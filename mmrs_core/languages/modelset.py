@@ -20,7 +20,7 @@ from mmrs_core.languages.registry import Registry
 if TYPE_CHECKING:
     from mmrs_core.languages.metaclass import Metaclass
 
-_CONTEXT = "context.xmi"
+_ENDINGS = (".xmi", ".json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,43 +44,59 @@ def project_files(
 ) -> tuple[Path, Path | None, tuple[Path, ...]]:
     """Return the files of mission, context and robot types that a folder or a mission file stands for.
 
-    What is not given is looked for beside the mission: ``context.xmi``, and ``robots/*.xmi`` by name.
+    What is not given is looked for beside the mission: the context, and the files in ``robots`` by name.
+    Each may be XMI or JSON, by its ending.
 
     Raises:
-        UnreadableError: if a folder has no ``mission.xmi``, or its context bears another name.
+        UnreadableError: if a folder has no mission, or two; or its context bears another name.
     """
     mission_file = place
     if place.is_dir():
-        mission_file = place / "mission.xmi"
-        if not mission_file.is_file():
+        found = model_in(place, "mission")
+        if found is None or not found.is_file():
             raise UnreadableError(f"{place}: no mission.xmi in this folder")
+        mission_file = found
     folder = mission_file.parent
     if context is None:
         context = context_in(folder)
     return mission_file, context, tuple(robots) or robot_files_in(folder / "robots")
 
 
-def context_in(folder: Path) -> Path | None:
-    """Return ``context.xmi`` of a folder, readable or not; None if the folder has none.
+def model_in(folder: Path, name: str) -> Path | None:
+    """Return the file of that name in a folder, such as ``mission.xmi`` or ``mission.json``; None if none.
 
     Raises:
-        UnreadableError: if it leads nowhere, or differs from that name by capitals only: a context that
-            goes unnoticed is an obstacle that is flown into.
+        UnreadableError: if there are both, of which one would go unnoticed.
     """
-    file = folder / _CONTEXT
-    if file.is_symlink() and not file.exists():
+    found = [file for ending in _ENDINGS if os.path.lexists(file := folder / f"{name}{ending}")]
+    if len(found) > 1:
+        raise UnreadableError(f"{folder}: has both {found[0].name} and {found[1].name}; keep one of them")
+    return found[0] if found else None
+
+
+def context_in(folder: Path) -> Path | None:
+    """Return the context of a folder, readable or not; None if the folder has none.
+
+    Raises:
+        UnreadableError: if it leads nowhere, or differs from its name by capitals only: a context that
+            goes unnoticed is an obstacle that is flown into. If there are two.
+    """
+    file = model_in(folder, "context")
+    if file is not None and file.is_symlink() and not file.exists():
         raise UnreadableError(f"{file}: a link that leads nowhere")
-    if os.path.lexists(file):
+    if file is not None:
         return file
     for other in sorted(folder.iterdir()) if folder.is_dir() else ():
-        if other.name.casefold() == _CONTEXT:
-            raise UnreadableError(f"{other}: is taken for no context unless its name is {_CONTEXT}")
+        wanted = other.name.casefold()
+        if wanted in ("context.xmi", "context.json"):
+            raise UnreadableError(f"{other}: is taken for no context unless its name is {wanted}")
     return None
 
 
 def robot_files_in(folder: Path) -> tuple[Path, ...]:
     """Return the files of robot types in a folder, by name; hidden files are none."""
-    return tuple(sorted(file for file in folder.glob("*.xmi") if not file.name.startswith(".")))
+    files = (file for ending in _ENDINGS for file in folder.glob(f"*{ending}"))
+    return tuple(sorted(file for file in files if not file.name.startswith(".")))
 
 
 def read_project(
@@ -90,8 +106,8 @@ def read_project(
 
     Args:
         mission: the project's folder, or the mission's file.
-        context: the place; by default ``context.xmi`` beside the mission, if there is one.
-        robots: the types of robot; by default ``robots/*.xmi`` beside the mission.
+        context: the place; by default the file ``context`` beside the mission, if there is one.
+        robots: the types of robot; by default the models in ``robots`` beside the mission.
         registry: the metamodels they may use.
 
     Raises:
