@@ -8,6 +8,7 @@ from math import inf
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.grounding.coordinates import Ground, ground_of
+from mmrs_core.languages.grounding.heights import heights_of_task
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_multicopter.kinds import LOWEST_FLIGHT
@@ -15,7 +16,6 @@ from mmrs_multicopter.names import DRONE
 
 EXACT = 1e-6
 """Metres."""
-PLACES = ("points", "shell")
 
 
 def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
@@ -23,7 +23,7 @@ def too_high(mission: Element, models: ModelSet) -> Iterator[Finding]:
     ground = ground_of(mission, models.context)
     ceiling = _highest_ceiling(mission, models, ground)
     for task in children(mission, "tasks"):
-        height = max(_heights(task, ground), default=-inf)
+        height = max(heights_of_task(task, ground), default=-inf)
         if height > ceiling:
             yield Finding(
                 task,
@@ -37,7 +37,7 @@ def too_low(mission: Element, models: ModelSet) -> Iterator[Finding]:
     floors = [_floor(member, models, ground) for member in children(child(mission, "team"), "robots")]
     floor = min(floors, default=-inf)
     for task in children(mission, "tasks"):
-        height = min(_heights(task, ground), default=inf)
+        height = min(heights_of_task(task, ground), default=inf)
         if height < floor - EXACT:
             yield Finding(
                 task,
@@ -84,19 +84,3 @@ def _drone(member: Element, models: ModelSet) -> Element | None:
 def _home_height(member: Element, ground: Ground) -> float | None:
     home = child(member, "home")
     return ground.positions[home][2] if home is not None and home in ground.positions else None
-
-
-def _heights(task: Element, ground: Ground) -> tuple[float, ...]:
-    """Return at which heights a task is done, metres above the origin; empty where that is not known."""
-    altitude, depth = number(task, "altitude"), number(task, "depth")
-    if altitude is not None:
-        return (altitude,)
-    if depth is not None:
-        return (ground.frame.surface - depth,)
-    return tuple(ground.positions[each][2] for each in _places(task) if each in ground.positions)
-
-
-def _places(task: Element) -> Iterator[Element]:
-    point = child(task, "point")
-    yield from (point,) if point is not None else ()
-    yield from (each for name in PLACES for each in children(task, name))

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-NAMES = ("auv", "multicopter", "survey")
-CODE = {"auv": "AUV", "multicopter": "MUL", "survey": "SUR"}
+NAMES = ("auv", "multicopter", "rover", "survey")
+CODE = {"auv": "AUV", "multicopter": "MUL", "rover": "ROV", "survey": "SUR"}
 ROOT = Path(__file__).parents[3]
 
 

@@ -7,7 +7,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[3]
-OURS = {"mmrs-core", "mmrs-multicopter", "mmrs-auv", "mmrs-survey"}
+OURS = {"mmrs-core", "mmrs-multicopter", "mmrs-auv", "mmrs-survey", "mmrs-rover"}
 
 
 def needed():

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import mmrs_auv.plugin
 import mmrs_multicopter.plugin
+import mmrs_rover.plugin
 import mmrs_survey.plugin
 import pytest
 
@@ -12,9 +13,10 @@ from mmrs_core.plugins import load_plugins
 ALL = {
     "auv": mmrs_auv.plugin,
     "multicopter": mmrs_multicopter.plugin,
+    "rover": mmrs_rover.plugin,
     "survey": mmrs_survey.plugin,
 }
-SUBSETS = [names for count in range(4) for names in combinations(ALL, count)]
+SUBSETS = [names for count in range(len(ALL) + 1) for names in combinations(ALL, count)]
 
 
 @pytest.mark.parametrize("names", SUBSETS, ids=lambda names: "+".join(names) or "none")

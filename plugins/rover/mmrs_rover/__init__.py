@@ -1,0 +1,1 @@
+"""Ground vehicles for MMRS: wheels or tracks, turning radius, slopes, water and steps."""

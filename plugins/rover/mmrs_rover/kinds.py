@@ -1,0 +1,77 @@
+"""How rovers move: on the level of their home, in curves no narrower than their turning radius."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import degrees
+
+from mmrs_core.contributions.rules import MoveSpec, RobotKind
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.scene import Kinematics, Robot, RobotType, Scene
+from mmrs_core.scene.attributes import number, text
+from mmrs_core.transformation.kinds import kinematics_for, straight_travel
+from mmrs_rover.names import ROVER
+from mmrs_rover.terrain import barrier
+
+SHUNTING_PACE = 0.5
+"""Share of its cruise speed at which a rover shunts; the halts in between are counted in it."""
+
+
+def kinematics(robot: Robot, scene: Scene) -> Kinematics:
+    """Return what a rover can do: it stays on the level of its home, and needs room to turn.
+
+    A rover that cannot turn on the spot comes round by three arcs, forwards, backwards and forwards, each
+    as narrow as it can: together they are as long as the angle times the radius, and no point of them is
+    further from where the rover stands than the radius (Reeds and Shepp, "Optimal paths for a car that
+    goes both forwards and backwards", 1990, section 8: curves of the sort C|C|C).
+
+    Raises:
+        InfeasibleError: the type does not say how narrow its curves are, or has no capability for the
+            robot's payload.
+    """
+    level = robot.home[2]
+    known = kinematics_for(robot, scene, floor=level, ceiling=level)
+    radius = turning_radius(robot.type)
+    if radius == 0.0:
+        return known
+    pace = max(known.slowest, SHUNTING_PACE * known.cruise)
+    return replace(known, turning_radius=radius, turn_rate=min(known.turn_rate, degrees(pace / radius)))
+
+
+def turning_radius(robot_type: RobotType) -> float:
+    """Return the radius of the narrowest curve of a type, metres; tracks turn on the spot.
+
+    Raises:
+        InfeasibleError: the type is on wheels and does not say.
+    """
+    stated = number(robot_type.part, "turningRadius")
+    if stated is None and text(robot_type.part, "drive") != "TRACKS":
+        raise InfeasibleError(f"robot type '{robot_type.name}' does not say its turningRadius")
+    return stated or 0.0
+
+
+def _no_launch(height: float) -> tuple[MoveSpec, ...]:
+    return ()
+
+
+def _no_recovery() -> tuple[MoveSpec, ...]:
+    return ()
+
+
+ROVER_KIND = RobotKind(
+    name="rover",
+    metaclass=ROVER,
+    kinematics=kinematics,
+    launch=_no_launch,
+    recover=_no_recovery,
+    travel=straight_travel,
+    policies={
+        # Standing still is safe for a ground vehicle; what others wait for is still worth finishing.
+        "LINK_LOST": "HOLD",
+        "PEER_LOST": "HOLD",
+        "BATTERY_LOW": "RETURN",
+        "WAIT_TOO_LONG": "HOLD",
+        "DEVICE_SILENT": "CONTINUE",
+    },
+    barrier=barrier,
+)
