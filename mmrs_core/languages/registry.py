@@ -79,6 +79,11 @@ class Registry:
         """Return whether the metamodel of that nsURI is here."""
         return ns_uri in self._packages
 
+    def extended(self, sources: Iterable[MetamodelSource]) -> Registry:
+        """Return these metamodels together with others; errors as in `registry_with`."""
+        more = tuple(sources)
+        return Registry((*self.everything, *_assemble(more, self.everything))) if more else self
+
     def create(self, ns_uri: str, name: str, /, **features: object) -> Element:
         """Return a new element whose features have the given values.
 

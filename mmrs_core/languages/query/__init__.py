@@ -1,0 +1,1 @@
+"""Paths that lead to elements and values of any model."""
