@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.contributions.rules import most_specific
-from mmrs_core.scene import Metaclasses, Name
+from mmrs_core.scene import Metaclasses, Name, Part, Ring
 
 _COLOUR = re.compile("#[0-9a-fA-F]{6}")
 _LONGEST_ICON = 2
@@ -29,6 +29,8 @@ class MapSymbol:
         colour: as ``#rrggbb``.
         icon: up to two characters that stand for it on a map.
         fields: attributes that an editor offers first, and that pictures tell, by feature name.
+        outlines: rings (east, north) in metres that an element's figures make beside its coordinates, such
+            as a circle of its radius; none where a figure is missing. None: its coordinates are all.
 
     Raises:
         ValueError: if the colour is none, or the icon is too long.
@@ -39,6 +41,7 @@ class MapSymbol:
     colour: str
     icon: str
     fields: tuple[str, ...] = ()
+    outlines: Callable[[Part], tuple[Ring, ...]] | None = None
 
     def __post_init__(self) -> None:
         """Refuse what no map can show."""

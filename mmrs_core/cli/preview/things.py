@@ -28,7 +28,8 @@ def things_of(elements: Iterable[Part], symbols: Mapping[Name, MapSymbol]) -> tu
 
     An element is found by the shape of its attributes, whichever plug-in it comes from: a coordinate
     is a mark, coordinates called ``shell`` an outline, those called ``points`` a line, others a mark
-    each. One that it contains has its own symbol, or else that of what it is in.
+    each; and what the symbol makes of its figures are outlines too. One that it contains has its own
+    symbol, or else that of what it is in.
     """
     return tuple(
         thing
@@ -42,6 +43,8 @@ def _things(
 ) -> Iterator[Thing]:
     """Yield an element and what it contains; `otherwise` is what one without a name is called."""
     shapes = _shapes(part)
+    if symbol.outlines is not None and part.is_a(symbol.metaclass):
+        shapes.outlines.extend(symbol.outlines(part))
     own = part.attributes.get("name")
     name = own if isinstance(own, str) and own else otherwise
     places = tuple(shapes.outlines), tuple(shapes.lines), tuple(shapes.marks)

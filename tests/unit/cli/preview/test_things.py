@@ -133,3 +133,14 @@ def test_a_thing_nearby_widens_the_map_and_one_far_away_does_not(picture):
 
     assert extent((200.0, 20.0, 0.0))[1] > extent()[1]
     assert extent((9e5, 20.0, 0.0)) == extent()
+
+
+def test_an_outline_that_figures_make_is_drawn_beside_the_coordinates():
+    def square(part):
+        half = part.attributes["radius"]
+        return (((-half, -half), (half, -half), (half, half), (-half, half)),)
+
+    symbol = MapSymbol(GROUP, "panel group", "#123456", "", outlines=square)
+    (thing,) = things_of([part(GROUP, position=(0.0, 0.0, 0.0), radius=2.0)], {GROUP: symbol})
+    assert thing.outlines == (((-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)),)
+    assert thing.marks == ((0.0, 0.0),)
