@@ -1,0 +1,154 @@
+"""What must hold for panel groups, for tasks on them, and for the cameras that do them."""
+
+from __future__ import annotations
+
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.diagnostics import Severity
+from mmrs_solar.device_checks import undescribed, undone, unrecorded
+from mmrs_solar.figure_checks import (
+    camera_unreadable,
+    coarse,
+    dim,
+    group_not_positive,
+    hasty,
+    overlap_outside,
+    task_not_positive,
+)
+from mmrs_solar.group_checks import (
+    angle_outside,
+    name_shared,
+    out_of_square,
+    panel_outside,
+    row_outside,
+    rows_overlap,
+    too_dark,
+)
+from mmrs_solar.names import PANEL_GROUP, PANEL_LOOK_TASK, PANEL_TASK, THERMAL_ROW_TASK
+
+CONTEXT = ("urn:mmrs:context:1.0", "Context")
+DEVICE = ("urn:mmrs:robot:1.0", "Device")
+
+CONSTRAINTS = (
+    Constraint(
+        "SOL001",
+        "Numbers and lengths of a panel group are above zero, its height is not negative",
+        PANEL_GROUP,
+        group_not_positive,
+        "correct the figure, or leave it out where it is optional",
+    ),
+    Constraint(
+        "SOL002",
+        "Panels have a tilt from 0 to 90 and an azimuth from 0 to 360 degrees",
+        PANEL_GROUP,
+        angle_outside,
+        "tilt 0 faces the sky, 90 the horizon; azimuth 180 is south",
+    ),
+    Constraint(
+        "SOL003",
+        "Panels face square to their row",
+        PANEL_GROUP,
+        out_of_square,
+        "put the points at the two ends of the first row",
+    ),
+    Constraint(
+        "SOL004",
+        "Rows of panels leave each other room",
+        PANEL_GROUP,
+        rows_overlap,
+        "give the pitch from one row to the same place of the next, level and across the rows",
+    ),
+    Constraint(
+        "SOL005",
+        "Every panel group has a name of its own",
+        CONTEXT,
+        name_shared,
+        "give each panel group another name",
+    ),
+    Constraint(
+        "SOL006",
+        "Lengths and speeds of tasks on panels are above zero, their irradiance is not negative",
+        PANEL_TASK,
+        task_not_positive,
+        "correct the figure, or leave it out where it is optional",
+    ),
+    Constraint(
+        "SOL007",
+        "Overlaps of thermal images are from 0 to below 1",
+        THERMAL_ROW_TASK,
+        overlap_outside,
+        "write 0.8 for an overlap of 80 per cent",
+    ),
+    Constraint(
+        "SOL008",
+        "A panel group has the rows that a task asks for",
+        THERMAL_ROW_TASK,
+        row_outside,
+        "rows count from 1, the one that the group's points are below",
+    ),
+    Constraint(
+        "SOL009",
+        "A panel group has the panels that are suspected",
+        PANEL_LOOK_TASK,
+        panel_outside,
+        "rows, columns and tiers count from 1; the group says how many there are",
+    ),
+    Constraint(
+        "SOL010",
+        "A cell is seen with five pixels across at least, as IEC TS 62446-3 asks",
+        PANEL_TASK,
+        coarse,
+        "ask for smaller pixels",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SOL011",
+        "Panels are inspected in 600 W/m² at least, as IEC TS 62446-3 asks",
+        PANEL_TASK,
+        dim,
+        "ask for 600: with less sunlight faults hardly show",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SOL012",
+        "Thermal images along rows are taken at no more than 2 m/s, overlapping by 80 and 60 per cent",
+        THERMAL_ROW_TASK,
+        hasty,
+        "keep to what is recommended, or check that every panel is on a sharp image",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "SOL013",
+        "Some robot type has a camera for what a task on panels asks for",
+        PANEL_TASK,
+        undone,
+        "correct deviceId or the names of the actions, or add a robot that can do it",
+    ),
+    Constraint(
+        "SOL014",
+        "A camera for tasks on panels says what it sees, and how long and how often",
+        PANEL_TASK,
+        undescribed,
+        "add these properties to the camera: lengths in millimetres, images in pixels, times in seconds",
+    ),
+    Constraint(
+        "SOL015",
+        "Times and angles of a camera are figures",
+        DEVICE,
+        camera_unreadable,
+        "write times in seconds, above zero, and angles from -90 to 90 degrees, without a unit",
+    ),
+    Constraint(
+        "SOL016",
+        "The least irradiance is recorded with the images that need it",
+        PANEL_TASK,
+        unrecorded,
+        "add a parameter with that key to the camera's action",
+    ),
+    Constraint(
+        "SOL017",
+        "There is as much sunlight as tasks on panels ask for",
+        PANEL_TASK,
+        too_dark,
+        "wait for more sun, and state the irradiance that is measured in the plane of the panels",
+    ),
+)

@@ -1,0 +1,137 @@
+"""The rule for thermal images along rows of panels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, dist
+
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.scene import Device, Look, Part, Position, Robot, Scene, Stroke, Task, Work
+from mmrs_core.scene.attributes import number, text
+from mmrs_solar.camera import RECORDING_KEYS, figures, optics_of
+from mmrs_solar.groups import Group, between, group_of
+from mmrs_solar.names import THERMAL_ROW_TASK
+from mmrs_solar.recording import camera_for, distance_for, recorded
+from mmrs_solar.views import View, aim_beyond, before, view_of
+
+RULE = "row_inspection"
+
+LONGEST = 150.0
+"""Metres of a row that are recorded in one go, so that robots can share long rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """How a robot goes along rows.
+
+    Attributes:
+        camera: that records. view: of the camera. distance: from the panels, metres.
+        speed: largest, metres per second.
+        lead_in: metres on which the robot turns before it records.
+        uphill: where the passes over one row look, metres from its middle.
+    """
+
+    camera: Device
+    view: View
+    distance: float
+    speed: float
+    lead_in: float
+    uphill: tuple[float, ...]
+
+
+def row_inspection_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return a stroke along each row, or several where the camera does not see the whole row.
+
+    The camera records from the beginning of a row to its end, and faces it squarely all the way; the
+    robot looks into the same direction, whichever way it goes.
+    """
+    part, group = task.part, group_of(task.part, scene)
+    how = _pass_of(part, group, robot)
+    strokes = []
+    for index, (row, begin, end) in enumerate(_ways(part, group, how)):
+        stroke = _stroke(part, how, *((begin, end) if index % 2 == 0 else (end, begin)))
+        refuse_heights(robot, stroke.points)
+        refuse_blocked(robot, scene, stroke.points, f"the way along row {row}")
+        strokes.append(stroke)
+    return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False)
+
+
+def _stroke(part: Part, how: Pass, begin: Position, end: Position) -> Stroke:
+    length = dist(begin, end)
+    actions = (
+        recorded(part, how.camera, text(part, "startAction"), how.lead_in),
+        recorded(part, how.camera, text(part, "stopAction"), how.lead_in + length),
+    )
+    points = (between(begin, end, -how.lead_in / length), begin, end)
+    look = Look(aim_beyond(between(begin, end, 0.5), how.view, length), how.camera.id)
+    return Stroke(points, actions, look, speed=how.speed)
+
+
+def _pass_of(part: Part, group: Group, robot: Robot) -> Pass:
+    camera = camera_for(part, robot, text(part, "startAction"), text(part, "stopAction"))
+    optics = optics_of(camera)
+    view = view_of(group.azimuth, group.tilt, optics.lowest, optics.highest)
+    distance = distance_for(part, robot, camera.id, optics, view)
+    exposure, interval = figures(camera, RECORDING_KEYS)
+    pixel, seen = distance * optics.pixel * view.stretch, distance * optics.width
+    sharp = (number(part, "blur") or 0.0) * pixel / exposure
+    overlapping = seen * (1.0 - (number(part, "frontOverlap") or 0.0)) / interval
+    speed = _possible(min(sharp, overlapping, number(part, "speed") or 0.0), robot)
+    strip = distance * optics.height * view.stretch
+    offsets = passes_over(group.width, strip, number(part, "sideOverlap") or 0.0)
+    return Pass(camera, view, distance, speed, _turning(robot, speed), offsets)
+
+
+def _possible(speed: float, robot: Robot) -> float:
+    slowest = robot.kinematics.slowest if robot.kinematics is not None else 0.0
+    if not speed > 0.0 or speed < slowest:
+        raise InfeasibleError(
+            f"images along the rows are sharp and overlap up to {speed:.2f} m/s, "
+            f"the robot's smallest speed is {slowest:.2f} m/s"
+        )
+    return speed
+
+
+def _turning(robot: Robot, speed: float) -> float:
+    """Return the metres on which a robot turns by half a circle at that speed, one at least."""
+    rate = robot.kinematics.turn_rate if robot.kinematics is not None else 0.0
+    return max(1.0, speed * 180.0 / rate) if rate > 0.0 else 1.0
+
+
+def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]:
+    """Return where passes over a row look, metres uphill of its middle.
+
+    Args:
+        width: of the row, metres. strip: what is seen of it at once.
+        overlap: part of a strip that the next one shows again; one strip over all needs no other.
+
+    >>> passes_over(4.0, 5.0, 0.6)
+    (0.0,)
+    >>> passes_over(6.0, 4.0, 0.5)
+    (-1.0, 1.0)
+    """
+    if strip >= width:
+        return (0.0,)
+    steps = ceil((width - strip) / (strip * (1.0 - overlap)) - 1e-9)
+    step = (width - strip) / steps
+    return tuple(index * step - (width - strip) / 2.0 for index in range(steps + 1))
+
+
+def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, Position, Position]]:
+    """Yield (row, begin, end) of each way of the camera, all in the direction of the group's points."""
+    first, last = round(number(part, "firstRow") or 1.0), round(number(part, "lastRow") or group.rows)
+    if not 1 <= first <= last <= group.rows:
+        raise InfeasibleError(f"rows {first} to {last} are asked for, the group has {group.rows}")
+    for row in range(first, last + 1):
+        for uphill in how.uphill:
+            begin, end = (before(each, how.view, how.distance) for each in group.row(row, uphill))
+            parts = max(1, ceil(dist(begin, end) / LONGEST))
+            stops = [between(begin, end, index / parts) for index in range(parts + 1)]
+            yield from ((row, *stretch) for stretch in pairwise(stops))
+
+
+ROW_INSPECTION_RULE = Rule(RULE, THERMAL_ROW_TASK, row_inspection_work)
