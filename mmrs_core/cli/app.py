@@ -10,6 +10,7 @@ import typer
 
 from mmrs_core.cli import (
     check,
+    convert,
     demo,
     generate,
     metamodel,
@@ -43,6 +44,7 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("replay", replay.replay),
     ("preview", preview.preview),
     ("show", show.show),
+    ("convert", convert.convert),
 )
 
 

@@ -15,6 +15,7 @@ CORE_COMMANDS = frozenset(
         "replay",
         "preview",
         "show",
+        "convert",
         "plugin",
         "metamodel",
     }

@@ -40,7 +40,8 @@ class JsonWriter:
         self._write(body[::-1])
         used = sorted((prefix, ns_uri) for ns_uri, prefix in self._prefixes.items())
         head = [f'  "{LANGUAGES}": {_entries(used)},\n'] if used else []
-        head += [f'  "{PLACES}": {_entries(sorted(schema_location.items()))},\n'] if schema_location else []
+        places = [(ns_uri, schema_location[ns_uri]) for _, ns_uri in used if ns_uri in schema_location]
+        head += [f'  "{PLACES}": {_entries(places)},\n'] if places else []
         return "{\n" + "".join(head) + "".join(self._pieces) + "\n}\n"
 
     def _only(self, root: Element) -> list[_Piece]:

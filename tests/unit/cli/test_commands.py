@@ -22,6 +22,7 @@ CORE = (
     "replay",
     "preview",
     "show",
+    "convert",
     "plugin",
     "metamodel",
 )

@@ -1,0 +1,68 @@
+"""Reads a model of any language for the commands that take any."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli.output import tell
+
+if TYPE_CHECKING:
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.languages.foreign import ForeignModel
+
+NOT_INSTALLED = "XMI001"
+
+Metamodels = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--metamodel",
+        metavar="FILE",
+        help="An .ecore file the model uses; may be repeated. Else xsi:schemaLocation, or what lies beside it.",
+    ),
+]
+
+
+def read_foreign(workshop: Workshop, file: Path, metamodels: Sequence[Path] | None) -> ForeignModel:
+    """Return a model of any language; tell of metamodels that were found for it and of those not used.
+
+    Raises:
+        UnreadableError: if the file or a metamodel that was named cannot be read.
+        PluginError: if a metamodel is broken.
+    """
+    from mmrs_core.languages.foreign import read_any
+
+    given = tuple(metamodels or ())
+    found = read_any(file, workshop.contributions.languages, given)
+    used = {each.resolve() for each in found.found}
+    for each in given:
+        if each.resolve() not in used:
+            tell(f"{each}: note: installed already; the installed metamodel is used")
+    for ns_uri in sorted(_strange(found)):
+        tell(f"{file}: note: if you have the .ecore file of {ns_uri}, give it by --metamodel")
+    return found
+
+
+def _strange(found: ForeignModel) -> frozenset[str]:
+    """Return the languages that nobody is known to bring."""
+    from mmrs_core.languages.foreign import missing_from
+    from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
+
+    missing = missing_from(found.model, found.registry)
+    return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
+
+
+def is_mistake(fault: Diagnostic) -> bool:
+    """Return whether a fault is one of the model, not of a plug-in that is missing here."""
+    return fault.severity.value == "error" and fault.code != NOT_INSTALLED
+
+
+def faults_in(found: ForeignModel) -> Iterable[Diagnostic]:
+    """Yield what reading found wrong, in the file and in those that it refers to."""
+    yield from found.model.diagnostics
+    for other in found.model.linked:
+        yield from other.diagnostics

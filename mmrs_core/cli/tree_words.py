@@ -1,0 +1,110 @@
+"""Elements of models in words: as a tree, a line for each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html import unescape
+
+from mmrs_core.languages.element import (
+    Element,
+    Unknown,
+    containing_feature,
+    contents,
+    get,
+    holds,
+    label_of,
+    metaclass_of,
+    path_of,
+)
+from mmrs_core.languages.json_form.unknown import UnknownObject
+
+_LONGEST = 70
+_ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
+_TAG = re.compile(r"""<[^\s/>]+(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))*""")
+
+
+def tree(root: Element, depth: int = 0) -> Iterator[str]:
+    """Yield the lines of a tree; `depth` levels of it, or all for 0."""
+    yield line_of(root)
+    yield from _below(root, "", 1, depth)
+
+
+def _below(element: Element, lead: str, level: int, depth: int) -> Iterator[str]:
+    if depth and level > depth:
+        return
+    inside = list(contents(element))
+    for index, child in enumerate(inside):
+        last = index == len(inside) - 1
+        feature = containing_feature(child)
+        role = f"{feature.name}: " if feature else ""
+        yield f"{lead}{'└─ ' if last else '├─ '}{role}{line_of(child)}"
+        yield from _below(child, lead + ("   " if last else "│  "), level + 1, depth)
+
+
+def line_of(element: Element) -> str:
+    """Return an element in one line: its class, and the attributes and references that are set."""
+    if isinstance(element, Unknown):
+        return _unknown(element)
+    metaclass = metaclass_of(element)
+    parts = [metaclass.name]
+    for feature in metaclass.features:
+        if feature.containment or feature.is_container or not holds(element, feature):
+            continue
+        found = get(element, feature.name)
+        items = list(found) if feature.many and isinstance(found, list | tuple) else [found]
+        shown = [f"→ {_label(item)}" if isinstance(item, Element) else value_words(item) for item in items]
+        parts.append(f"{feature.name}={','.join(shown)}")
+    return " ".join(parts)
+
+
+def title_of(element: Element) -> str:
+    """Return class and name of an element, as far as it has one."""
+    if isinstance(element, Unknown):
+        return _unknown(element)
+    label = label_of(element)
+    return f"{metaclass_of(element).name}{label and f' {value_words(label)}'}"
+
+
+def value_words(value: object) -> str:
+    """Return a value in words: short, and quoted where its ends would not be seen."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    words = str(value)
+    short = words if len(words) <= _LONGEST else words[: _LONGEST - 1] + "…"
+    return repr(short) if not short or any(character.isspace() for character in short) else short
+
+
+def name_of_unknown(xml: str) -> str:
+    """Return the name that the opening tag of an element gives; empty if it gives none.
+
+    >>> name_of_unknown('<tasks name="a &gt; b" x=">"><y name="c"/></tasks>')
+    'a > b'
+    """
+    tag = _TAG.match(xml)
+    attributes = _ATTRIBUTE.findall(tag[0]) if tag else []
+    return next((unescape(value[1:-1]) for name, value in attributes if name == "name"), "")
+
+
+def _label(element: Element) -> str:
+    """Return the name of an element that is referred to; its path if it has none."""
+    own = _name_of(element) if isinstance(element, Unknown) else label_of(element)
+    return own or path_of(element)
+
+
+def _unknown(element: Unknown) -> str:
+    """Return what is known of an element whose metamodel is not installed."""
+    ns_uri, _, name = element._mmrs_type.rpartition("#")
+    label = _name_of(element)
+    return f"{name}{f' name={value_words(label)}' if label else ''} (unknown, of {ns_uri or 'no language'})"
+
+
+def _name_of(element: Unknown) -> str:
+    if isinstance(element, UnknownObject):
+        name = element._mmrs_json.members.get("name")
+        return name if isinstance(name, str) else ""
+    return name_of_unknown(element._mmrs_xml)
