@@ -12,7 +12,7 @@ from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal
 
 _NOTES = (
     "the terrain is flat at the origin's height",
-    "times count a stop at the end of every leg; turns on the way are not counted",
+    "times count a stop at the end of every leg; turns on the spot are not counted",
     "energy is the power against the wind or current times the time on one charge",
 )
 

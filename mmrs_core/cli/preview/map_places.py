@@ -26,7 +26,8 @@ _USES = {
 
 def zone_shape(zone: Zone, projection: Projection, *, passed: bool = False) -> str:
     """Return an area as drawn; one that robots pass over or under is drawn lightly."""
-    tip = f"{zone.name}: {_USES[zone.use]}, {heights(zone.low, zone.high)}"
+    extent = heights(zone.low, zone.high) if zone.types is None else f"for {', '.join(sorted(zone.types))}"
+    tip = f"{zone.name}: {_USES[zone.use]}, {extent}"
     kind = f"zone {zone.use.value}" + (" passed" if passed else "")
     attributes = {"class": kind, "d": projection.closed((zone.shell,))}
     return element("path", attributes, title(tip))

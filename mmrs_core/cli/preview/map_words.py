@@ -120,7 +120,8 @@ def _of_things(picture: Picture, projection: Projection) -> Iterator[_Name]:
 
 def _of_zones(picture: Picture, projection: Projection) -> Iterator[_Name]:
     shown = _shown(projection)
-    for zone in picture.zones:
+    # What bars some types only is a thing at the place, and named as such.
+    for zone in (zone for zone in picture.zones if zone.types is None):
         seen = shapely.intersection(Polygon(zone.shell), shown)
         if not seen.is_empty:
             box = _box(_polygon(zone.shell), projection)

@@ -108,6 +108,7 @@ class Zone:
         shell: as drawn, (east, north).
         kept: its outline once grown (or, an emergency area, shrunk) by the clearance, as rings.
         clearance: metres that it was grown by.
+        types: of the robots that it bars; None: of all.
     """
 
     name: str
@@ -117,6 +118,7 @@ class Zone:
     high: float = inf
     kept: tuple[Ring, ...] = ()
     clearance: float = 0.0
+    types: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)

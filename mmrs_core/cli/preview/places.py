@@ -34,7 +34,7 @@ def _zone(area: Area, clearance: float) -> Zone:
     change = shrink if area.use is AreaUse.EMERGENCY else grow
     pieces = parts(change(area.shell, clearance))
     outlines = tuple(ring for piece in pieces for ring in (rings(piece)[0], *rings(piece)[1]))
-    return Zone(area.name, area.use, area.shell, area.low, area.high, outlines, clearance)
+    return Zone(area.name, area.use, area.shell, area.low, area.high, outlines, clearance, area.types)
 
 
 def task_pictures(

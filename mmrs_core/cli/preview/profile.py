@@ -71,7 +71,8 @@ def _range(picture: Picture) -> tuple[float, float]:
 def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
     robot = picture.robots[index]
     name = {"class": "robot-name", "x": LEFT, "y": strip.top - 5, "fill": style_of(index).colour}
-    passed = crossings(robot, picture.zones)
+    zones = [zone for zone in picture.zones if zone.types is None or robot.type_name in zone.types]
+    passed = crossings(robot, zones)
     return element(
         "g",
         {"data-robot": index},

@@ -136,6 +136,8 @@ def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
         ("carbon-dioxide", {"multicopter"}),
         ("pool", {"auv"}),
         ("mixed-team", {"multicopter", "auv", "plain_robot"}),
+        ("solar-park", {"multicopter"}),
+        ("drone-and-rover", {"multicopter", "rover"}),
     ],
 )
 def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):
