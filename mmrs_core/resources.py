@@ -12,7 +12,7 @@ def shipped(folder: str) -> Path:
     """Return the folder of shipped data with that name.
 
     Args:
-        folder: ``metamodels``, ``codegen_templates`` or ``examples``.
+        folder: ``metamodels``, ``codegen_templates``, ``examples`` or ``migrations``.
 
     Raises:
         InternalError: if neither the wheel nor the checkout has it.
