@@ -22,7 +22,7 @@ Metamodels = Annotated[
     typer.Option(
         "--metamodel",
         metavar="FILE",
-        help="An .ecore file the model uses; may be repeated. Else xsi:schemaLocation, or what lies beside it.",
+        help="An .ecore file it uses; may be repeated. Else what xsi:schemaLocation names, or lies beside.",
     ),
 ]
 

@@ -93,6 +93,13 @@ class Document:
         """The place of the current event in ``data``, in bytes."""
         return self._parser.CurrentByteIndex
 
+    def text_from(self, begin: int) -> str:
+        """Return the text of the element that begins at an offset and whose end is the current event."""
+        data, end = self.data, self.offset
+        # the end of an empty element is told at the place where it begins
+        end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
+        return data[begin:end].decode(self.encoding, "replace")
+
     def parse(self, listener: Listener) -> None:
         """Send all events to the listener.
 
@@ -169,6 +176,20 @@ def _attributes_at(data: bytes, begin: int) -> int:
         tag = _ATTRIBUTE.match(data, tag.end())
         count += tag is not None
     return count
+
+
+def _end_of_tag(data: bytes, begin: int) -> int:
+    """Return the offset behind the tag that begins there; a ``>`` inside quotes does not end it."""
+    quote = 0
+    for index in range(begin, len(data)):
+        byte = data[index]
+        if quote:
+            quote = 0 if byte == quote else quote
+        elif byte in b"\"'":
+            quote = byte
+        elif byte == ord(">"):
+            return index + 1
+    return len(data)
 
 
 def read_bytes(path: Path, largest: int = LARGEST_FILE) -> bytes:

@@ -158,7 +158,7 @@ class XmiReader:
             return
         if metaclass is not None and not isinstance(element, Unknown):
             self._open.append(_Frame(element, metaclass))
-            if feature.type.key not in metaclass.ancestry:
+            if not issubclass(metaclass.interface, feature.type.interface):
                 message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
                 self._fault("XMI008", message, owner, broken=feature)
                 return
@@ -318,10 +318,7 @@ class XmiReader:
             return
         element, begin = self._kept
         self._kept = None
-        data, end = self._document.data, self._document.offset
-        # the end of an empty element is told at the place where it begins
-        end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
-        element._mmrs_xml = data[begin:end].decode(self._document.encoding, "replace")
+        element._mmrs_xml = self._document.text_from(begin)
         element._mmrs_scope = self._document.namespaces.in_scope()
 
 
@@ -330,17 +327,3 @@ def _value(attributes: list[str], name: str) -> str | None:
         if attributes[index] == name:
             return attributes[index + 1]
     return None
-
-
-def _end_of_tag(data: bytes, begin: int) -> int:
-    """Return the offset behind the tag that begins there; a ``>`` inside quotes does not end it."""
-    quote = 0
-    for index in range(begin, len(data)):
-        byte = data[index]
-        if quote:
-            quote = 0 if byte == quote else quote
-        elif byte in b"\"'":
-            quote = byte
-        elif byte == ord(">"):
-            return index + 1
-    return len(data)
