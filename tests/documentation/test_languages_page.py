@@ -10,7 +10,7 @@ from mmrs_core.cli.pages.languages_page import pages, write_pages
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
 ROOT = Path(__file__).parents[2]
-PLUGINS = ("auv", "multicopter", "rover", "survey")
+PLUGINS = ("auv", "multicopter", "rover", "solar", "survey")
 
 
 @pytest.fixture(scope="module")
