@@ -13,7 +13,7 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 
-EXAMPLES = ("carbon-dioxide", "pool", "mixed-team")
+EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool")
 
 
 @pytest.fixture

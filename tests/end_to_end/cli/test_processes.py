@@ -34,7 +34,7 @@ def test_help_costs_less_than_half_a_second():
     assert cpu_seconds("mmrs", "--help") < 0.5
 
 
-@pytest.mark.parametrize("example", ["carbon-dioxide", "pool", "mixed-team"])
+@pytest.mark.parametrize("example", ["carbon-dioxide", "drone-and-rover", "pool", "mixed-team"])
 def test_validating_an_example_costs_less_than_a_second_and_a_half(example):
     assert cpu_seconds("mmrs", "validate", shipped("examples") / example) < 1.5
 
