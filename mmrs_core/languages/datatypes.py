@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from base64 import b64decode, b64encode
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from decimal import Decimal
 
@@ -100,6 +101,15 @@ def render_real(value: object) -> str:
     return f"{'-' if sign else ''}{figures[0]}.{fraction}E{power}"
 
 
+def _parse_schema_real(text: str) -> float:
+    """Read a number as XML Schema part 2 has it, section 3.2.5, or in Java's notation."""
+    return parse_real(text.replace("INF", "Infinity") if text in ("INF", "-INF") else text)
+
+
+def _render_schema_real(value: object) -> str:
+    return render_real(value).replace("Infinity", "INF")
+
+
 def _integer(bits: int | None) -> Callable[[str], int]:
     def parse(text: str) -> int:
         if not _JAVA_INTEGER.fullmatch(text):
@@ -138,6 +148,17 @@ def _parse_bytes(text: str) -> bytes:
         return bytes.fromhex(text)
     except ValueError:
         raise ValueError(f"{shown(text)}: not bytes in hexadecimal digits") from None
+
+
+def _parse_base64(text: str) -> bytes:
+    try:
+        return b64decode("".join(text.split()), validate=True)
+    except ValueError:
+        raise ValueError(f"{shown(text)}: not bytes in base 64") from None
+
+
+def _render_base64(value: object) -> str:
+    return b64encode(bytes(value)).decode()  # type: ignore[call-overload]  # accepts() vouches for it
 
 
 def parse_date(text: str) -> datetime:
@@ -237,9 +258,12 @@ _ECORE_JAVA = {
 }
 
 _XML_JAVA = {
+    "Base64Binary": "byte[]",
+    "HexBinary": "byte[]",
     "Boolean": "boolean",
     "BooleanObject": "java.lang.Boolean",
     "Byte": "byte",
+    "ByteObject": "java.lang.Byte",
     "Decimal": "java.math.BigDecimal",
     "Double": "double",
     "DoubleObject": "java.lang.Double",
@@ -251,7 +275,17 @@ _XML_JAVA = {
     "Long": "long",
     "LongObject": "java.lang.Long",
     "Short": "short",
+    "ShortObject": "java.lang.Short",
+    "UnsignedByte": "short",
+    "UnsignedByteObject": "java.lang.Short",
+    "UnsignedShort": "int",
+    "UnsignedShortObject": "java.lang.Integer",
+    "UnsignedInt": "long",
+    "UnsignedIntObject": "java.lang.Long",
+    "UnsignedLong": "java.math.BigInteger",
     "NonNegativeInteger": "java.math.BigInteger",
+    "NonPositiveInteger": "java.math.BigInteger",
+    "NegativeInteger": "java.math.BigInteger",
     "PositiveInteger": "java.math.BigInteger",
 }
 
@@ -272,5 +306,10 @@ def builtin_type(ns_uri: str, name: str) -> DataType | None:
     if ns_uri == ECORE and name in _ECORE_JAVA:
         return declared_type(ns_uri, name, _ECORE_JAVA[name])
     if ns_uri == XML_TYPES:
-        return declared_type(ns_uri, name, _XML_JAVA.get(name, "java.lang.String"))
+        found = declared_type(ns_uri, name, _XML_JAVA.get(name, "java.lang.String"))
+        if found.python is float:
+            return replace(found, parse=_parse_schema_real, render=_render_schema_real)
+        if name == "Base64Binary":
+            return replace(found, parse=_parse_base64, render=_render_base64)
+        return found
     return None

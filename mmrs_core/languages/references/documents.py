@@ -5,18 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Source, path_of
 from mmrs_core.languages.links import raw
-from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.metaclass import Feature, Metaclass
 
 MOST_FAULTS = 10_000
 
 _STEP = re.compile(r"@(?P<name>[^.\[]+)(?:\.(?P<index>[0-9]{1,9})|\[(?P<keys>.*)\])?", re.DOTALL)
 _INDEX = re.compile(r"[0-9]{0,9}")
-_KEY = re.compile(r"(?P<name>\w+)='(?P<value>[^']*)'")
+_KEY = re.compile(r"""(?P<name>\w+)=(?:'(?P<single>[^']*)'|"(?P<double>[^"]*)"|(?P<null>null))""")
 
 
 @dataclass(slots=True)
@@ -106,15 +107,36 @@ class Draft:
         value = raw(parent, feature)
         values: Sequence[object] = value if isinstance(value, list) else (value,)
         if match["keys"]:
-            found = _by_keys(values, dict(_KEY.findall(match["keys"])))
+            found = _by_keys(values, _keys(match["keys"]))
         else:
             index = int(match["index"] or 0)
             found = values[index] if index < len(values) else None
         return found if isinstance(found, Element) else None
 
 
-def _by_keys(values: Sequence[object], wanted: dict[str, str]) -> object:
+def _keys(text: str) -> dict[str, str | None]:
+    """Return the attributes and their values in a step such as ``[name='a%20b',number='1']``."""
+    return {
+        key["name"]: None if key["null"] else unquote(key["single"] or key["double"] or "")
+        for key in _KEY.finditer(text)
+    }
+
+
+def _by_keys(values: Sequence[object], wanted: dict[str, str | None]) -> object:
     for value in values:
-        if wanted and all(str(getattr(value, name, None)) == text for name, text in wanted.items()):
+        if wanted and isinstance(value, Element) and _has(value, wanted):
             return value
     return None
+
+
+def _has(element: Element, wanted: dict[str, str | None]) -> bool:
+    metaclass = type(element)._mmrs_metaclass
+    features = metaclass.by_name if metaclass is not None else {}
+    for name, text in wanted.items():
+        feature = features.get(name)
+        if feature is None or isinstance(feature.type, Metaclass):
+            return False
+        value = getattr(element, feature.attribute)
+        if (feature.type.render(value) if feature.type.accepts(value) else None) != text:
+            return False
+    return True
