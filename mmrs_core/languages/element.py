@@ -79,7 +79,10 @@ class Element(metaclass=ElementType):
         _mmrs_source: Source | None
 
     _mmrs_slots: ClassVar[Mapping[str, Any]] = {}
-    """The bare slot of each feature, by attribute: no copy of lists, no change at the other end."""
+    """The bare slot of each feature, by attribute: no copy of lists, no change at the other end.
+
+    An empty slot means that the feature was never set, and so does None unless the feature is nullable.
+    """
     _mmrs_missing: ClassVar[Mapping[str, Callable[[Element], object]]] = {}
     """What each feature holds while its slot is empty, by attribute."""
 
@@ -90,8 +93,8 @@ class Element(metaclass=ElementType):
                 return type(self)._mmrs_missing[name](self)
             except KeyError:
                 pass
-            if name in _UNSET:
-                return _UNSET[name]
+            if name.startswith("_mmrs_"):
+                return 0 if name == "_mmrs_line" else None
             hint = nearest(name, type(self)._mmrs_missing)
             raise AttributeError(
                 f"{name}: no feature of {type(self).__name__}{hint and '; ' + hint}", name=name, obj=self
@@ -105,9 +108,6 @@ class Element(metaclass=ElementType):
         """Return the class, its name or id if it has one, and its place."""
         label = label_of(self)
         return f"<{type(self).__name__}{label and ' ' + repr(label)} at {place_of(self)}>"
-
-
-_UNSET = {"_mmrs_container": None, "_mmrs_feature": None, "_mmrs_line": 0, "_mmrs_source": None}
 
 
 class Unknown(Element):
@@ -168,9 +168,9 @@ def held(element: Element, feature: Feature) -> tuple[object, ...]:
         value = type(element)._mmrs_slots[feature.attribute].__get__(element)
     except AttributeError:
         return ()
-    if feature.many:
-        return tuple(value)
-    return () if value is None else (value,)
+    if value is None:
+        return ()
+    return tuple(value) if feature.many else (value,)
 
 
 def contents(element: Element) -> Iterator[Element]:
@@ -217,10 +217,10 @@ def holds(element: Element, feature: Feature) -> bool:
         value = type(element)._mmrs_slots[feature.attribute].__get__(element)
     except AttributeError:
         return False
+    if value is None:
+        return feature.nullable
     if feature.many:
         return len(value) > 0
-    if value is None and feature.default is None:
-        return False
     return feature.unsettable or not _same(value, feature.default)
 
 

@@ -75,6 +75,11 @@ class Feature:
         unsettable: whether "never set" differs from "set to the default".
         unique: whether a value may occur only once among many.
         opposite: the reference that the other end keeps, or None.
+        many: whether it holds a list.
+        required: whether it needs at least one value.
+        nullable: whether None is a value that a file can state, other than the default.
+        is_container: whether it names the element that contains its owner.
+        linked: whether setting it changes the other end as well.
         stored: whether files hold it.
         owner: the metaclass that declares it.
     """
@@ -94,26 +99,25 @@ class Feature:
     type: Metaclass | DataType | Enumeration
     default: object
     opposite: Feature | None = None
+    many: bool = field(init=False)
+    required: bool = field(init=False)
+    nullable: bool = field(init=False)
+    is_container: bool = field(init=False)
+    linked: bool = field(init=False)
 
-    @property
-    def many(self) -> bool:
-        """Whether it holds a list."""
-        return self.upper != 1
+    def __post_init__(self) -> None:
+        """Work out what the reader and the writer ask of every value."""
+        object.__setattr__(self, "many", self.upper != 1)
+        object.__setattr__(self, "required", self.lower > 0)
+        absent = self.is_reference or self.many or self.default is None
+        object.__setattr__(self, "nullable", not (absent or getattr(self.type, "primitive", True)))
+        self.join(self.opposite)
 
-    @property
-    def required(self) -> bool:
-        """Whether it needs at least one value."""
-        return self.lower > 0
-
-    @property
-    def is_container(self) -> bool:
-        """Whether it names the element that contains its owner."""
-        return self.opposite is not None and self.opposite.containment
-
-    @property
-    def linked(self) -> bool:
-        """Whether setting it changes the other end as well."""
-        return self.containment or self.opposite is not None
+    def join(self, opposite: Feature | None) -> None:
+        """Make another reference its opposite; a metamodel knows them only when all its classes stand."""
+        object.__setattr__(self, "opposite", opposite)
+        object.__setattr__(self, "is_container", opposite is not None and opposite.containment)
+        object.__setattr__(self, "linked", self.containment or opposite is not None)
 
     def __repr__(self) -> str:
         """Return the owner's name and its own."""

@@ -187,7 +187,7 @@ class Assembly:
         other = self._class(key, entry, row.name).by_name.get(name)
         if other is None or not other.is_reference:
             raise PluginError(f"{entry.provider}: {entry.table.ns_uri}: {row.opposite}: no such reference")
-        object.__setattr__(feature, "opposite", other)
+        feature.join(other)
 
     def _package(self, entry: Located) -> Package:
         table = entry.table

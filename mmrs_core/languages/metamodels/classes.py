@@ -34,11 +34,21 @@ def implementation_class(metaclass: Metaclass, interface: type[Element]) -> type
     made = _element_class(metaclass.name, (interface,), namespace)
     slots = {attribute: made.__dict__[attribute] for attribute in attributes}
     for feature in metaclass.features:
-        if feature.many or feature.linked or not _nullable(feature):
+        if feature.many or feature.linked or not _assignable(feature):
             setattr(made, feature.attribute, _property(feature, slots[feature.attribute]))
+    for index, slot in enumerate(slots.values()):
+        setattr(made, bare_name(index), slot)
     made._mmrs_slots = slots
     made._mmrs_missing = {feature.attribute: _missing(feature) for feature in metaclass.features}
     return made
+
+
+def bare_name(index: int) -> str:
+    """Return the attribute that is the bare slot of a metaclass's feature of that index, whatever its name.
+
+    Compiled readers and writers use it: nothing that stands in a metamodel gets into their text.
+    """
+    return f"_mmrs_{index}"
 
 
 def _element_class(name: str, bases: tuple[type[Element], ...], namespace: dict[str, Any]) -> type[Element]:
@@ -47,8 +57,8 @@ def _element_class(name: str, bases: tuple[type[Element], ...], namespace: dict[
     return made
 
 
-def _nullable(feature: Feature) -> bool:
-    """Whether None is a value that a file can state, rather than the absence of one."""
+def _assignable(feature: Feature) -> bool:
+    """Whether None may be put into the slot as it is, rather than empty it."""
     return getattr(feature.type, "name", "") == "EString" or feature.default is None
 
 
@@ -71,7 +81,7 @@ def _keep(feature: Feature, make: Callable[[Element], list[Any]]) -> Callable[[E
 
 
 def _property(feature: Feature, slot: Any) -> property:  # CPython does not name the type of slots
-    """Return a property that reads its slot at C speed and keeps promises when written."""
+    """Return a property that knows what an unfilled slot means, and keeps promises when written."""
     if feature.many and feature.linked:
         write = _replace_linked(feature)
     elif feature.many:
@@ -80,7 +90,23 @@ def _property(feature: Feature, slot: Any) -> property:  # CPython does not name
         write = _set_linked(feature, slot)
     else:
         write = _set_primitive(feature, slot)
-    return property(slot.__get__, write, lambda element: write(element, None), feature.documentation)
+    read = slot.__get__ if feature.nullable or _plain(feature) else _read(slot, _missing(feature))
+    return property(read, write, lambda element: write(element, None), feature.documentation)
+
+
+def _plain(feature: Feature) -> bool:
+    """Whether None is what a user is to see in a slot that holds None."""
+    return not feature.many and feature.default is None
+
+
+def _read(slot: Any, missing: Callable[[Element], object]) -> Callable[[Element], object]:
+    get = slot.__get__
+
+    def read(element: Element) -> object:
+        value = get(element)
+        return missing(element) if value is None else value
+
+    return read
 
 
 def _replace_linked(feature: Feature) -> Callable[[Element, Any], None]:

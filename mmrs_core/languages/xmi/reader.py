@@ -167,16 +167,12 @@ class XmiReader:
             self._attributes(element, metaclass, attributes)
 
     def _contain(self, owner: Element, feature: Feature, element: Element) -> None:
-        slot = type(owner)._mmrs_slots[feature.attribute]
         if feature.many:
-            values = getattr(owner, feature.attribute)
-            values.put(element)
+            getattr(owner, feature.attribute).put(element)
+        elif held(owner, feature):
+            self._fault("XMI009", f"{feature.name}: given more than once, takes one", owner)
         else:
-            try:
-                slot.__get__(owner)
-                self._fault("XMI009", f"{feature.name}: given more than once, takes one", owner)
-            except AttributeError:
-                slot.__set__(owner, element)
+            type(owner)._mmrs_slots[feature.attribute].__set__(owner, element)
         element._mmrs_container = owner
         element._mmrs_feature = feature
         opposite = feature.opposite
