@@ -13,7 +13,7 @@ from mmrs_core.languages.json_form.reader import JsonReader
 from mmrs_core.languages.json_form.tree import Tree, is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
-from mmrs_core.languages.references.resolution import resolve
+from mmrs_core.languages.references.resolution import resolve, tell_other_ends
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document, read_bytes
 from mmrs_core.languages.xmi.reader import XmiReader
@@ -62,9 +62,13 @@ class Reading:
 
     def follow(self) -> None:
         """Resolve the references of all files read so far, and of those that they lead to."""
+        doubled = []
         with _collector_at_rest():
             while self._unresolved:
-                resolve(self._unresolved.pop(0), self.open, self._root)
+                draft = self._unresolved.pop(0)
+                doubled.append((draft, resolve(draft, self.open, self._root)))
+            for draft, references in doubled:
+                tell_other_ends(draft, references)
 
     def model(self, draft: Draft) -> Model:
         """Return what a file holds, with the other files read together with it."""

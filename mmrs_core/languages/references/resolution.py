@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
@@ -20,13 +20,16 @@ _HELPED_FAULTS = 20
 Opener = Callable[[Path], Draft]
 
 
-def resolve(draft: Draft, opener: Opener, root: Path | None) -> None:
+def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pending, Element]]:
     """Set every reference of a file; what leads nowhere becomes a fault of that file.
 
     Args:
         draft: the file; its pending references are emptied.
         opener: reads another file, or returns it when it was read before.
         root: the folder that references must not leave; None where there are no files.
+
+    Returns:
+        The references whose other ends are to be told, with their targets, once all files have said theirs.
     """
     pending, draft.pending = draft.pending, []
     doubled = []
@@ -35,6 +38,11 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> None:
             target = _target(uri, reference, draft, opener, root)
             if target is not None and _set(reference, target, draft):
                 doubled.append((reference, target))
+    return doubled
+
+
+def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) -> None:
+    """Make the other ends of a file's references know of them; a contradiction becomes a fault of that file."""
     for reference, target in doubled:
         _tell_other_end(reference, target, draft)
 
