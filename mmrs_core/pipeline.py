@@ -47,18 +47,22 @@ def read_models(
     *,
     context: Path | None = None,
     robots: Sequence[Path] = (),
+    unsaved: Mapping[Path, bytes] | None = None,
 ) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
     """Return a mission with its context and robot types, and every fault that reading found.
 
     Args:
         mission: a project folder, or the mission's file; what is not named lies beside it.
+        unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
         UnreadableError: if a file is missing or no model at all.
     """
     from mmrs_core.languages.modelset import read_project
 
-    return read_project(mission, context=context, robots=robots, registry=contributions.languages)
+    return read_project(
+        mission, context=context, robots=robots, registry=contributions.languages, unsaved=unsaved
+    )
 
 
 def check_models(models: ModelSet, contributions: Contributions) -> tuple[Diagnostic, ...]:

@@ -79,7 +79,12 @@ def load_behaviour(
 
 
 def read_behaviour_files(
-    workshop: Workshop, file: Path, *, context: Path | None = None, robots: Sequence[Path] = ()
+    workshop: Workshop,
+    file: Path,
+    *,
+    context: Path | None = None,
+    robots: Sequence[Path] = (),
+    unsaved: Mapping[Path, bytes] | None = None,
 ) -> BehaviourFiles:
     """Return what the files hold.
 
@@ -87,6 +92,7 @@ def read_behaviour_files(
         file: of the behaviour.
         context: the place; else ``context.xmi`` in the behaviour's folder, if there is one.
         robots: files of robot types; else ``robots/*.xmi`` in the behaviour's folder.
+        unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
         UnreadableError: if a file is missing or no model at all.
@@ -94,7 +100,8 @@ def read_behaviour_files(
     place = context if context is not None else context_in(file.parent)
     types = tuple(robots) or robot_files_in(file.parent / "robots")
     registry = workshop.contributions.languages
-    models = [read_model(each, registry) for each in (file, *([place] if place else []), *types)]
+    files = (file, *([place] if place else []), *types)
+    models = [read_model(each, registry, unsaved=unsaved) for each in files]
     workshop.have_read(models, place)
     return _as_files(file, models, place)
 

@@ -100,7 +100,12 @@ def robot_files_in(folder: Path) -> tuple[Path, ...]:
 
 
 def read_project(
-    mission: Path, *, context: Path | None = None, robots: Sequence[Path] = (), registry: Registry
+    mission: Path,
+    *,
+    context: Path | None = None,
+    robots: Sequence[Path] = (),
+    registry: Registry,
+    unsaved: Mapping[Path, bytes] | None = None,
 ) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
     """Return the models of a project and the faults of their files; None if there is no mission among them.
 
@@ -109,13 +114,14 @@ def read_project(
         context: the place; by default the file ``context`` beside the mission, if there is one.
         robots: the types of robot; by default the models in ``robots`` beside the mission.
         registry: the metamodels they may use.
+        unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
         UnreadableError: if a file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
     """
     mission_file, context_file, robot_files = project_files(mission, context, robots)
     files = [mission_file, *([context_file] if context_file else []), *robot_files]
-    reading = Reading(registry, _common_folder(files))
+    reading = Reading(registry, _common_folder(files), unsaved)
     drafts = [reading.open(file) for file in files]
     reading.follow()
     main = reading.model(drafts[0])

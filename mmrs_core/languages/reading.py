@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,9 +22,15 @@ from mmrs_core.languages.xmi.reader import XmiReader
 class Reading:
     """Several files read together, so that references between them lead to the same elements."""
 
-    def __init__(self, registry: Registry, root: Path | None) -> None:
-        """Take the metamodels, and the folder that references must not leave (None: no file at all)."""
+    def __init__(
+        self, registry: Registry, root: Path | None, unsaved: Mapping[Path, bytes] | None = None
+    ) -> None:
+        """Take the metamodels, and the folder that references must not leave (None: no file at all).
+
+        Texts that are not saved yet are read instead of what their files, by real path, hold.
+        """
         self._registry = registry
+        self._unsaved = unsaved or {}
         self._root = root.resolve() if root is not None else None
         self._drafts: dict[Path, Draft] = {}
         self._refused: dict[Path, str] = {}
@@ -41,7 +47,8 @@ class Reading:
             raise UnreadableError(self._refused[real])
         if real not in self._drafts:
             try:
-                self._drafts[real] = self.parse(read_bytes(path), Source(str(path), real))
+                data = self._unsaved[real] if real in self._unsaved else read_bytes(path)
+                self._drafts[real] = self.parse(data, Source(str(path), real))
             except UnreadableError as refusal:
                 self._refused[real] = str(refusal)  # a thousand references must not read it a thousand times
                 raise
@@ -93,18 +100,25 @@ def _collector_at_rest() -> Iterator[None]:
             gc.enable()
 
 
-def read_model(path: Path, registry: Registry, *, root: Path | None = None) -> Model:
+def read_model(
+    path: Path,
+    registry: Registry,
+    *,
+    root: Path | None = None,
+    unsaved: Mapping[Path, bytes] | None = None,
+) -> Model:
     """Return the model in a file, and every fault of it.
 
     Args:
         path: an XMI file, or one of JSON, whose name ends in .json.
         registry: the metamodels it may use.
         root: the folder that references to other files must not leave; by default the file's own.
+        unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
         UnreadableError: if the file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
     """
-    reading = Reading(registry, root if root is not None else path.parent)
+    reading = Reading(registry, root if root is not None else path.parent, unsaved)
     draft = reading.open(path)
     reading.follow()
     return reading.model(draft)
