@@ -14,6 +14,7 @@ from mmrs_core.cli import (
     demo,
     generate,
     metamodel,
+    migrate,
     plan,
     plugin,
     replay,
@@ -45,6 +46,7 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("preview", preview.preview),
     ("show", show.show),
     ("convert", convert.convert),
+    ("migrate", migrate.migrate),
 )
 
 

@@ -1,0 +1,80 @@
+"""What a file is: models of a dialect, one of its metamodels, or something that holds nothing to migrate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.json_form.tree import Node as Object
+from mmrs_core.languages.json_form.tree import Tree
+from mmrs_core.languages.metamodels.tables import parse_tables
+from mmrs_core.languages.xmi.events import read_bytes
+from mmrs_core.migration.from_json import CLASS, node_of, text_in
+from mmrs_core.migration.from_xmi import parse_xmi
+from mmrs_core.migration.mapping import KnownDocument
+from mmrs_core.migration.nodes import Document
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A file that was opened.
+
+    Attributes:
+        what: what it is called: "a model", "a metamodel", or as the mapping says.
+        document: its elements; None where there is nothing to migrate.
+    """
+
+    file: str
+    what: str
+    document: Document | None = None
+
+
+def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
+    """Return what a file is.
+
+    Raises:
+        UnreadableError: if it cannot be read, is neither XML nor JSON, or is of no known form.
+    """
+    file, data = str(path), read_bytes(path)
+    start = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+    if start in (b"{", b"["):
+        return _json(Tree(data, file), known)
+    document = parse_xmi(data, file)
+    claims = [root.claim for root in document.roots]
+    if any(claim is not None and claim.document == ECORE for claim in claims):
+        named = ", ".join(table.ns_uri for table in parse_tables(data, file))
+        return Opened(file, f"a metamodel, {named}: nothing to migrate")
+    return Opened(file, "a model", document)
+
+
+def _json(tree: Tree, known: Iterable[KnownDocument]) -> Opened:
+    top = tree.top
+    if isinstance(top, Object) and text_in(top, CLASS):
+        return Opened(tree.file, "a model", _document(tree, (top,)))
+    for form in known:
+        items = _items_of(top, form)
+        if items and form.holds:
+            return Opened(tree.file, form.name, _document(tree, items))
+        if items:
+            return Opened(tree.file, f"{form.name}: nothing to migrate")
+    if isinstance(top, Object) and text_in(top, "nsURI"):
+        return Opened(tree.file, f"a metamodel, {text_in(top, 'nsURI')}: nothing to migrate")
+    message = f"no model: the root names no class by {CLASS!r}, and no list that the mapping knows is like it"
+    raise UnreadableError(f"{tree.file}: {message}")
+
+
+def _document(tree: Tree, items: Iterable[Object]) -> Document:
+    return Document(tree.file, tuple(node_of(tree, item) for item in items))
+
+
+def _items_of(value: object, form: KnownDocument) -> tuple[Object, ...]:
+    """Return the items of a list of that form; none where the value is of another."""
+    if form.under:
+        value = value.members.get(form.under) if isinstance(value, Object) else None
+    items = value if isinstance(value, list) else []
+    objects = tuple(item for item in items if isinstance(item, Object))
+    fits = len(objects) == len(items) and all(key in item.members for item in objects for key in form.keys)
+    return objects if fits else ()

@@ -1,0 +1,89 @@
+"""Nodes from XMI, without asking what the metamodel says."""
+
+from __future__ import annotations
+
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.xmi.events import XMI, XSI, Document
+from mmrs_core.migration.nodes import Claim, Link, Node, Text
+from mmrs_core.migration.nodes import Document as SourceDocument
+
+DEEPEST_NESTING = 100
+_LOCATION = f"{XSI} schemaLocation"
+_TYPES = (f"{XSI} type", f"{XMI} type")
+_WRAPPER = f"{XMI} XMI"
+
+
+def parse_xmi(data: bytes, file: str) -> SourceDocument:
+    """Return the elements of an XMI file, whatever language it is in.
+
+    Raises:
+        UnreadableError: if it is not well-formed, has a DOCTYPE, or nests deeper than 100 levels.
+    """
+    document = Document(data, file)
+    listener = _Listener(document)
+    document.parse(listener)
+    return SourceDocument(file, tuple(listener.roots), tuple(listener.locations))
+
+
+class _Listener:
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self.roots: list[Node] = []
+        self.locations: list[tuple[str, str]] = []
+        self._open: list[Node] = []
+        self._words: list[str] = []
+        self._wrapped = False
+
+    def start(self, tag: str, attributes: list[str]) -> None:
+        if len(self._open) >= DEEPEST_NESTING:
+            line = self._document.line
+            raise UnreadableError(
+                f"{self._document.file}:{line}: nested deeper than {DEEPEST_NESTING} levels"
+            )
+        self._words.clear()
+        named = dict(zip(attributes[::2], attributes[1::2], strict=True))
+        places = named.get(_LOCATION, "").split()
+        self.locations += zip(places[::2], places[1::2], strict=False)
+        if tag == _WRAPPER and not self._open:
+            self._wrapped = True
+            return
+        self._begin(tag, named)
+
+    def _begin(self, tag: str, attributes: dict[str, str]) -> None:
+        ns_uri, _, name = tag.rpartition(" ")
+        node = Node(self._document.file, self._document.line)
+        if self._open:
+            node.claim = self._claim(attributes)
+            self._open[-1].add(name, node)
+        else:
+            node.claim = Claim(ns_uri, name)
+            self.roots.append(node)
+        self._open.append(node)
+        for key, text in attributes.items():
+            if " " not in key:
+                node.add(key, Text(text, self._document.line))
+
+    def _claim(self, attributes: dict[str, str]) -> Claim | None:
+        kind = next((attributes[key] for key in _TYPES if key in attributes), "")
+        prefix, _, name = kind.rpartition(":")
+        return Claim(self._document.namespaces.uri(prefix) or prefix, name) if name else None
+
+    def end(self, tag: str) -> None:
+        if not self._open:
+            return
+        node = self._open.pop()
+        words = "".join(self._words).strip()
+        self._words.clear()
+        if self._open and not node.values and node.claim is None and words:
+            _instead(node, Text(words, node.line))
+        elif self._open and node.claim is None and node.text("href"):
+            _instead(node, Link(node.text("href"), node.line))
+
+    def text(self, text: str) -> None:
+        self._words.append(text)
+
+
+def _instead(node: Node, value: Text | Link) -> None:
+    """Let an element that only spells out a value or a reference be that value."""
+    assert node.parent is not None  # the root is never replaced
+    node.parent.values[node.feature][node.index] = value

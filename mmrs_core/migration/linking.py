@@ -1,0 +1,179 @@
+"""What can only be done once every element of a model stands: references, and what hangs on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, radians, sin
+
+from mmrs_core.languages.element import Element, is_kind, label_of, metaclass_of, root_of
+from mmrs_core.languages.grounding.values import child, children
+from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.languages.registry import Registry
+from mmrs_core.migration.building import Draft
+from mmrs_core.migration.converting import number_in
+from mmrs_core.migration.findings import Category
+from mmrs_core.migration.mapping import Rule, Use
+from mmrs_core.migration.nodes import Link, Node, Text
+from mmrs_core.migration.paths import reach
+from mmrs_core.migration.recording import Record
+
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+
+
+class Linker:
+    """Completes a draft."""
+
+    def __init__(self, draft: Draft, registry: Registry, record: Record) -> None:
+        self._draft = draft
+        self._registry = registry
+        self._record = record
+
+    def complete(self) -> None:
+        """Set all references, then what is made of them."""
+        for node, feature, element, use in self._draft.later:
+            if use.bearing is not None:
+                self._bearing(node, feature, element, use)
+            elif use.counterpart is not None:
+                self._counterparts(node, feature, element, use)
+            else:
+                self._refer(node, feature, element, use)
+        for node, rule in self._draft.waits:
+            self._wait(node, rule)
+
+    # references
+
+    def _refer(self, node: Node, feature: str, element: Element, use: Use) -> None:
+        targets = [found for link in node.links(feature) if (found := self._target(node, feature, link))]
+        if use.changed and targets:
+            self._record.value(Category.CHANGED, use.changed, node, feature)
+        for path in use.to:
+            self._set(node, feature, *self._feature(element, path), targets)
+
+    def _feature(self, element: Element, path: str) -> tuple[Element, str]:
+        owner, feature = reach(element, path)
+        return owner, feature.name
+
+    def _set(self, node: Node, feature: str, owner: Element, name: str, targets: list[Element]) -> None:
+        target = metaclass_of(owner).feature(name)
+        fitting = [each for each in targets if target.type.accepts(each)]
+        if len(fitting) < len(targets):
+            self._record.value(Category.LOST, f"leads to what {name} does not take", node, feature)
+        if target.many:
+            present = getattr(owner, target.attribute)
+            present.extend(each for each in fitting if not any(each is other for other in present))
+        elif fitting:
+            setattr(owner, target.attribute, fitting[0])
+            if len(fitting) > 1:
+                self._record.value(Category.LOST, f"{name} refers to one only, the first", node, feature)
+
+    def _target(self, node: Node, feature: str, link: Link) -> Element | None:
+        if link.target is None:
+            self._lost(node, feature, link, "leads to nothing in this file")
+            return None
+        target = self._draft.made.get(link.target)
+        if target is None:
+            self._lost(node, feature, link, f"leads to {link.target.called()}, which is not carried over")
+        return target
+
+    def _lost(self, node: Node, feature: str, link: Link, reason: str) -> None:
+        self._record.value(Category.LOST, reason, node, feature, Text(link.text, link.line))
+
+    # the element of the same name, elsewhere
+
+    def _counterparts(self, node: Node, feature: str, element: Element, use: Use) -> None:
+        assert use.counterpart is not None  # asked before
+        named = [found for link in node.links(feature) if (found := self._target(node, feature, link))]
+        within = use.counterpart.within
+        if use.counterpart.of:
+            links = node.links(use.counterpart.of)
+            owners = [found for link in links if (found := self._target(node, use.counterpart.of, link))]
+        else:
+            owners = [owner for owner in [self._owner(node, within)] if owner is not None]
+        same = [self._same_name(node, feature, each, owner, within) for each in named for owner in owners]
+        if use.changed and same:
+            self._record.value(Category.CHANGED, use.changed, node, feature)
+        for path in use.to:
+            self._set(node, feature, *self._feature(element, path), same)
+
+    def _owner(self, node: Node, within: str) -> Element | None:
+        around = self._draft.around(node)
+        return next((each for each in around if within in metaclass_of(each).by_name), None)
+
+    def _same_name(self, node: Node, feature: str, element: Element, owner: Element, within: str) -> Element:
+        for each in children(owner, within):
+            if each is element or label_of(each) == label_of(element):
+                return each
+        kind = metaclass_of(owner).feature(within)
+        assert isinstance(kind.type, Metaclass)  # it contains elements
+        made = self._registry.create(*kind.type.key, name=label_of(element))
+        getattr(owner, kind.attribute).append(made)
+        reason = f"{label_of(owner)!r} had no {type(made).__name__} of this name, so one is made for it"
+        self._record.value(
+            Category.DEFAULTED, reason, node, feature, Text(repr(label_of(element)), node.line)
+        )
+        return made
+
+    # directions
+
+    def _bearing(self, node: Node, feature: str, element: Element, use: Use) -> None:
+        """Make a heading to a place far away in a direction, because ours always lead to a place."""
+        assert use.bearing is not None  # asked before
+        value = next(value for value in node.values[feature] if isinstance(value, Text))
+        own = use.bearing.base == "self"
+        robot = next((each for each in self._draft.around(node) if is_kind(each, BEHAVIOUR, "Robot")), None)
+        owner = next(self._draft.around(node), None) if own else element
+        base = element if own else child(robot, "home") if robot is not None else None
+        try:
+            angle = radians(number_in(value.text))
+            heading = self._heading(
+                owner, base, (use.bearing.distance * sin(angle), use.bearing.distance * cos(angle))
+            )
+            assert owner is not None  # a heading was made for it
+            setattr(owner, metaclass_of(owner).feature(use.to[0]).attribute, heading)
+        except ValueError as fault:
+            self._record.value(Category.LOST, str(fault), node, feature, value)
+            return
+        reason = (
+            use.changed or f"headings lead to a place: one {use.bearing.distance:g} m away in this direction"
+        )
+        self._record.value(Category.CHANGED, reason, node, feature, value)
+
+    def _heading(self, owner: Element | None, base: Element | None, offset: tuple[float, float]) -> Element:
+        if owner is None:
+            raise ValueError("stands in no move")
+        place = self._registry.create(
+            BEHAVIOUR, "RelativeCoordinate", x=offset[0], y=offset[1], reference=base
+        )
+        targets = metaclass_of(root_of(owner)).feature("targets")
+        getattr(root_of(owner), targets.attribute).append(place)
+        return self._registry.create(BEHAVIOUR, "Heading", target=place)
+
+    # conditions of transitions
+
+    def _wait(self, node: Node, rule: Rule) -> None:
+        wait = rule.wait
+        assert wait is not None  # asked before
+        links = node.links(wait.slot)
+        slot = self._target(node, wait.slot, links[0]) if links else None
+        robot = self._owner(node, wait.among)
+        move = self._draft.made.get(node.parent) if node.parent is not None else None
+        if slot is None or robot is None or move is None:
+            self._record.element(Category.LOST, "waits for nothing that is carried over", node)
+            return
+        within = slot._mmrs_feature.name if slot._mmrs_feature is not None else ""
+        own = self._same_name(node, wait.slot, slot, robot, within)
+        waiting = list(self._transitions(robot, wait.among, wait.at.get(node.feature, ()), move))
+        for transition in waiting:
+            self._set(node, wait.slot, transition, wait.add, [own])
+        if waiting:
+            self._record.element(Category.CHANGED, rule.changed or f"becomes {wait.add} of transitions", node)
+        else:
+            self._record.element(Category.LOST, "no transition stands where it could wait", node)
+
+    def _transitions(
+        self, robot: Element, among: str, ends: tuple[str, ...], move: Element
+    ) -> Iterator[Element]:
+        for transition in children(robot, among):
+            known = [end for end in ends if end in metaclass_of(transition).by_name]
+            if any(child(transition, end) is move for end in known):
+                yield transition

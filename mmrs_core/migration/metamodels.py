@@ -1,0 +1,112 @@
+"""Metamodels of a dialect that are at hand as .ecore files, found by nsURI, by the model, or beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable, read_tables
+from mmrs_core.migration.nodes import Claim, Document
+from mmrs_core.migration.structure import Sort, SourceClass, SourceFeature, Structure
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """How the packages of a dialect are called.
+
+    Attributes:
+        uris: every spelling of the nsURI, by package.
+        files: names of its .ecore files, by package.
+    """
+
+    uris: Mapping[str, tuple[str, ...]]
+    files: Mapping[str, tuple[str, ...]]
+
+    def package(self, document: str) -> str:
+        """Return the package that an nsURI, a prefix or an .ecore file means, or an empty text."""
+        name = document.replace("\\", "/").rpartition("/")[2]
+        for package, uris in self.uris.items():
+            if document in uris or document == package or name in self.files.get(package, ()):
+                return package
+        return ""
+
+    def kind(self, claim: Claim | None) -> str:
+        """Return ``package.Class`` of a claim, or an empty text where the package is unknown."""
+        package = self.package(claim.document) if claim is not None else ""
+        return f"{package}.{claim.name.rpartition('/')[2]}" if claim is not None and package else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A metamodel at hand."""
+
+    file: Path
+    table: PackageTable
+
+
+def candidates(given: Sequence[Path], document: Document) -> Iterator[Path]:
+    """Yield the .ecore files that may describe a document: those given, those it names, those beside it."""
+    for path in given:
+        yield from sorted(path.glob("*.ecore")) if path.is_dir() else (path,)
+    folder = Path(document.file).parent
+    for _, location in document.locations:
+        if "://" not in location and (folder / location.partition("#")[0]).is_file():
+            yield folder / location.partition("#")[0]
+    if folder.is_dir():
+        yield from sorted(folder.glob("*.ecore"))
+
+
+def metamodels_for(document: Document, given: Sequence[Path], dialect: Dialect) -> dict[str, Found]:
+    """Return the metamodels at hand by package; of several, the one whose nsURI the document names.
+
+    Raises:
+        UnreadableError: if a metamodel that was given is none; one that only lies beside the model is
+            passed over.
+    """
+    wanted = {root.claim.document for root in document.roots if root.claim}
+    wanted |= {uri for uri, _ in document.locations}
+    chosen: dict[str, Found] = {}
+    for found in _readable(dict.fromkeys(candidates(given, document)), frozenset(given)):
+        package = dialect.package(found.table.ns_uri)
+        exact = found.table.ns_uri in wanted
+        if package and (package not in chosen or (exact and chosen[package].table.ns_uri not in wanted)):
+            chosen[package] = found
+    return chosen
+
+
+def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
+    for file in files:
+        try:
+            yield from (Found(file, table) for table in read_tables(file))
+        except UnreadableError:
+            if file in given or file.parent in given:
+                raise
+
+
+def structure_of(metamodels: Mapping[str, Found], dialect: Dialect) -> Structure:
+    """Return the classes of metamodels."""
+    classes = {
+        f"{package}.{table.name}": _class(package, table, dialect)
+        for package, found in metamodels.items()
+        for table in found.table.classes
+    }
+    return Structure(classes)
+
+
+def _class(package: str, table: ClassTable, dialect: Dialect) -> SourceClass:
+    supertypes = tuple(_kind(uri, package, dialect) for uri in table.supertypes)
+    features = tuple(_feature(feature, package, dialect) for feature in table.features)
+    return SourceClass(f"{package}.{table.name}", supertypes, features)
+
+
+def _feature(table: FeatureTable, package: str, dialect: Dialect) -> SourceFeature:
+    sort = Sort.CONTAINED if table.containment else Sort.REFERENCE if table.is_reference else Sort.ATTRIBUTE
+    return SourceFeature(table.name, _kind(table.type, package, dialect), sort, table.upper != 1)
+
+
+def _kind(uri: str, package: str, dialect: Dialect) -> str:
+    document, _, fragment = uri.partition("#")
+    owner = dialect.package(document) if document else package
+    return f"{owner or document}.{fragment.rpartition('/')[2]}"

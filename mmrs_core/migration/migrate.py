@@ -1,0 +1,130 @@
+"""From source files to models of ours, with everything that has to be told about the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.registry import Registry
+from mmrs_core.migration.building import Builder
+from mmrs_core.migration.circling import draw_ring
+from mmrs_core.migration.documents import Opened, open_document
+from mmrs_core.migration.findings import Finding
+from mmrs_core.migration.linking import Linker
+from mmrs_core.migration.mapping import DialectMapping
+from mmrs_core.migration.metamodels import metamodels_for, structure_of
+from mmrs_core.migration.nodes import Document
+from mmrs_core.migration.outputs import ROBOT_TYPE, Made, Output, outputs_of
+from mmrs_core.migration.reading import Reader
+from mmrs_core.migration.recording import Record
+from mmrs_core.migration.robot_types import RobotTypes
+from mmrs_core.migration.structure import Structure
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A file, and what it turned out to be.
+
+    Attributes:
+        what: such as "a model" or "a metamodel, http://…: nothing to migrate".
+        metamodels: where its metamodels were found, by package; what is missing there is as the mapping says.
+    """
+
+    file: str
+    what: str
+    metamodels: Mapping[str, Path]
+
+
+@dataclass(frozen=True, slots=True)
+class Migration:
+    """What came of source files.
+
+    Attributes:
+        sources: in the order in which they were given.
+        outputs: the models, none twice.
+        findings: everything that was not carried over just as it was.
+    """
+
+    sources: tuple[Source, ...]
+    outputs: tuple[Output, ...]
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Settled:
+    document: Document
+    structure: Structure
+    source: Source
+
+
+def migrate(
+    files: Sequence[Path],
+    mapping: DialectMapping,
+    registry: Registry,
+    *,
+    metamodels: Sequence[Path] = (),
+    types: Mapping[str, str] | None = None,
+    present: Mapping[str, Element] | None = None,
+) -> Migration:
+    """Return what files of a dialect become.
+
+    Args:
+        metamodels: .ecore files, or folders of them, that go before those found beside the files.
+        types: what the names of robot types in the files stand for; goes before what the mapping says.
+        present: robot types that are at hand already, by name.
+
+    Raises:
+        UnreadableError: if a file cannot be read, or is of no known form.
+    """
+    opened = [open_document(path, mapping.documents) for path in files]
+    settled = {each.file: _settled(each, mapping, metamodels) for each in opened if each.document is not None}
+    robots = RobotTypes(present or {}, {**mapping.types, **(types or {})}, mapping.otherwise)
+    record, made = Record(), list[Made]()
+    for each in _types_first(settled.values(), mapping):
+        for root in _built(each, mapping, registry, robots, record):
+            made.append(root)
+            if registry.metaclass(*ROBOT_TYPE).accepts(root.element):
+                robots.known.setdefault(getattr(root.element, "name", None) or "", root.element)
+    sources = tuple(_source(each, settled) for each in opened)
+    return Migration(sources, outputs_of(made, registry, record), tuple(record.findings))
+
+
+def _source(opened: Opened, settled: Mapping[str, _Settled]) -> Source:
+    return settled[opened.file].source if opened.file in settled else Source(opened.file, opened.what, {})
+
+
+def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> _Settled:
+    """Return a document whose nodes know their classes, by the metamodels at hand and by the mapping."""
+    document = opened.document
+    assert document is not None  # asked before
+    found = metamodels_for(document, given, mapping.dialect)
+    structure = structure_of(found, mapping.dialect).over(mapping.structure, found)
+    Reader(structure, mapping.dialect).settle(document)
+    places = {package: each.file for package, each in found.items()}
+    return _Settled(document, structure, Source(opened.file, opened.what, places))
+
+
+def _types_first(settled: Iterable[_Settled], mapping: DialectMapping) -> list[_Settled]:
+    """Return documents with robot types before all others, which may name them."""
+
+    def rank(each: _Settled) -> bool:
+        kinds = [mapping.rule(root.kind, "", each.structure) for root in each.document.roots]
+        return not any(rule is not None and rule.robot_type for rule in kinds)
+
+    return sorted(settled, key=rank)
+
+
+def _built(
+    settled: _Settled, mapping: DialectMapping, registry: Registry, types: RobotTypes, record: Record
+) -> list[Made]:
+    builder = Builder(mapping, settled.structure, registry, types, record)
+    for root in settled.document.roots:
+        builder.root(root)
+    draft = builder.draft
+    Linker(draft, registry, record).complete()
+    for node, rule in draft.rings:
+        draw_ring(node, rule, draft, registry, record)
+    nodes = {draft.made[node]: node for node in settled.document.roots if node in draft.made}
+    return [Made(element, nodes[element]) for element in draft.roots]

@@ -1,0 +1,51 @@
+"""Notes what happens to values while a model is built."""
+
+from __future__ import annotations
+
+from mmrs_core.migration.findings import Category, Finding
+from mmrs_core.migration.nodes import Link, Node, Text
+
+_MOST_VALUES = 6
+
+
+class Record:
+    """The findings of a migration, in the order in which they were met."""
+
+    def __init__(self) -> None:
+        self.findings: list[Finding] = []
+
+    def value(
+        self, category: Category, reason: str, node: Node, feature: str, value: Text | None = None
+    ) -> None:
+        """Note what happens to a feature of an element, or to one value of it."""
+        said = (
+            value.text
+            if value is not None
+            else ", ".join(_words(each) for each in node.values.get(feature, ()))
+        )
+        subject = f"{feature}{said and ' ' + said} of {node.called()}"
+        line = value.line if value is not None else _line(node, feature)
+        self.findings.append(Finding(category, reason, subject, node.place(line)))
+
+    def element(self, category: Category, reason: str, node: Node) -> None:
+        """Note what happens to a whole element; its values are told with it where it is lost."""
+        told = f" ({_content(node)})" if category is Category.LOST and node.values else ""
+        self.findings.append(Finding(category, reason, f"{node.called()}{told}", node.place()))
+
+
+def _line(node: Node, feature: str) -> int:
+    return next((value.line for value in node.values.get(feature, ())), 0)
+
+
+def _words(value: Text | Link | Node) -> str:
+    return value.called() if isinstance(value, Node) else value.text
+
+
+def _content(node: Node) -> str:
+    parts = [
+        f"{feature} {', '.join(_words(value) for value in values)}"
+        for feature, values in node.values.items()
+        if feature != "name"
+    ]
+    more = f" and {len(parts) - _MOST_VALUES} more" if len(parts) > _MOST_VALUES else ""
+    return "; ".join(parts[:_MOST_VALUES]) + more or "nothing but a name"
