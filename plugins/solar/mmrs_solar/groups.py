@@ -92,7 +92,7 @@ def laid_out(part: Part) -> Group:
     if len(ends) != 2:
         raise InfeasibleError(f"panel group '{text(part, 'name')}' has no two points")
     azimuth, tilt, width = (_needed(part, name) for name in ("azimuth", "tilt", "rowWidth"))
-    rows, columns, tiers = (round(number(part, name) or 1.0) for name in ("rows", "columns", "tiers"))
+    rows, columns, tiers = (whole(part, name, 1) for name in ("rows", "columns", "tiers"))
     pitch = _needed(part, "pitch") if rows > 1 else 0.0
     facing, slope = radians(azimuth), radians(tilt)
     east, north = -sin(facing), -cos(facing)
@@ -109,6 +109,12 @@ def laid_out(part: Part) -> Group:
         columns=columns,
         tiers=tiers,
     )
+
+
+def whole(part: Part, name: str, otherwise: int) -> int:
+    """Return a whole number, or another where it is absent."""
+    found = number(part, name)
+    return otherwise if found is None else round(found)
 
 
 def between(begin: Position, end: Position, share: float) -> Position:

@@ -6,9 +6,9 @@ from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import Look, Part, Robot, Scene, Stroke, Task, Work
-from mmrs_core.scene.attributes import number, text
+from mmrs_core.scene.attributes import text
 from mmrs_solar.camera import optics_of
-from mmrs_solar.groups import group_of
+from mmrs_solar.groups import group_of, whole
 from mmrs_solar.names import PANEL_LOOK_TASK
 from mmrs_solar.recording import camera_for, distance_for, recorded
 from mmrs_solar.views import before, view_of
@@ -47,7 +47,7 @@ def _suspects(part: Part) -> tuple[tuple[int, int, int], ...]:
 
 def address_of(panel: Part) -> tuple[int, int, int]:
     """Return (row, column, tier) of a suspected panel; 0 where one is not given, which is no panel."""
-    row, column, tier = (round(number(panel, name) or 0.0) for name in ("row", "column", "tier"))
+    row, column, tier = (whole(panel, name, 0) for name in ("row", "column", "tier"))
     return row, column, tier
 
 

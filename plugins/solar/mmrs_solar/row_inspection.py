@@ -13,7 +13,7 @@ from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import Device, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, text
 from mmrs_solar.camera import RECORDING_KEYS, figures, optics_of
-from mmrs_solar.groups import Group, between, group_of
+from mmrs_solar.groups import Group, between, group_of, whole
 from mmrs_solar.names import THERMAL_ROW_TASK
 from mmrs_solar.recording import camera_for, distance_for, recorded
 from mmrs_solar.views import View, aim_beyond, before, view_of
@@ -123,7 +123,7 @@ def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]
 
 def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, Position, Position]]:
     """Yield (row, begin, end) of each way of the camera, all in the direction of the group's points."""
-    first, last = round(number(part, "firstRow") or 1.0), round(number(part, "lastRow") or group.rows)
+    first, last = whole(part, "firstRow", 1), whole(part, "lastRow", group.rows)
     if not 1 <= first <= last <= group.rows:
         raise InfeasibleError(f"rows {first} to {last} are asked for, the group has {group.rows}")
     for row in range(first, last + 1):
