@@ -20,6 +20,7 @@ from mmrs_core.contributions.execution import BackendFactory, Condition
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource
 
 hookspec = pluggy.HookspecMarker("mmrs")
@@ -32,6 +33,11 @@ def mmrs_metamodels() -> Iterable[MetamodelSource]:  # type: ignore[empty-body]
 
     They refer to each other and to the core's by nsURI, never by path. Two of one nsURI are an error.
     """
+
+
+@hookspec
+def mmrs_migrations() -> Iterable[Migration]:  # type: ignore[empty-body]
+    """Contribute steps from older versions of languages; one for each nsURI that they begin at."""
 
 
 @hookspec

@@ -16,6 +16,7 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.errors import PluginError
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 from mmrs_core.scene import Name
 
@@ -28,6 +29,7 @@ Declared = Callable[[str], "Iterable[tuple[str, Any]]"]
 
 _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "metamodels": lambda source: source.ns_uri,
+    "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
     "constraints": lambda constraint: constraint.code,
     "rules": lambda rule: rule.name,
     "robot_kinds": lambda kind: kind.name,
@@ -73,7 +75,12 @@ class Contributions:
     @cached_property
     def languages(self) -> Registry:
         """Return the registry of all metamodels, the core's included."""
-        return registry_with(self.metamodels)
+        return registry_with(self.metamodels, self.migrations)
+
+    @cached_property
+    def migrations(self) -> tuple[Migration, ...]:
+        """Return the steps from older versions of languages."""
+        return tuple(self._by("migrations", lambda migration: migration.from_uri).values())
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

@@ -36,6 +36,8 @@ CODES: Mapping[str, str] = MappingProxyType(
         "ECO010": "an element of a metamodel that is not installed",
         "ECO011": "a reference whose other end does not refer back",
         "ECO012": "an identifier that two elements of a model have",
+        "MIG001": "a model of an older version of its language, migrated while it was read",
+        "MIG002": "a value that the newer version of a language has no place for",
         "PRJ001": "two types of robot of one name",
         "PRJ002": "a file of a project that does not hold what belongs there",
     }

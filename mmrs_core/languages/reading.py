@@ -9,14 +9,14 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Source
-from mmrs_core.languages.json_form.reader import JsonReader
-from mmrs_core.languages.json_form.tree import Tree, is_json
+from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
+from mmrs_core.languages.json_form.tree import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.resolution import resolve, tell_other_ends
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document, read_bytes
-from mmrs_core.languages.xmi.reader import XmiReader
+from mmrs_core.languages.xmi.quick import QuickReader
 
 
 class Reading:
@@ -59,10 +59,12 @@ class Reading:
         draft = Draft(source)
         with _collector_at_rest():
             if is_json(source.file):
-                JsonReader(Tree(data, source.file), draft, self._registry).read()
+                read_json(data, draft, self._registry)
+            elif may_be_old(data, self._registry):
+                read_old_xmi(data, draft, self._registry)
             else:
                 document = Document(data, source.file)
-                document.parse(XmiReader(document, draft, self._registry))
+                document.parse(QuickReader(document, draft, self._registry), counts_depth=True)
         source.roots = tuple(draft.roots)
         self._unresolved.append(draft)
         return draft

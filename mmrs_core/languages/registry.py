@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.metamodels.assembly import Assembly
 from mmrs_core.languages.metamodels.locating import Located, locate_all
@@ -40,10 +41,12 @@ class Registry:
     Attributes:
         packages: in the order in which they were given, a package before those inside it.
         everything: the same, with the part of Ecore itself that models may hold.
+        migrations: steps from older versions of them.
     """
 
-    def __init__(self, packages: Iterable[Package]) -> None:
+    def __init__(self, packages: Iterable[Package], migrations: Iterable[Migration] = ()) -> None:
         self.everything = tuple(packages)
+        self.migrations = tuple(migrations)
         self.packages = tuple(package for package in self.everything if package.ns_uri != ECORE)
         self._packages = {package.ns_uri: package for package in self.everything}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
@@ -82,7 +85,18 @@ class Registry:
     def extended(self, sources: Iterable[MetamodelSource]) -> Registry:
         """Return these metamodels together with others; errors as in `registry_with`."""
         more = tuple(sources)
-        return Registry((*self.everything, *_assemble(more, self.everything))) if more else self
+        if not more:
+            return self
+        return Registry((*self.everything, *_assemble(more, self.everything)), self.migrations)
+
+    @cached_property
+    def chains(self) -> Mapping[str, tuple[Migration, ...]]:
+        """The migrations that lead to an installed version, by the nsURI where they begin.
+
+        Raises:
+            PluginError: if migrations lead in a circle, or two begin at one nsURI.
+        """
+        return chains(self.migrations, self._packages)
 
     def create(self, ns_uri: str, name: str, /, **features: object) -> Element:
         """Return a new element whose features have the given values.
@@ -102,8 +116,12 @@ def core_registry() -> Registry:
     return Registry(_assemble(sources, ()))
 
 
-def registry_with(sources: Iterable[MetamodelSource]) -> Registry:
+def registry_with(sources: Iterable[MetamodelSource], migrations: Iterable[Migration] = ()) -> Registry:
     """Return the core's metamodels together with others, which may build upon each other in any order.
+
+    Args:
+        sources: the others.
+        migrations: from older versions of any of them.
 
     Raises:
         PluginError: if a metamodel refers to one that is missing, two have the same nsURI, a class inherits
@@ -111,7 +129,7 @@ def registry_with(sources: Iterable[MetamodelSource]) -> Registry:
         UnreadableError: if a file is no metamodel.
     """
     core = core_registry().everything
-    return Registry((*core, *_assemble(tuple(sources), core)))
+    return Registry((*core, *_assemble(tuple(sources), core)), migrations)
 
 
 def _assemble(sources: Iterable[MetamodelSource], known: tuple[Package, ...]) -> tuple[Package, ...]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Protocol
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Unknown, label_of
-from mmrs_core.languages.json_form.tree import Node, Tree, Words
+from mmrs_core.languages.json_form.tree import Node, Words
 from mmrs_core.languages.json_form.unknown import kept
 from mmrs_core.languages.json_form.values import parsed
 from mmrs_core.languages.metaclass import Feature, Metaclass
@@ -21,10 +22,30 @@ _HEAD = frozenset((LANGUAGES, PLACES, ROOTS, "$schema"))
 _Job = tuple[Node, Element | None, Feature | None]
 
 
-class JsonReader:
-    """Reads one tree into a draft."""
+class Lined(Protocol):
+    """A tree of objects, and the lines on which they say what they say."""
 
-    def __init__(self, tree: Tree, draft: Draft, registry: Registry) -> None:
+    @property
+    def file(self) -> str:
+        """What messages call the file."""
+
+    @property
+    def top(self) -> object:
+        """What stands at the top."""
+
+    def line_of(self, node: Node, key: str) -> int:
+        """Return the line on which an object says something."""
+
+
+class JsonReader:
+    """Reads one tree into a draft.
+
+    Attributes:
+        made: the element that was made of each object, by the object's `id`.
+    """
+
+    def __init__(self, tree: Lined, draft: Draft, registry: Registry) -> None:
+        self.made: dict[int, Element] = {}
         self._tree = tree
         self._draft = draft
         self._registry = registry
@@ -97,6 +118,7 @@ class JsonReader:
         self._members(element, metaclass, node, jobs)
 
     def _stands(self, element: Element, node: Node, owner: Element | None, feature: Feature | None) -> None:
+        self.made[id(node)] = element
         element._mmrs_line = node.line
         element._mmrs_source = self._draft.source
         if owner is None or feature is None:

@@ -29,6 +29,12 @@ class Words(str):
     __slots__ = ()
 
 
+class Leaf(str):
+    """What stands in an XML element that has neither attributes nor elements inside."""
+
+    __slots__ = ()
+
+
 class Node:
     """A JSON object.
 
@@ -44,6 +50,12 @@ class Node:
         self.members = members
         self.line = line
         self.offset = offset
+
+    @property
+    def kind(self) -> str:
+        """The name of its class, without the language; empty where it does not say it."""
+        claimed = self.members.get("$type")
+        return re.split("[#:]", claimed)[-1].removeprefix("//") if isinstance(claimed, str) else ""
 
 
 class Tree:

@@ -17,6 +17,7 @@ from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource
 from mmrs_core.plugins import load_plugins
 
@@ -58,6 +59,13 @@ def test_hook_mmrs_metamodels(tmp_path):
     contributions = contributions_with("mmrs_metamodels", MetamodelSource(KITE[0], ecore, "kites"))
     kite = contributions.languages.metaclass(*KITE)
     assert ("urn:mmrs:robot:1.0", "Robot") in kite.ancestry
+
+
+def test_hook_mmrs_migrations():
+    migration = Migration(KITE[0], "urn:test:kite:1.1", classes={"Kite": "Wing"})
+    contributions = contributions_with("mmrs_migrations", migration)
+    assert contributions.migrations == (migration,)
+    assert contributions.languages.migrations == (migration,)
 
 
 def test_hook_mmrs_constraints():

@@ -1,0 +1,99 @@
+"""Reads models of older versions: as trees, migrated, and then as elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.evolution.migrating import Lost, Migrating
+from mmrs_core.languages.evolution.old_xmi import OldXmi
+from mmrs_core.languages.json_form.reader import LANGUAGES, ROOTS, JsonReader
+from mmrs_core.languages.json_form.tree import Node, Tree
+from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xmi.events import Document
+
+MIGRATED, LOST = "MIG001", "MIG002"
+
+
+@dataclass(frozen=True, slots=True)
+class XmiTree:
+    """A tree that was made of XMI."""
+
+    file: str
+    top: object
+
+    def line_of(self, node: Node, key: str) -> int:
+        """Return the line on which the element begins: XML does not tell that of its attributes."""
+        return node.line
+
+
+def may_be_old(data: bytes, registry: Registry) -> bool:
+    """Return whether a file mentions a version of a language from which a migration leads away."""
+    return any(ns_uri.encode() in data for ns_uri in registry.chains)
+
+
+def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:
+    """Read an XMI file that mentions an old version; errors as in `Document.parse`."""
+    document = Document(data, draft.source.file)
+    old = OldXmi(document, lambda ns_uri: registry.has(ns_uri) or ns_uri in registry.chains)
+    document.parse(old)
+    for what, line in old.ignored:
+        message = f"{what}: not read, and not kept when the model is saved"
+        draft.fault("XMI011", message, line, severity=Severity.WARNING)
+    way = Migrating(old.roots, registry, {})
+    top = Node({ROOTS: list(old.roots)})
+    _read(XmiTree(draft.source.file, top), old.roots, way, draft, registry)
+
+
+def read_json(data: bytes, draft: Draft, registry: Registry) -> None:
+    """Read a JSON file, whatever version it is of; errors as in `Tree`."""
+    tree = Tree(data, draft.source.file)
+    top = tree.top
+    if not isinstance(top, Node) or not may_be_old(data, registry):
+        JsonReader(tree, draft, registry).read()
+        return
+    listed = top.members.get(ROOTS, [top])
+    roots = [each for each in (listed if isinstance(listed, list) else [listed]) if isinstance(each, Node)]
+    prefixes = top.members.get(LANGUAGES)
+    languages = {k: str(v) for k, v in prefixes.members.items()} if isinstance(prefixes, Node) else {}
+    _read(tree, roots, Migrating(roots, registry, languages), draft, registry)
+
+
+def _read(
+    tree: Tree | XmiTree, roots: Sequence[Node], way: Migrating, draft: Draft, registry: Registry
+) -> None:
+    reader = JsonReader(tree, draft, registry)
+    reader.read()
+    for address, node in way.addresses.items():
+        element = reader.made.get(id(node))
+        if element is not None:
+            draft.found[address] = element  # references in the file still say where things stood before
+    _tell(roots, way, draft)
+
+
+def _tell(roots: Sequence[Node], way: Migrating, draft: Draft) -> None:
+    line = roots[0].line if roots else 1
+    for start, end in _ends(way):
+        message = f"{start}: an older version; migrated to {end} while it was read"
+        hint = "the file is as it was; save the model to have it in the new version"
+        draft.fault(MIGRATED, message, line, hint=hint, severity=Severity.NOTE)
+    for lost in way.lost:
+        draft.fault(LOST, _lost(lost), lost.line, hint=_LOST_HINT, severity=Severity.WARNING)
+
+
+_LOST_HINT = "see whether the mission still means what it did"
+
+
+def _lost(lost: Lost) -> str:
+    return f"{lost.feature}: {lost.value!r} has no place in {lost.version}, and is left out"
+
+
+def _ends(way: Migrating) -> list[tuple[str, str]]:
+    """Return where each chain of steps begins and ends."""
+    ends: dict[str, str] = {}
+    for step in way.steps:
+        start = next((begin for begin, end in ends.items() if end == step.from_uri), step.from_uri)
+        ends[start] = step.to_uri
+    return list(ends.items())

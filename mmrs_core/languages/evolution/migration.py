@@ -1,0 +1,78 @@
+"""How models of one version of a language become models of the next, and which steps lead where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from mmrs_core.errors import PluginError
+from mmrs_core.languages.json_form.tree import Node
+
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class Migration:
+    """One step from a version of a language to the next; it runs when an older model is read.
+
+    A feature is named ``Class.feature``, by the old names, and meant for the subclasses of that class as
+    well, in whatever language they are.
+
+    Attributes:
+        from_uri: nsURI of the older version.
+        to_uri: nsURI of the newer one.
+        classes: new names of classes by old ones.
+        features: new names of features by old ones, such as ``{"Kite.string": "line"}``.
+        values: new values by old ones, as they stand in files, by the old name of the feature.
+        dropped: features that the newer version has no place for; a warning tells each value that is lost.
+        rewrite: called with each element of the language after all that, outer ones before inner ones, to
+            change its `members` in place; numbers and truth values are text there.
+    """
+
+    from_uri: str
+    to_uri: str
+    classes: Mapping[str, str] = field(default_factory=lambda: _NOTHING)
+    features: Mapping[str, str] = field(default_factory=lambda: _NOTHING)
+    values: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    dropped: frozenset[str] = frozenset()
+    rewrite: Callable[[Node], None] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse names of features that name no class.
+
+        Raises:
+            ValueError: if a feature is not written ``Class.feature``.
+        """
+        for name in (*self.features, *self.values, *self.dropped):
+            owner, dot, feature = name.partition(".")
+            if not (owner and dot and feature):
+                raise ValueError(f"{name!r}: a feature is written Class.feature")
+
+
+def chains(migrations: Iterable[Migration], installed: Container[str]) -> Mapping[str, tuple[Migration, ...]]:
+    """Return the steps that lead from each old nsURI to an installed one; none for those that lead nowhere.
+
+    Raises:
+        PluginError: if steps lead in a circle, or two begin at one nsURI.
+    """
+    steps: dict[str, Migration] = {}
+    for migration in migrations:
+        if migration.from_uri in steps:
+            raise PluginError(f"{migration.from_uri}: two migrations begin there")
+        steps[migration.from_uri] = migration
+    found = {start: _chain(start, steps, installed) for start in steps if start not in installed}
+    return {start: chain for start, chain in found.items() if chain}
+
+
+def _chain(start: str, steps: Mapping[str, Migration], installed: Container[str]) -> tuple[Migration, ...]:
+    chain: list[Migration] = []
+    ns_uri = start
+    while ns_uri not in installed:
+        if ns_uri not in steps:
+            return ()
+        if any(step.from_uri == ns_uri for step in chain):
+            raise PluginError(f"{start}: its migrations lead in a circle")
+        chain.append(steps[ns_uri])
+        ns_uri = steps[ns_uri].to_uri
+    return tuple(chain)
