@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from enum import StrEnum
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from mmrs_core.cli.output import say, say_json, tell
+from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
 
 app = typer.Typer(
@@ -41,6 +44,53 @@ def list_plugins(call: typer.Context, json: Json = False) -> int:
         for sort, names in sorts.items():
             say(f"  {sort.replace('_', ' ')}: {_listed(names)}")
     return 1 if conflict else 0
+
+
+class TaskSort(StrEnum):
+    """What a new plug-in's task is about."""
+
+    POLYGON = "polygon"
+    LINE = "line"
+    POINT = "point"
+
+
+@app.command("new")
+def new_plugin(
+    call: typer.Context,
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="In small letters, digits and hyphens, such as roof-wash.")
+    ],
+    task: Annotated[TaskSort, typer.Option("--task", help="What its task is about.")] = TaskSort.POLYGON,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Its folder, new or empty; else mmrs-NAME."),
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Write a plug-in with a task of its own: metamodel, rule, constraint, symbol, example and tests.
+
+    Example: mmrs plugin new roof-wash --task polygon
+    """
+    from mmrs_core.generation.scaffolding.names import plugin_names
+    from mmrs_core.generation.scaffolding.write import write_plugin
+
+    known = settings_of(call).plugins().contributions
+    taken = {each.plugin for each in known.catalogue()}
+    taken |= {part for source in known.metamodels for part in source.ns_uri.split(":")}
+    try:
+        names = plugin_names(name, taken, [each.code for each in known.constraints])
+    except ValueError as fault:
+        raise typer.BadParameter(str(fault)) from fault
+    folder = output or Path(names.distribution)
+    written = write_plugin(names, task.value, folder, known.metamodels)
+    if json:
+        say_json({"plugin": names.name, "distribution": names.distribution, "files": written})
+        return 0
+    say(f"{names.distribution}: {counted(len(written), 'file')} written to {folder}")
+    say("Next:")
+    for command in (f"cd {folder}", 'pip install -e ".[test]"', "pytest", "mmrs plan example"):
+        say(f"  {command}")
+    return 0
 
 
 _Found = dict[str, tuple[str, str, dict[str, list[str]]]]

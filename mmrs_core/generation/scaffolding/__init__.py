@@ -1,0 +1,1 @@
+"""New plug-ins: everything that makes one, written from templates."""

@@ -1,0 +1,25 @@
+"""What must hold for every contribution of its sort, as test classes for plug-ins to subclass.
+
+A test module of a plug-in says ``class TestConstraints(ConstraintConformance)``, gives what the class
+asks for as attributes, and pytest runs all its laws. Needs pytest and hypothesis.
+"""
+
+import pytest
+
+_MODULES = ("constraints", "declared", "metamodels", "missions", "plugins", "rules")
+pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
+
+from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
+from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
+from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
+from mmrs_core.testing.conformance.plugins import PluginConformance  # noqa: E402
+from mmrs_core.testing.conformance.rules import RuleConformance  # noqa: E402
+
+__all__ = [
+    "Case",
+    "ConstraintConformance",
+    "MetamodelConformance",
+    "MissionConformance",
+    "PluginConformance",
+    "RuleConformance",
+]

@@ -1,0 +1,96 @@
+"""Laws for constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.registry import Registry
+from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.instances import instances_of
+from mmrs_core.testing.models import breaches, findings
+
+Roots = Callable[[Registry], Iterable[Element]]
+RELAXED = settings(
+    deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Models that show what a constraint is about.
+
+    Attributes:
+        broken: makes models that break it once.
+        kept: makes models that keep it, best by as little as possible.
+    """
+
+    broken: Roots
+    kept: Roots
+
+
+class ConstraintConformance(Conformance):
+    """Every constraint of a plug-in finds what it is for and nothing else, and says so in our words.
+
+    Attributes:
+        cases: by code.
+        needs: metaclasses whose elements cannot stand alone, so that no random ones are made, by name.
+    """
+
+    cases: ClassVar[Mapping[str, Case]]
+
+    def test_every_constraint_has_a_case(self) -> None:
+        """No constraint goes untested, and no case is left over."""
+        assert set(self.cases) == {each.code for each in declared(self.plugin, "constraints")}
+
+    def test_a_breach_is_found_once_and_begins_with_its_culprit(
+        self, constraint: Constraint, registry: Registry
+    ) -> None:
+        """Messages are lower case, without a full stop, the culprit first."""
+        found = breaches(constraint, self.cases[constraint.code].broken(registry))
+        assert len(found) == 1
+        assert found[0][0].islower()
+        assert not found[0].endswith(".")
+
+    def test_a_model_that_keeps_the_constraint_passes(
+        self, constraint: Constraint, registry: Registry
+    ) -> None:
+        """What is right is not reported."""
+        assert breaches(constraint, self.cases[constraint.code].kept(registry)) == []
+
+    def test_elements_without_any_feature_set_crash_no_constraint(
+        self, constraint: Constraint, registry: Registry
+    ) -> None:
+        """Models are checked while they are half done."""
+        wanted = registry.metaclass(*constraint.metaclass)
+        for package in registry.packages:
+            for metaclass in package.metaclasses:
+                if wanted.key in metaclass.ancestry and metaclass.implementation:
+                    list(findings(constraint, [metaclass.interface()]))
+
+    @RELAXED
+    @given(data=st.data())
+    def test_random_models_crash_no_constraint(
+        self, constraint: Constraint, registry: Registry, data: st.DataObject
+    ) -> None:
+        """Whatever a model holds, a constraint yields findings with places."""
+        try:
+            models = instances_of(registry, *constraint.metaclass)
+        except ValueError:
+            pytest.skip(f"no {constraint.metaclass[1]} can stand alone")
+        for finding in findings(constraint, [data.draw(models)]):
+            assert isinstance(finding.element, Element)
+            assert finding.message
+
+    def test_the_documentation_tells_what_must_hold_and_how_to_mend_it(self, constraint: Constraint) -> None:
+        """The title is a sentence without a full stop; the hint says what to do."""
+        assert constraint.title[0].isupper()
+        assert not constraint.title.endswith(".")
+        assert constraint.hint

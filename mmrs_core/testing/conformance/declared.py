@@ -1,0 +1,46 @@
+"""What a plug-in object declares, asked of it without loading any other plug-in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+import pytest
+
+from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
+
+
+def declared(plugin: object, sort: str) -> tuple[Any, ...]:
+    """Return what a plug-in declares of a sort, such as ``rules``; nothing where it has no such hook."""
+    hook = getattr(plugin, f"mmrs_{sort}", None)
+    return tuple(hook()) if hook is not None else ()
+
+
+class Conformance:
+    """A plug-in whose contributions are tested.
+
+    Attributes:
+        plugin: the module or object with its hooks.
+        more_metamodels: those that tests need beside the plug-in's own.
+    """
+
+    plugin: ClassVar[object]
+    more_metamodels: ClassVar[Iterable[MetamodelSource]] = ()
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def registry(cls) -> Registry:
+        """Return the core's metamodels with the plug-in's and those of the tests."""
+        return registry_with((*declared(cls.plugin, "metamodels"), *cls.more_metamodels))
+
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """Run a test once for each descriptor of the sort that one of its arguments is named after."""
+        for sort in ("rule", "constraint", "robot_kind", "move_kind", "target", "backend", "map_symbol"):
+            if sort in metafunc.fixturenames:
+                items = declared(self.plugin, f"{sort}s")
+                metafunc.parametrize(sort, items, ids=[_label(item) for item in items])
+
+
+def _label(item: Any) -> str:
+    named = (getattr(item, name, "") for name in ("code", "name"))
+    return next(filter(None, named), "") or str(item.metaclass[1])

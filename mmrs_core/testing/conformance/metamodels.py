@@ -1,0 +1,91 @@
+"""Laws for metamodels."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.registry import MetamodelSource, Registry
+from mmrs_core.languages.writing import to_xmi
+from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.instances import instances_of
+from mmrs_core.testing.kinds import kinds_below
+
+RELAXED = settings(
+    deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+
+
+class MetamodelConformance(Conformance):
+    """Every metamodel of a plug-in is one that models can be made of, kept in files and read about."""
+
+    def test_there_is_a_metamodel(self) -> None:
+        """A plug-in whose metamodels are tested has one."""
+        assert self._sources()
+
+    def test_metamodels_are_files_that_hold_what_they_announce(self, registry: Registry) -> None:
+        """Each comes from a file of the plug-in, under its nsURI."""
+        for source in self._sources():
+            assert isinstance(source.ecore, Path)
+            assert source.ecore.is_file()
+            assert registry.package(source.ns_uri).ecore == source.ecore
+
+    def test_every_class_and_feature_is_documented(self, registry: Registry) -> None:
+        """Editors and the page about the languages show the documentation."""
+        undocumented = [
+            f"{metaclass.name}{feature and '.' + feature}"
+            for metaclass in self._metaclasses(registry)
+            for feature, text in _texts(metaclass)
+            if not text
+        ]
+        assert undocumented == []
+
+    def test_every_real_number_is_a_double(self, registry: Registry) -> None:
+        """Numbers keep all their bits."""
+        for metaclass in self._metaclasses(registry):
+            assert not [each.name for each in metaclass.features if each.type.name == "EFloat"]
+
+    @RELAXED
+    @given(data=st.data())
+    def test_random_models_are_valid_and_survive_in_files(
+        self, registry: Registry, data: st.DataObject
+    ) -> None:
+        """What is written is read back as the same valid model."""
+        alone = [each for each in self._metaclasses(registry) if _stands_alone(registry, each)]
+        if not alone:
+            return
+        chosen = data.draw(st.sampled_from(sorted(alone, key=lambda each: each.key)))
+        root = data.draw(instances_of(registry, *chosen.key))
+        assert check_conformance(Model("m", (root,)), registry) == ()
+        text = to_xmi([root], registry)
+        again = read_text(text, "again.xmi", registry)
+        assert again.diagnostics == ()
+        assert to_xmi(again.roots, registry) == text
+
+    def _sources(self) -> tuple[MetamodelSource, ...]:
+        return declared(self.plugin, "metamodels")
+
+    def _metaclasses(self, registry: Registry) -> list[Metaclass]:
+        packages = [registry.package(source.ns_uri) for source in self._sources()]
+        return [metaclass for package in packages for metaclass in package.metaclasses]
+
+
+def _texts(metaclass: Metaclass) -> list[tuple[str, str]]:
+    own = [feature for feature in metaclass.features if feature.owner is metaclass]
+    return [("", metaclass.documentation), *((each.name, each.documentation) for each in own)]
+
+
+def _stands_alone(registry: Registry, metaclass: Metaclass) -> bool:
+    if metaclass.implementation is None:
+        return False
+    try:
+        kinds_below(registry, metaclass)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,82 @@
+"""Laws for sample missions: they pass through the whole chain, by the commands that operators use."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+import pytest
+
+LONGEST_RUN = 120.0
+"""Seconds after which a command is taken for hanging."""
+
+
+class MissionConformance:
+    """A mission that is valid, planned, verified, generated, simulated and shown.
+
+    Attributes:
+        folder: of the mission, with its ``mission.xmi`` and ``robots/``.
+        rules: names of the rules that its moves must come from.
+        targets: for code generation, that must be able to express it.
+    """
+
+    folder: ClassVar[Path]
+    rules: ClassVar[Sequence[str]] = ()
+    targets: ClassVar[Sequence[str]] = ("mavlink-python",)
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def planned(cls, tmp_path_factory: pytest.TempPathFactory) -> Path:
+        """Return a copy of the folder, with the behaviour that was planned in it."""
+        copy = tmp_path_factory.mktemp("planned") / "mission"
+        shutil.copytree(cls.folder, copy)
+        run_command("plan", copy, "--force")
+        return copy
+
+    def test_it_is_valid(self) -> None:
+        """Nothing is wrong with it, and nothing is warned of."""
+        assert run_json("validate", self.folder)["diagnostics"] == []
+
+    def test_every_rule_leads_to_moves(self, planned: Path) -> None:
+        """The plan says of each move by which rule it came about."""
+        behaviour = (planned / "behaviour.xmi").read_text(encoding="utf-8")
+        assert [rule for rule in self.rules if f'rule="{rule}"' not in behaviour] == []
+
+    def test_its_behaviour_passes_all_checks(self, planned: Path) -> None:
+        """Every property is safe, or is one that does not matter here."""
+        run_command("check", planned)
+
+    def test_its_behaviour_is_carried_out(self, planned: Path) -> None:
+        """The simulation ends well."""
+        run_command("simulate", planned)
+
+    def test_code_is_generated_from_it(self, planned: Path, tmp_path: Path) -> None:
+        """Each target can express it."""
+        for target in self.targets:
+            made = run_json("generate", planned, "--target", target, "-o", tmp_path / target)
+            assert made["files"]
+
+    def test_it_can_be_looked_at(self, tmp_path: Path) -> None:
+        """The preview is a page that shows something."""
+        run_command("preview", self.folder, "-o", tmp_path)
+        (page,) = tmp_path.glob("*.html")
+        assert "<svg" in page.read_text(encoding="utf-8")
+
+
+def run_command(*arguments: object) -> str:
+    """Return what ``mmrs`` prints; pytest fails where it does not end well."""
+    command = [sys.executable, "-m", "mmrs_core", *map(str, arguments)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST_RUN)
+    if run.returncode != 0:
+        pytest.fail(f"mmrs {' '.join(command[3:])} ends with {run.returncode}:\n{run.stdout}{run.stderr}")
+    return run.stdout
+
+
+def run_json(*arguments: object) -> Any:
+    """Return the object that ``mmrs … --json`` prints."""
+    return json.loads(run_command(*arguments, "--json"))

@@ -1,0 +1,164 @@
+"""Laws for rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import dist, inf
+from typing import ClassVar
+
+import pytest
+import shapely
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.segments import legs_of, prism_distance
+from mmrs_core.languages.registry import Registry
+from mmrs_core.scene import Area, Kinematics, Position, Robot, Scene, Task, Value, Work
+from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.scenes import FLYER, sample_robot, sample_scene, sample_task, square
+
+SMALL = 1e-6
+RELAXED = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.too_slow])
+
+
+class RuleConformance(Conformance):
+    """Every rule of a plug-in gives work that can be done, or refuses it: it never does anything else.
+
+    Attributes:
+        tasks: the attributes of a task that the rule serves, by the rule's name. A robot at the origin
+            must be able to do it where nothing is in the way.
+        robot: that does them; with whatever devices they need.
+    """
+
+    tasks: ClassVar[Mapping[str, Mapping[str, Value]]]
+    robot: ClassVar[Robot] = sample_robot()
+
+    def test_every_rule_has_a_task(self) -> None:
+        """No rule goes untested, and no task is left over."""
+        assert set(self.tasks) == {each.name for each in declared(self.plugin, "rules")}
+
+    def test_a_rule_is_about_a_task_that_exists(self, rule: Rule, registry: Registry) -> None:
+        """Its metaclass is a task of the languages."""
+        assert registry.metaclass(*rule.metaclass).is_kind("urn:mmrs:mission:1.0", "Task")
+
+    def test_work_names_its_rule_and_has_something_to_do(self, rule: Rule) -> None:
+        """Moves are traced to the rule by the name in the work."""
+        work = self._work(rule)
+        assert work.rule == rule.name
+        assert work.strokes
+
+    def test_equal_tasks_make_equal_work(self, rule: Rule) -> None:
+        """Plans are the same whenever they are made."""
+        assert self._work(rule) == self._work(rule)
+
+    def test_actions_and_cuts_lie_on_their_strokes_in_order(self, rule: Rule) -> None:
+        """Actions may be at the ends, cuts lie between them."""
+        for stroke in self._work(rule).strokes:
+            length = sum(dist(a, b) for a, b in pairwise(stroke.points))
+            at = [action.at for action in stroke.actions]
+            assert at == sorted(at)
+            assert all(-SMALL <= each <= length + SMALL for each in at)
+            assert list(stroke.cuts) == sorted(set(stroke.cuts))
+            assert all(0.0 < each < length for each in stroke.cuts)
+
+    def test_actions_are_ones_that_the_robot_can_do(self, rule: Rule) -> None:
+        """Their device is one that the robot carries, and supports the action."""
+        devices = self.robot.type.devices
+        for stroke in self._work(rule).strokes:
+            for each in stroke.actions:
+                able = [devices[each.device]] if each.device else devices.values()
+                assert any(each.action in device.actions for device in able)
+
+    def test_coverage_lies_in_the_area_asked_for(self, rule: Rule) -> None:
+        """What is covered is inside the shell and outside of its holes."""
+        coverage = self._work(rule).coverage
+        if coverage is None:
+            return
+        asked = shapely.Polygon(coverage.shell, coverage.holes)
+        for shell, holes in coverage.target:
+            assert shapely.Polygon(shell, holes).difference(asked).area <= SMALL * asked.area
+
+    @RELAXED
+    @given(data=st.data())
+    def test_work_keeps_clear_of_an_obstacle_or_is_refused(self, rule: Rule, data: st.DataObject) -> None:
+        """An obstacle that is put on the way is gone around by the work, or makes it impossible."""
+        east, north, up = data.draw(st.sampled_from(_places(self._work(rule))))
+        obstacle = square("mast", east, north, data.draw(st.floats(0.1, 30.0)), up + 50.0)
+        try:
+            work = rule.work(self._task(rule), self.robot, self._scene(obstacle))
+        except InfeasibleError:
+            return
+        for line in _lines(work):
+            wanted = obstacle.safety_distance + self.robot.clearance
+            assert _distance(line, obstacle) >= wanted - SMALL
+
+    @pytest.mark.parametrize("share", [0.0, 0.5, 1.0, 2.0])
+    def test_work_stays_below_the_ceiling_or_is_refused(self, rule: Rule, share: float) -> None:
+        """A robot that goes less high than the work does less, or does not do it."""
+        highest = max(up for _, _, up in _places(self._work(rule)))
+        self._bounded(rule, replace(self._limits(), ceiling=share * highest, floor=-inf))
+
+    @pytest.mark.parametrize("more", [-10.0, 0.5, 50.0])
+    def test_work_stays_above_the_floor_or_is_refused(self, rule: Rule, more: float) -> None:
+        """A robot that goes less low than the work does less, or does not do it."""
+        lowest = min(up for _, _, up in _places(self._work(rule)))
+        self._bounded(rule, replace(self._limits(), floor=lowest + more, ceiling=inf))
+
+    def test_a_task_that_lacks_what_it_may_lack_is_served_or_refused(
+        self, rule: Rule, registry: Registry
+    ) -> None:
+        """Whatever the metamodel lets a task leave out, the rule can do without, or says why not."""
+        whole = self._task(rule)
+        metaclass = registry.metaclass(*rule.metaclass)
+        for name in whole.part.attributes:
+            if metaclass.feature(name).required:
+                continue
+            attributes = {**whole.part.attributes, name: None}
+            _try(rule, replace(whole, part=replace(whole.part, attributes=attributes)), self.robot)
+
+    def test_a_robot_without_devices_is_served_or_refused(self, rule: Rule) -> None:
+        """Who cannot do a task is told so, and others do it."""
+        bare = replace(self.robot, type=replace(self.robot.type, devices={}))
+        _try(rule, self._task(rule), bare)
+
+    def _task(self, rule: Rule) -> Task:
+        return sample_task(rule.metaclass, **self.tasks[rule.name])
+
+    def _scene(self, *areas: Area) -> Scene:
+        return sample_scene(self.robot, areas=areas)
+
+    def _work(self, rule: Rule) -> Work:
+        return rule.work(self._task(rule), self.robot, self._scene())
+
+    def _limits(self) -> Kinematics:
+        return self.robot.kinematics or FLYER
+
+    def _bounded(self, rule: Rule, limits: Kinematics) -> None:
+        work = _try(rule, self._task(rule), replace(self.robot, kinematics=limits))
+        for _, _, up in _places(work) if work else ():
+            assert limits.floor - SMALL <= up <= limits.ceiling + SMALL
+
+
+def _try(rule: Rule, task: Task, robot: Robot) -> Work | None:
+    """Return the work; None where it is refused."""
+    try:
+        return rule.work(task, robot, sample_scene(robot))
+    except InfeasibleError:
+        return None
+
+
+def _lines(work: Work) -> list[tuple[Position, ...]]:
+    entry = [(work.entry,)] if work.entry is not None else []
+    return [*entry, *(stroke.points for stroke in work.strokes)]
+
+
+def _places(work: Work) -> list[Position]:
+    return [place for line in _lines(work) for place in line]
+
+
+def _distance(points: Sequence[Position], area: Area) -> float:
+    return float(prism_distance(legs_of(points), area.shell, area.low, area.high).min())
