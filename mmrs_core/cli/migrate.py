@@ -42,7 +42,9 @@ def migrate(
     ] = False,
     json: Json = False,
 ) -> int:
-    """Turn models of another dialect into a project, and tell every value that is not just as it was.
+    """Turn models of another dialect into a project.
+
+    Tells every value that was defaulted, changed in meaning, or not carried over.
 
     For example: mmrs migrate mission.json context.json Heron.xmi -o field
     """
@@ -56,14 +58,21 @@ def migrate(
     written = write_outputs(workshop, migration, files, output, force=force)
     faults = judged(workshop, migration, output) if written else ()
     valid = not has_errors(faults)
-    report(faults)
     if json:
+        report(faults)
         say_json(
-            {"sources": migration.sources, "findings": migration.findings, "files": written, "valid": valid}
+            {
+                "valid": valid,
+                "sources": migration.sources,
+                "findings": migration.findings,
+                "files": written,
+                "diagnostics": faults,
+            }
         )
         return 0 if valid else 1
     for line in migration_lines(migration, output):
         say(line)
+    report(faults)
     if written:
         say(f"{output}: {'valid' if valid else 'not valid'}")
     return 0 if valid else 1

@@ -2,35 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from mmrs_core.cli.output import counted
-from mmrs_core.migration.findings import Category, Group, grouped
+from mmrs_core.migration.findings import Category, Finding, grouped
 from mmrs_core.migration.migrate import Migration
+
+_WORDS = {
+    Category.LOST: "not carried over",
+    Category.DOUBTFUL: "doubtful: look at it",
+    Category.CHANGED: "changed in meaning or unit",
+    Category.DEFAULTED: "defaulted, because the source does not say it",
+}
 
 
 def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
-    """Yield the report of a migration."""
+    """Yield the report of a migration; every finding is in it."""
     for source in migration.sources:
-        found = "; ".join(f"{package}: {file}" for package, file in source.metamodels.items())
-        yield f"{source.file}: {source.what}" + (f" (metamodels: {found})" if found else "")
+        found = ", ".join(str(file) for file in source.metamodels.values())
+        yield f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
     groups = grouped(migration.findings)
     for category in Category:
         own = [group for group in groups if group.category is category]
         if own:
             yield ""
-            yield f"{category.value} ({counted(sum(len(group.findings) for group in own), 'value')}):"
+            yield f"{_WORDS[category]} ({counted(sum(len(group.findings) for group in own), 'value')}):"
             for group in own:
-                yield from _group_lines(group)
+                yield f"  {group.reason}"
+                yield from (f"    {line}" for line in _places(group.findings))
     yield ""
     for output in migration.outputs:
         yield f"written: {project / output.path} (from {', '.join(output.sources)})"
     if not migration.outputs:
-        yield "nothing to migrate"
+        yield "nothing to migrate, nothing written"
 
 
-def _group_lines(group: Group) -> Iterator[str]:
-    yield f"  {group.reason}"
-    for finding in group.findings:
-        yield f"    {finding.place} {finding.place.path}: {finding.subject}"
+def _places(findings: Iterable[Finding]) -> Iterator[str]:
+    """Yield where something happened, and to what; the same thing once for all its lines in a file."""
+    lines: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        lines.setdefault((finding.place.file, finding.subject), []).append(finding)
+    for (file, subject), same in lines.items():
+        where = ",".join(str(finding.place.line) for finding in same)
+        path = same[0].place.path if len(same) == 1 and same[0].place.path != "/" else ""
+        yield f"{file}:{where}: {subject}" + (f", {path}" if path else "")

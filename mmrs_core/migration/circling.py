@@ -10,8 +10,8 @@ from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building import Draft
 from mmrs_core.migration.converting import number_in
+from mmrs_core.migration.drafts import Draft
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.mapping import Ring, Rule
 from mmrs_core.migration.nodes import Node

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import cos, radians, sin
 
-from mmrs_core.languages.element import Element, is_kind, label_of, metaclass_of, root_of
+from mmrs_core.languages.element import (
+    Element,
+    containing_feature,
+    is_kind,
+    label_of,
+    metaclass_of,
+    root_of,
+)
 from mmrs_core.languages.grounding.values import child, children
-from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building import Draft
 from mmrs_core.migration.converting import number_in
+from mmrs_core.migration.drafts import Draft
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.mapping import Rule, Use
+from mmrs_core.migration.mapping import Counterpart, Rule, Use
 from mmrs_core.migration.nodes import Link, Node, Text
 from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
@@ -43,28 +49,29 @@ class Linker:
     # references
 
     def _refer(self, node: Node, feature: str, element: Element, use: Use) -> None:
-        targets = [found for link in node.links(feature) if (found := self._target(node, feature, link))]
+        targets = self._targets(node, feature)
         if use.changed and targets:
             self._record.value(Category.CHANGED, use.changed, node, feature)
-        for path in use.to:
-            self._set(node, feature, *self._feature(element, path), targets)
+        self._set(node, feature, element, use.to, targets)
 
-    def _feature(self, element: Element, path: str) -> tuple[Element, str]:
-        owner, feature = reach(element, path)
-        return owner, feature.name
+    def _set(
+        self, node: Node, feature: str, element: Element, paths: Iterable[str], targets: list[Element]
+    ) -> None:
+        for path in paths:
+            owner, target = reach(element, path)
+            fitting = [each for each in targets if target.type.accepts(each)]
+            if len(fitting) < len(targets):
+                self._record.value(Category.LOST, f"leads to what {path} does not take", node, feature)
+            if target.many:
+                present = getattr(owner, target.attribute)
+                present.extend(each for each in fitting if each not in present)
+            elif fitting:
+                setattr(owner, target.attribute, fitting[0])
+            if len(fitting) > 1 and not target.many:
+                self._record.value(Category.LOST, f"{path} refers to one only, the first", node, feature)
 
-    def _set(self, node: Node, feature: str, owner: Element, name: str, targets: list[Element]) -> None:
-        target = metaclass_of(owner).feature(name)
-        fitting = [each for each in targets if target.type.accepts(each)]
-        if len(fitting) < len(targets):
-            self._record.value(Category.LOST, f"leads to what {name} does not take", node, feature)
-        if target.many:
-            present = getattr(owner, target.attribute)
-            present.extend(each for each in fitting if not any(each is other for other in present))
-        elif fitting:
-            setattr(owner, target.attribute, fitting[0])
-            if len(fitting) > 1:
-                self._record.value(Category.LOST, f"{name} refers to one only, the first", node, feature)
+    def _targets(self, node: Node, feature: str) -> list[Element]:
+        return [found for link in node.links(feature) if (found := self._target(node, feature, link))]
 
     def _target(self, node: Node, feature: str, link: Link) -> Element | None:
         if link.target is None:
@@ -81,37 +88,43 @@ class Linker:
     # the element of the same name, elsewhere
 
     def _counterparts(self, node: Node, feature: str, element: Element, use: Use) -> None:
-        assert use.counterpart is not None  # asked before
-        named = [found for link in node.links(feature) if (found := self._target(node, feature, link))]
-        within = use.counterpart.within
-        if use.counterpart.of:
-            links = node.links(use.counterpart.of)
-            owners = [found for link in links if (found := self._target(node, use.counterpart.of, link))]
-        else:
-            owners = [owner for owner in [self._owner(node, within)] if owner is not None]
-        same = [self._same_name(node, feature, each, owner, within) for each in named for owner in owners]
-        if use.changed and same:
+        other = use.counterpart
+        assert other is not None  # asked before
+        named = self._targets(node, feature)
+        owners = self._targets(node, other.of) if other.of else self._owner(node, other.within)
+        same = [
+            found
+            for each in named
+            for owner in owners
+            if (found := self._same_name(node, feature, each, owner, other)) is not None
+        ]
+        if use.changed and any(each not in named for each in same):
             self._record.value(Category.CHANGED, use.changed, node, feature)
-        for path in use.to:
-            self._set(node, feature, *self._feature(element, path), same)
+        self._set(node, feature, element, use.to, same)
 
-    def _owner(self, node: Node, within: str) -> Element | None:
+    def _owner(self, node: Node, within: str) -> list[Element]:
+        """Return the nearest element around a node that has a feature, as a list."""
         around = self._draft.around(node)
-        return next((each for each in around if within in metaclass_of(each).by_name), None)
+        return [each for each in around if within in metaclass_of(each).by_name][:1]
 
-    def _same_name(self, node: Node, feature: str, element: Element, owner: Element, within: str) -> Element:
-        for each in children(owner, within):
-            if each is element or label_of(each) == label_of(element):
-                return each
-        kind = metaclass_of(owner).feature(within)
-        assert isinstance(kind.type, Metaclass)  # it contains elements
-        made = self._registry.create(*kind.type.key, name=label_of(element))
-        getattr(owner, kind.attribute).append(made)
-        reason = f"{label_of(owner)!r} had no {type(made).__name__} of this name, so one is made for it"
-        self._record.value(
-            Category.DEFAULTED, reason, node, feature, Text(repr(label_of(element)), node.line)
-        )
-        return made
+    def _same_name(
+        self, node: Node, feature: str, element: Element, owner: Element, other: Counterpart
+    ) -> Element | None:
+        name = label_of(element)
+        present = children(owner, other.within)
+        if element in present:
+            return element
+        found = next((each for each in present if label_of(each) == name), None)
+        if found is None and other.make:
+            kind = metaclass_of(owner).feature(other.within)
+            found = self._registry.create(*metaclass_of(element).key, name=name)
+            getattr(owner, kind.attribute).append(found)
+            reason = f"{label_of(owner)!r} had no {type(found).__name__} of this name, so one is made for it"
+            self._record.value(Category.DEFAULTED, reason, node, feature, Text(repr(name), node.line))
+        elif found is None:
+            reason = f"{label_of(owner)!r} has no {type(element).__name__} {name!r}"
+            self._record.value(Category.LOST, reason, node, feature)
+        return found
 
     # directions
 
@@ -153,27 +166,31 @@ class Linker:
     def _wait(self, node: Node, rule: Rule) -> None:
         wait = rule.wait
         assert wait is not None  # asked before
-        links = node.links(wait.slot)
-        slot = self._target(node, wait.slot, links[0]) if links else None
-        robot = self._owner(node, wait.among)
+        slots = self._targets(node, wait.slot)
         move = self._draft.made.get(node.parent) if node.parent is not None else None
-        if slot is None or robot is None or move is None:
+        robots = self._owner(node, wait.among)
+        if not slots or not robots or move is None:
             self._record.element(Category.LOST, "waits for nothing that is carried over", node)
             return
-        within = slot._mmrs_feature.name if slot._mmrs_feature is not None else ""
-        own = self._same_name(node, wait.slot, slot, robot, within)
-        waiting = list(self._transitions(robot, wait.among, wait.at.get(node.feature, ()), move))
+        within = Counterpart("", _containing(slots[0]), True)
+        own = self._same_name(node, wait.slot, slots[0], robots[0], within)
+        waiting = list(_transitions(robots[0], wait.among, wait.at.get(node.feature, ()), move))
         for transition in waiting:
-            self._set(node, wait.slot, transition, wait.add, [own])
+            self._set(node, wait.slot, transition, (wait.add,), [own] if own is not None else [])
         if waiting:
             self._record.element(Category.CHANGED, rule.changed or f"becomes {wait.add} of transitions", node)
         else:
             self._record.element(Category.LOST, "no transition stands where it could wait", node)
 
-    def _transitions(
-        self, robot: Element, among: str, ends: tuple[str, ...], move: Element
-    ) -> Iterator[Element]:
-        for transition in children(robot, among):
-            known = [end for end in ends if end in metaclass_of(transition).by_name]
-            if any(child(transition, end) is move for end in known):
-                yield transition
+
+def _containing(element: Element) -> str:
+    """Return the name of the feature that contains an element; an empty one for a root."""
+    feature = containing_feature(element)
+    return feature.name if feature is not None else ""
+
+
+def _transitions(robot: Element, among: str, ends: tuple[str, ...], move: Element) -> Iterator[Element]:
+    for transition in children(robot, among):
+        known = [end for end in ends if end in metaclass_of(transition).by_name]
+        if any(child(transition, end) is move for end in known):
+            yield transition

@@ -17,11 +17,13 @@ class Counterpart:
 
     Attributes:
         of: the source feature that refers to the owners; empty: the owner of the element itself.
-        within: the feature of an owner that holds such elements; one is made where it is missing.
+        within: the feature of an owner that holds such elements.
+        make: one is made where it is missing.
     """
 
     of: str
     within: str
+    make: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +61,7 @@ class Use:
         hoist: the feature of the root that gets the contained element, which is then referred to.
         unique: make texts unique among siblings by a number behind them.
         robot_type: the text names a robot type.
+        otherwise: the robot type that stands in for one that is not known; empty: none does.
     """
 
     to: tuple[str, ...] = ()
@@ -79,6 +82,7 @@ class Use:
     bearing: Bearing | None = None
     unique: bool = False
     robot_type: bool = False
+    otherwise: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +139,7 @@ class Rule:
         source: ``package.Class``, with ``/variant`` behind it for a rule that others ask for by name.
         to: (nsURI, name) of the new class; None where there is no element of its own.
         drop: why it is not carried over.
+        unreferred: why it is not carried over where nothing refers to it; empty: it is.
         merge: its features go into the element made of its container.
         set: constants by path in the new element.
         changed: how the meaning has changed.
@@ -145,6 +150,7 @@ class Rule:
     source: str
     to: tuple[str, str] | None = None
     drop: str = ""
+    unreferred: str = ""
     merge: bool = False
     set: Mapping[str, Constant] = field(default_factory=dict)
     changed: str = ""
@@ -181,7 +187,6 @@ class DialectMapping:
         structure: its classes, for where no metamodel is at hand.
         rules: by ``package.Class`` and ``package.Class/variant``.
         types: names of robot types that stand for names which no robot type has.
-        otherwise: the robot type that stands for all further ones; empty: none does.
         documents: files that are recognised by their form, the first that fits counts.
     """
 
@@ -190,7 +195,6 @@ class DialectMapping:
     structure: Structure
     rules: Mapping[str, Rule]
     types: Mapping[str, str] = field(default_factory=dict)
-    otherwise: str = ""
     documents: tuple[KnownDocument, ...] = ()
 
     def rule(self, kind: str, variant: str, structure: Structure) -> Rule | None:
@@ -200,13 +204,6 @@ class DialectMapping:
             if found:
                 return found
         return None
-
-    def use(self, kind: str, rule: Rule, feature: str, structure: Structure) -> Use | None:
-        """Return what becomes of a feature, by the rule or those of the supertypes; None if none says."""
-        if feature in rule.uses:
-            return rule.uses[feature]
-        known = (self.rules.get(ancestor) for ancestor in structure.ancestry(kind))
-        return next((other.uses[feature] for other in known if other and feature in other.uses), None)
 
     def uses(self, kind: str, rule: Rule, structure: Structure) -> Mapping[str, Use]:
         """Return what becomes of every feature that the rule or those of the supertypes speak of."""

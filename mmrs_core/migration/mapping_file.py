@@ -40,19 +40,15 @@ def _mapping(top: Table, registry: Registry) -> DialectMapping:
     for prefix, ns_uri in languages.items():
         if not registry.has(ns_uri):
             raise top.fault(f"languages: {prefix}: {ns_uri} is not installed")
-    types = top.table("types")
     structure = _structure(top)
-    mapping = DialectMapping(
+    return DialectMapping(
         name=top.take("name", str, "") or top.where,
         dialect=_dialect(top.table("packages")),
         structure=structure,
         rules=read_rules(top.table("rules"), languages, registry, structure),
-        types=types.table("named").text_by_key(),
-        otherwise=types.take("otherwise", str, ""),
+        types=top.table("types").text_by_key(),
         documents=tuple(_document(name, table) for name, table in top.table("documents").tables().items()),
     )
-    types.done()
-    return mapping
 
 
 def _dialect(packages: Table) -> Dialect:

@@ -80,7 +80,7 @@ def migrate(
     """
     opened = [open_document(path, mapping.documents) for path in files]
     settled = {each.file: _settled(each, mapping, metamodels) for each in opened if each.document is not None}
-    robots = RobotTypes(present or {}, {**mapping.types, **(types or {})}, mapping.otherwise)
+    robots = RobotTypes(present or {}, {**mapping.types, **(types or {})})
     record, made = Record(), list[Made]()
     for each in _types_first(settled.values(), mapping):
         for root in _built(each, mapping, registry, robots, record):
@@ -102,7 +102,8 @@ def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> 
     found = metamodels_for(document, given, mapping.dialect)
     structure = structure_of(found, mapping.dialect).over(mapping.structure, found)
     Reader(structure, mapping.dialect).settle(document)
-    places = {package: each.file for package, each in found.items()}
+    used = {node.kind.partition(".")[0] for root in document.roots for node in root.inside()}
+    places = {package: each.file for package, each in found.items() if package in used}
     return _Settled(document, structure, Source(opened.file, opened.what, places))
 
 
@@ -120,11 +121,9 @@ def _built(
     settled: _Settled, mapping: DialectMapping, registry: Registry, types: RobotTypes, record: Record
 ) -> list[Made]:
     builder = Builder(mapping, settled.structure, registry, types, record)
-    for root in settled.document.roots:
-        builder.root(root)
-    draft = builder.draft
+    draft = builder.build(settled.document.roots)
     Linker(draft, registry, record).complete()
     for node, rule in draft.rings:
         draw_ring(node, rule, draft, registry, record)
     nodes = {draft.made[node]: node for node in settled.document.roots if node in draft.made}
-    return [Made(element, nodes[element]) for element in draft.roots]
+    return [Made(element, nodes[element], (settled.document.file,)) for element in draft.roots]

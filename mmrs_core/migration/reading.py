@@ -60,8 +60,9 @@ def _links(value: Text | Link | Node) -> list[Text | Link | Node]:
     """Return the references in a text that refers, with the types left out that may stand before them."""
     if not isinstance(value, Text):
         return [value]
-    words = [word for word in value.text.split() if "/" in word or "#" in word]
-    return [Link(word, value.line) for word in words]
+    words = value.text.split()
+    paths = [word for word in words if "/" in word or "#" in word]
+    return [Link(word, value.line) for word in paths or words]
 
 
 def _target(text: str, document: Document, root: Node) -> Node | None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from mmrs_core.migration.findings import Category, Finding
 from mmrs_core.migration.nodes import Link, Node, Text
 
-_MOST_VALUES = 6
-
 
 class Record:
     """The findings of a migration, in the order in which they were met."""
@@ -29,7 +27,8 @@ class Record:
 
     def element(self, category: Category, reason: str, node: Node) -> None:
         """Note what happens to a whole element; its values are told with it where it is lost."""
-        told = f" ({_content(node)})" if category is Category.LOST and node.values else ""
+        content = _content(node) if category is Category.LOST else ""
+        told = content and f" ({content})"
         self.findings.append(Finding(category, reason, f"{node.called()}{told}", node.place()))
 
 
@@ -38,14 +37,21 @@ def _line(node: Node, feature: str) -> int:
 
 
 def _words(value: Text | Link | Node) -> str:
-    return value.called() if isinstance(value, Node) else value.text
+    if not isinstance(value, Node):
+        return value.text
+    content = _content(value, 1)
+    return f"{value.called()}{content and f' ({content})'}"
 
 
-def _content(node: Node) -> str:
+def _content(node: Node, depth: int = 0) -> str:
+    """Return what an element holds; of the elements in it only what they are called, further down."""
     parts = [
-        f"{feature} {', '.join(_words(value) for value in values)}"
+        f"{feature} {', '.join(_words(value) if depth == 0 else _name(value) for value in values)}"
         for feature, values in node.values.items()
         if feature != "name"
     ]
-    more = f" and {len(parts) - _MOST_VALUES} more" if len(parts) > _MOST_VALUES else ""
-    return "; ".join(parts[:_MOST_VALUES]) + more or "nothing but a name"
+    return "; ".join(parts)
+
+
+def _name(value: Text | Link | Node) -> str:
+    return value.called() if isinstance(value, Node) else value.text

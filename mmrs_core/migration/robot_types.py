@@ -14,26 +14,29 @@ class RobotTypes:
     Attributes:
         known: the types themselves.
         named: what names of the source stand for.
-        otherwise: the type that stands for all further names; empty: none does.
     """
 
-    def __init__(self, known: Mapping[str, Element], named: Mapping[str, str], otherwise: str) -> None:
+    def __init__(self, known: Mapping[str, Element], named: Mapping[str, str]) -> None:
         self.known = dict(known)
         self.named = dict(named)
-        self.otherwise = otherwise
 
-    def resolved(self, name: str) -> tuple[str, str]:
-        """Return the name of a type, and what has to be told about it: an empty text if nothing has."""
+    def resolved(self, name: str, otherwise: str) -> tuple[str, str]:
+        """Return the name of a type, and what has to be told about it: an empty text if nothing has.
+
+        Args:
+            otherwise: the type that stands in for one that is not known; empty: none does.
+        """
         if name in self.named and name != self.named[name]:
             return self.named[name], f"the robot type {name!r} is taken for {self.named[name]!r}"
         if name in self.known:
             return name, ""
-        if self.otherwise in self.known:
-            return self.otherwise, (
-                f"no robot type {name!r} is known; {self.otherwise!r} stands in for it: say what it is by "
-                f"--type {name}=NAME"
+        unknown = f"no robot type {name!r} is known"
+        if otherwise in self.known:
+            return (
+                otherwise,
+                f"{unknown}; {otherwise!r} stands in for it: say what it is by --type {name}=NAME",
             )
-        return name, f"no robot type {name!r} is known: write robots/{name}.xmi, or say by --type {name}=NAME"
+        return name, f"{unknown}: write robots/{name}.xmi, or say what it is by --type {name}=NAME"
 
     def device_for(self, type_name: str, action: str) -> str:
         """Return the id of the only device of a type that supports an action, or an empty text."""

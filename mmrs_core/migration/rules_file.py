@@ -40,6 +40,7 @@ def _rule(source: str, table: Table, languages: Mapping[str, str], registry: Reg
         to=metaclass.key if metaclass is not None else None,
         robot_type=metaclass is not None and metaclass.is_kind(*ROBOT_TYPE),
         drop=table.take("drop", str, ""),
+        unreferred=table.take("unreferred", str, ""),
         merge=table.take("merge", bool, False),
         set=_constants(table.table("set"), metaclass),
         changed=table.take("changed", str, ""),
@@ -110,6 +111,7 @@ def _use(rule: Table, name: str, value: object, metaclass: Metaclass | None) -> 
         hoist=table.take("hoist", str, ""),
         unique=table.take("unique", bool, False),
         robot_type=table.take("robot_type", bool, False),
+        otherwise=table.take("otherwise", str, ""),
         counterpart=_counterpart(table.table("counterpart")) if "counterpart" in table else None,
         bearing=_bearing(table.table("bearing")) if "bearing" in table else None,
     )
@@ -122,7 +124,9 @@ def _use(rule: Table, name: str, value: object, metaclass: Metaclass | None) -> 
 
 
 def _counterpart(table: Table) -> Counterpart:
-    found = Counterpart(table.take("of", str, ""), table.take("within", str, ""))
+    found = Counterpart(
+        table.take("of", str, ""), table.take("within", str, ""), table.take("make", bool, False)
+    )
     table.done()
     return found
 

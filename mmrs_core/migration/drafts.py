@@ -1,0 +1,37 @@
+"""A model on its way from nodes to elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from mmrs_core.languages.element import Element
+from mmrs_core.migration.mapping import Rule, Use
+from mmrs_core.migration.nodes import Node
+
+
+@dataclass(slots=True, eq=False)
+class Draft:
+    """What is built so far, and what has to wait.
+
+    Attributes:
+        roots: the elements at its top.
+        made: what each node became.
+        later: the uses that have to wait until every element stands: (node, feature, element, use).
+        waits: the nodes that become conditions of transitions, with their rules.
+        rings: the nodes that become way points around a circle, with their rules.
+    """
+
+    roots: list[Element] = field(default_factory=list)
+    made: dict[Node, Element] = field(default_factory=dict)
+    later: list[tuple[Node, str, Element, Use]] = field(default_factory=list)
+    waits: list[tuple[Node, Rule]] = field(default_factory=list)
+    rings: list[tuple[Node, Rule]] = field(default_factory=list)
+
+    def around(self, node: Node) -> Iterator[Element]:
+        """Yield the elements made of the nodes around a node, nearest first."""
+        above = node.parent
+        while above is not None:
+            if above in self.made:
+                yield self.made[above]
+            above = above.parent
