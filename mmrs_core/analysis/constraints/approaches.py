@@ -10,7 +10,7 @@ from mmrs_core.analysis.constraints.findings import BEHAVIOUR, finding
 from mmrs_core.analysis.constraints.sketch import sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.element import Element, is_kind, metaclass_of
+from mmrs_core.languages.element import Element, Unknown, is_kind, metaclass_of
 from mmrs_core.languages.grounding.values import child, children, number
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import Position
@@ -81,8 +81,10 @@ def _end(move: Element, before: _Before, robot: Element, models: ModelSet) -> _A
             target = _target(move, models)
             way = number(move, "distance") or 0.0
             return _Around(target.position, target.radius + way) if target is not None else None
-        if metaclass_of(move).ns_uri != BEHAVIOUR or len(before.get(move, ())) != 1:
-            return None  # a plug-in's move may lead anywhere; several ways lead here from several places
+        if isinstance(move, Unknown) or metaclass_of(move).ns_uri != BEHAVIOUR:
+            return None  # a plug-in's move may lead anywhere
+        if len(before.get(move, ())) != 1:
+            return None  # several ways lead here from several places
         (move,) = before[move]
     return None
 

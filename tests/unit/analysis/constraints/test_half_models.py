@@ -9,7 +9,7 @@ import pytest
 from mmrs_core.analysis.constraints import CONSTRAINTS, check_behaviour, check_constraints
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import behaviour, context, mission, robot
-from mmrs_core.languages.element import Element, descendants, metaclass_of
+from mmrs_core.languages.element import Element, Unknown, descendants, metaclass_of
 from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.reading import read_text
@@ -130,3 +130,19 @@ def test_behaviour_is_checked_against_types_where_they_are_given(registry, model
     assert check_behaviour(models.behaviour, CONSTRAINTS, registry) == ()
     found = check_behaviour(models.behaviour, CONSTRAINTS, registry, robots={"quad": models.quad})
     assert [fault.code for fault in found] == ["BL035"]
+
+
+def test_a_coordinate_without_an_end_is_not_taken_for_swapped(models):
+    models.task("visit").point = models.geo(float("inf"), 13.35)
+    assert "MML027" not in models.codes()
+
+
+def test_a_move_of_an_unknown_kind_may_end_anywhere(models):
+    unknown = Unknown.__new__(Unknown)
+    unknown._mmrs_type = "urn:kites:1.0#Soar"
+    robot = models.behaviour.robots[0]
+    robot.moves.append(unknown)
+    go = models.move("go")
+    go.distance = 5.0
+    models.transition("start").from_ = unknown
+    assert "BL052" not in models.codes()

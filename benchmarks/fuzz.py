@@ -1,0 +1,53 @@
+"""Reads a hundred thousand damaged models of every kind, and prints what came of them.
+
+Run: ``python benchmarks/fuzz.py [CASES [SEED]]``; the figures go to ``benchmarks/results/fuzz.txt``.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import tempfile
+from datetime import date
+from pathlib import Path
+from time import perf_counter
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
+
+from fuzz_ways import ways
+from fuzzing import Tally, fuzz
+
+from mmrs_core.plugins import load_plugins
+
+RESULT = Path(__file__).parent / "results" / "fuzz.txt"
+
+
+def line_of(name: str, tally: Tally) -> str:
+    ends = ", ".join(f"{count} {end}" for end, count in sorted(tally.ends.items()))
+    return (
+        f"{name:<8} {sum(tally.ends.values()):>7} texts: {ends}; slowest {tally.slowest:.2f} s; "
+        f"most memory {tally.most_memory / 1e6:.1f} MB, {tally.worst_factor:.1f} times the text"
+    )
+
+
+def main(cases: int = 100_000, seed: int = 2015) -> int:
+    begun = perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        tallies = fuzz(ways(load_plugins().contributions, Path(folder)), cases, seed)
+    defects = [f"{name}: {each}" for name, tally in tallies.items() for each in tally.defects]
+    lines = [
+        f"{cases} damaged models, seed {seed}, {date.today().isoformat()}",
+        *(line_of(name, tally) for name, tally in tallies.items()),
+        f"tracebacks and hangs: {len(defects)}",
+        *defects[:20],
+        f"peak of the whole process: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB; "
+        f"{perf_counter() - begun:.0f} s",
+    ]
+    print("\n".join(lines))
+    if cases >= 100_000:
+        RESULT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return 1 if defects else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*map(int, sys.argv[1:3])))
