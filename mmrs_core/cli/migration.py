@@ -1,4 +1,4 @@
-"""Reads, writes and judges what ``mmrs migrate`` makes."""
+"""Reads what ``mmrs migrate`` is given, and writes what comes of it."""
 
 from __future__ import annotations
 
@@ -7,24 +7,15 @@ from pathlib import Path
 
 import typer
 
-from mmrs_core.analysis.constraints import check_constraints
-from mmrs_core.cli.behaviours import faults_of, read_behaviour_files
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.protection import ProtectedError, refuse_inputs
-from mmrs_core.diagnostics import Diagnostic, in_order
-from mmrs_core.languages import behaviour as bl
-from mmrs_core.languages import context as contexts
-from mmrs_core.languages import mission as missions
 from mmrs_core.languages import robot as robots
-from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.model import Model
-from mmrs_core.languages.modelset import ModelSet, robot_files_in
+from mmrs_core.languages.modelset import robot_files_in
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import replace_file, to_xmi
 from mmrs_core.migration.mapping_file import read_mapping
 from mmrs_core.migration.migrate import Migration
 from mmrs_core.migration.migrate import migrate as migrated
-from mmrs_core.migration.outputs import Output
 from mmrs_core.resources import shipped
 
 DEFAULT_MAPPING = "flyaq-2015.toml"
@@ -94,38 +85,3 @@ def write_outputs(
         file.parent.mkdir(parents=True, exist_ok=True)
         replace_file(file, data)
     return tuple(contents)
-
-
-def judged(workshop: Workshop, migration: Migration, project: Path) -> tuple[Diagnostic, ...]:
-    """Return every fault of the models that were written, and of the project's robot types beside them."""
-    registry = workshop.contributions.languages
-    files = [project / each.path for each in migration.outputs if not _is_behaviour(each)]
-    files += [file for file in robot_files_in(project / "robots") if file not in files]
-    models = [read_model(file, registry) for file in files]
-    faults = [
-        fault for model in models for fault in (*model.diagnostics, *check_conformance(model, registry))
-    ]
-    for mission in _missions(models):
-        found = check_constraints(_set_of(mission, models), workshop.contributions.constraints, registry)
-        faults += [fault for fault in found if fault.place.file]
-    for output in migration.outputs:
-        if _is_behaviour(output):
-            faults += faults_of(workshop, read_behaviour_files(workshop, project / output.path))
-    return in_order(faults)
-
-
-def _is_behaviour(output: Output) -> bool:
-    return isinstance(output.element, bl.Behaviour)
-
-
-def _missions(models: Iterable[Model]) -> list[missions.Mission]:
-    """Return the missions among models; a blank one, whose own faults do not count, where there is none."""
-    found = [root for model in models for root in model.roots if isinstance(root, missions.Mission)]
-    return found or [missions.Mission()]
-
-
-def _set_of(mission: missions.Mission, models: Sequence[Model]) -> ModelSet:
-    roots = [root for model in models for root in model.roots]
-    place = next((root for root in roots if isinstance(root, contexts.Context)), None)
-    types = {root.name or "": root for root in roots if isinstance(root, robots.Robot)}
-    return ModelSet(mission, place, types, tuple(models))

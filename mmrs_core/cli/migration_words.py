@@ -21,7 +21,7 @@ def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
     """Yield the report of a migration; every finding is in it."""
     for source in migration.sources:
         found = ", ".join(str(file) for file in source.metamodels.values())
-        yield f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
+        yield source.fault or f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
     groups = grouped(migration.findings)
     for category in Category:
         own = [group for group in groups if group.category is category]
@@ -34,8 +34,6 @@ def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
     yield ""
     for output in migration.outputs:
         yield f"written: {project / output.path} (from {', '.join(output.sources)})"
-    if not migration.outputs:
-        yield "nothing to migrate, nothing written"
 
 
 def _places(findings: Iterable[Finding]) -> Iterator[str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building import Builder
@@ -28,13 +29,17 @@ class Source:
     """A file, and what it turned out to be.
 
     Attributes:
-        what: such as "a model" or "a metamodel, http://…: nothing to migrate".
+        what: such as "a model", or "a metamodel, http://…: nothing to migrate".
         metamodels: where its metamodels were found, by package; what is missing there is as the mapping says.
+        is_model: whether there is something in it to migrate.
+        fault: why it cannot be read; empty where it can.
     """
 
     file: str
     what: str
     metamodels: Mapping[str, Path]
+    is_model: bool = False
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +80,14 @@ def migrate(
         types: what the names of robot types in the files stand for; goes before what the mapping says.
         present: robot types that are at hand already, by name.
 
+    A file that cannot be read is told among the sources; the others are migrated.
+
     Raises:
-        UnreadableError: if a file cannot be read, or is of no known form.
+        UnreadableError: if one of the given metamodels is none.
     """
-    opened = [open_document(path, mapping.documents) for path in files]
-    settled = {each.file: _settled(each, mapping, metamodels) for each in opened if each.document is not None}
+    opened = [_opened(path, mapping) for path in files]
+    models = [each for each in opened if isinstance(each, Opened) and each.document is not None]
+    settled = {each.file: _settled(each, mapping, metamodels) for each in models}
     robots = RobotTypes(present or {}, {**mapping.types, **(types or {})})
     record, made = Record(), list[Made]()
     for each in _types_first(settled.values(), mapping):
@@ -91,7 +99,16 @@ def migrate(
     return Migration(sources, outputs_of(made, registry, record), tuple(record.findings))
 
 
-def _source(opened: Opened, settled: Mapping[str, _Settled]) -> Source:
+def _opened(path: Path, mapping: DialectMapping) -> Opened | Source:
+    try:
+        return open_document(path, mapping.documents)
+    except UnreadableError as fault:
+        return Source(str(path), "not readable", {}, fault=str(fault))
+
+
+def _source(opened: Opened | Source, settled: Mapping[str, _Settled]) -> Source:
+    if isinstance(opened, Source):
+        return opened
     return settled[opened.file].source if opened.file in settled else Source(opened.file, opened.what, {})
 
 
@@ -104,7 +121,7 @@ def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> 
     Reader(structure, mapping.dialect).settle(document)
     used = {node.kind.partition(".")[0] for root in document.roots for node in root.inside()}
     places = {package: each.file for package, each in found.items() if package in used}
-    return _Settled(document, structure, Source(opened.file, opened.what, places))
+    return _Settled(document, structure, Source(opened.file, opened.what, places, is_model=True))
 
 
 def _types_first(settled: Iterable[_Settled], mapping: DialectMapping) -> list[_Settled]:
