@@ -12,6 +12,7 @@ from mmrs_core.cli import (
     check,
     convert,
     demo,
+    diff,
     generate,
     metamodel,
     migrate,
@@ -46,6 +47,7 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("preview", preview.preview),
     ("show", show.show),
     ("convert", convert.convert),
+    ("diff", diff.diff),
     ("migrate", migrate.migrate),
 )
 

@@ -40,13 +40,20 @@ def _printable(character: str) -> str:
     return character.encode("unicode_escape").decode("ascii")
 
 
-def say(words: str = "") -> None:
-    """Print a line of the result.
+def say(words: str = "", colour: str = "") -> None:
+    """Print a line of the result, in a colour where a person reads it.
+
+    Args:
+        words: the line.
+        colour: a number of ANSI's, such as 31 for red.
 
     Raises:
         typer.Exit: if nobody reads any more.
     """
-    _write(sys.stdout, printable(words) + "\n")
+    line = printable(words)
+    if colour and coloured(sys.stdout):
+        line = f"\x1b[{colour}m{line}\x1b[0m"
+    _write(sys.stdout, line + "\n")
 
 
 def tell(words: str) -> None:

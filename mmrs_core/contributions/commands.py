@@ -16,6 +16,7 @@ CORE_COMMANDS = frozenset(
         "preview",
         "show",
         "convert",
+        "diff",
         "plugin",
         "metamodel",
     }

@@ -7,7 +7,20 @@ import pytest
 from mmrs_core.cli import run
 
 PAGE = Path(__file__).parents[2] / "docs" / "commands.md"
-CORE = ("demo", "validate", "plan", "check", "generate", "simulate", "replay", "preview", "show", "convert", "migrate")
+CORE = (
+    "demo",
+    "validate",
+    "plan",
+    "check",
+    "generate",
+    "simulate",
+    "replay",
+    "preview",
+    "show",
+    "convert",
+    "diff",
+    "migrate",
+)
 GROUPS = ("plugin list", "metamodel list", "metamodel export", "metamodel docs")
 HEAD = "# Commands\n\nThis page is made from the help of the commands; do not edit it.\n"
 

@@ -23,6 +23,7 @@ CORE = (
     "preview",
     "show",
     "convert",
+    "diff",
     "plugin",
     "metamodel",
 )
