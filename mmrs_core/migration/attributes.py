@@ -41,7 +41,7 @@ class Attributes:
         if isinstance(value, str):
             value = _WORD.sub(lambda word: _word(node, word[1]), value)
             value = self._unique(node, feature, value, element, use)
-        for path in use.to:
+        for path in _paths(node, use):
             put(element, path, value)
         said = str(value).lower() if isinstance(value, bool) else str(value)
         reason = use.changed if use.void and use.changed else f"{feature} is not given"
@@ -75,7 +75,7 @@ class Attributes:
         else:
             text = scaled(self._renamed(node, feature, value, use), use.times)
             text = self._unique(node, feature, text, element, use)
-            for path in use.to:
+            for path in _paths(node, use):
                 put(element, path, text)
             if use.changed and not use.void:
                 self._record.value(Category.CHANGED, use.changed, node, feature, value)
@@ -109,6 +109,27 @@ class Attributes:
             reason = f"{text!r} is taken already, so this one is called {found!r}"
             self._record.value(Category.CHANGED, reason, node, feature)
         return found
+
+
+def _paths(node: Node, use: Use) -> tuple[str, ...]:
+    """Return where a value goes, with the further paths if their condition holds."""
+    if use.also is None or not all(is_given(node, feature) for feature in use.also.given):
+        return use.to
+    return (*use.to, *use.also.to)
+
+
+def is_given(node: Node, feature: str) -> bool:
+    """Return whether a feature holds something other than 0."""
+    return any(
+        not isinstance(value, Text) or not _is_zero(value.text) for value in node.values.get(feature, ())
+    )
+
+
+def _is_zero(text: str) -> bool:
+    try:
+        return number_in(text) == 0.0
+    except ValueError:
+        return False
 
 
 def _word(node: Node, name: str) -> str:

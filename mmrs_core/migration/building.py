@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.attributes import Attributes
+from mmrs_core.migration.attributes import Attributes, is_given
 from mmrs_core.migration.borders import border_around, without_repeats
 from mmrs_core.migration.converting import put
 from mmrs_core.migration.drafts import Draft
@@ -95,7 +95,7 @@ class Builder:
         uses = self._mapping.uses(node.kind, rule, self._structure)
         for feature in self._in_order(node, uses):
             use = uses.get(feature)
-            if self._structure.feature(node.kind, feature) is None:
+            if feature in node.values and self._structure.feature(node.kind, feature) is None:
                 self._record.value(Category.LOST, _NO_FEATURE, node, feature)
             elif use is None:
                 self._record.value(Category.LOST, _NO_USE, node, feature)
@@ -107,7 +107,7 @@ class Builder:
         known = {feature.name: feature.sort for feature in self._structure.features(node.kind)}
         names = [name for name in known if name in uses or name in node.values]
         names.sort(key=lambda name: _ORDER[known[name]])
-        return [*names, *(name for name in node.values if name not in known)]
+        return [*names, *(name for name in dict.fromkeys((*uses, *node.values)) if name not in known)]
 
     def _use(self, node: Node, feature: str, element: Element, use: Use) -> None:
         values = node.values.get(feature, [])
@@ -116,7 +116,7 @@ class Builder:
             self._attributes.default(node, feature, element, use)
         elif use.drop:
             self._record.value(Category.LOST, use.drop, node, feature)
-        elif needed and not node.values.get(needed):
+        elif needed and not is_given(node, needed):
             self._record.value(Category.LOST, f"means nothing without {needed}", node, feature)
         elif use.beside:
             return  # the other feature's use takes care of it

@@ -12,6 +12,19 @@ Constant = str | float | bool
 
 
 @dataclass(frozen=True, slots=True)
+class Also:
+    """Further paths for a value, where the source says something else, too.
+
+    Attributes:
+        given: the source features that have to hold something other than 0.
+        to: paths in the new element.
+    """
+
+    given: tuple[str, ...]
+    to: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Counterpart:
     """Refer to the element of the same name in other owners.
 
@@ -46,6 +59,7 @@ class Use:
 
     Attributes:
         to: paths in the new element, such as ``speed.max``; none where it is dropped.
+        also: further paths, on a condition.
         drop: why it is not carried over.
         times: what numbers are multiplied by.
         values: new texts by old ones.
@@ -65,6 +79,7 @@ class Use:
     """
 
     to: tuple[str, ...] = ()
+    also: Also | None = None
     drop: str = ""
     times: float = 1.0
     values: Mapping[str, str] = field(default_factory=dict)

@@ -7,7 +7,17 @@ from typing import cast
 
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.mapping import Bearing, Constant, Counterpart, DeviceLookup, Ring, Rule, Use, Wait
+from mmrs_core.migration.mapping import (
+    Also,
+    Bearing,
+    Constant,
+    Counterpart,
+    DeviceLookup,
+    Ring,
+    Rule,
+    Use,
+    Wait,
+)
 from mmrs_core.migration.paths import feature_at
 from mmrs_core.migration.structure import Structure
 from mmrs_core.migration.toml_tables import Table
@@ -96,6 +106,7 @@ def _use(rule: Table, name: str, value: object, metaclass: Metaclass | None) -> 
         raise table.fault("absent: expected a text, number or truth value")
     use = Use(
         to=table.texts("to"),
+        also=_also(table.table("also"), metaclass) if "also" in table else None,
         drop=table.take("drop", str, ""),
         times=table.take("times", float, 1.0),
         values=table.table("values").text_by_key(),
@@ -121,6 +132,14 @@ def _use(rule: Table, name: str, value: object, metaclass: Metaclass | None) -> 
     for path in use.to if use.bearing is None or use.bearing.base == "home" else ():
         _check_path(path, table, metaclass)
     return use
+
+
+def _also(table: Table, metaclass: Metaclass | None) -> Also:
+    found = Also(table.texts("given"), table.texts("to"))
+    table.done()
+    for path in found.to:
+        _check_path(path, table, metaclass)
+    return found
 
 
 def _counterpart(table: Table) -> Counterpart:
