@@ -69,10 +69,11 @@ def sample_type(
     )
 
 
-def sample_device(id: str, action: str, *parameters: str, **properties: str) -> Device:
-    """Return a device that supports one action of a second; properties are written with ``_`` for dots."""
-    named = {key.replace("_", "."): value for key, value in properties.items()}
-    return Device(id, {action: DeviceAction(action, 1.0, parameters)}, named)
+def sample_device(
+    id: str, action: str, *parameters: str, properties: Mapping[str, str] | None = None
+) -> Device:
+    """Return a device that supports one action of a second, with parameters of these keys."""
+    return Device(id, {action: DeviceAction(action, 1.0, parameters)}, properties or {})
 
 
 def sample_robot(
@@ -94,6 +95,7 @@ def sample_robot(
 def sample_scene(
     *robots: Robot,
     areas: tuple[Area, ...] = (),
+    elements: tuple[Part, ...] = (),
     surface: float = 0.0,
     environment: Mapping[str, float] | None = None,
     reserve: float = 0.2,
@@ -101,7 +103,17 @@ def sample_scene(
     """Return a scene of robots among areas; `surface` is the height of the water, metres."""
     frame = Frame("EPSG:4326", 42.0, 13.0, surface=surface)
     team = robots or (sample_robot(),)
-    return Scene("sample", frame, (), (), team, areas=areas, environment=environment or {}, reserve=reserve)
+    return Scene(
+        "sample",
+        frame,
+        (),
+        (),
+        team,
+        areas=areas,
+        elements=elements,
+        environment=environment or {},
+        reserve=reserve,
+    )
 
 
 def square(

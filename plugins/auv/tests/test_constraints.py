@@ -1,11 +1,12 @@
 from __future__ import annotations
 
-import pytest
+from mmrs_auv import plugin
 from mmrs_auv.constraints import CONSTRAINTS
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
 
 from mmrs_core.languages import context as ctx
-from mmrs_core.languages import mission as mml
+from mmrs_core.testing.conformance import Case, ConstraintConformance
+from mmrs_core.testing.models import breaches, sample_mission, sample_tasks, sample_visit
 
 ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
 ALL_ROUND = ("SURGE", "YAW", "HEAVE")
@@ -42,11 +43,8 @@ def plainly_sized(registry):
 
 
 def mission(registry, depth):
-    point = mml.RelativeCoordinate(x=1.0, y=1.0, z=-3.0 - depth)
-    visit = registry.create("urn:test:visits:1.0", "Visit", name="wreck", point=point)
-    home = mml.RelativeCoordinate(x=0.0, y=0.0, z=-3.0)
-    team = mml.Team(robots=[mml.Robot(name="Otter", type="Diver", home=home)])
-    return mml.Mission(name="m", team=team, tasks=[visit], origin=mml.RelativeCoordinate(x=0.0, y=0.0))
+    visit = sample_visit(registry, 1.0, 1.0, -3.0 - depth)
+    return sample_mission(visit, robot_type="Diver", home=(0.0, 0.0, -3.0))
 
 
 def lake():
@@ -54,43 +52,43 @@ def lake():
 
 
 CASES = {
-    "AUV001": (
+    "AUV001": Case(
         lambda r: [vehicle(r, thruster(r, ("YAW", "HEAVE")))],
         lambda r: [vehicle(r, thruster(r, ("SWAY",)))],
     ),
-    "AUV002": (lambda r: [vehicle(r, thruster(r, ("SURGE", "YAW")))], lambda r: [vehicle(r)]),
-    "AUV003": (
+    "AUV002": Case(lambda r: [vehicle(r, thruster(r, ("SURGE", "YAW")))], lambda r: [vehicle(r)]),
+    "AUV003": Case(
         lambda r: [vehicle(r, thruster(r), thruster(r))],
         lambda r: [vehicle(r, thruster(r), thruster(r, id="T2"))],
     ),
-    "AUV004": (
+    "AUV004": Case(
         lambda r: [vehicle(r), mission(r, 50.5), lake()],
         lambda r: [vehicle(r), mission(r, 50.0), lake()],
     ),
-    "AUV005": (
+    "AUV005": Case(
         lambda r: [vehicle(r, thruster(r, maxThrust=19.0))],
         lambda r: [vehicle(r, thruster(r, maxThrust=20.0))],
     ),
-    "AUV006": (
+    "AUV006": Case(
         lambda r: [vehicle(r, thruster(r, operatingPower=90.0, maxPower=80.0))],
         lambda r: [vehicle(r, thruster(r, operatingPower=90.0, maxPower=90.0))],
     ),
-    "AUV007": (lambda r: [plainly_sized(r)], lambda r: [vehicle(r)]),
-    "AUV008": (
+    "AUV007": Case(lambda r: [plainly_sized(r)], lambda r: [vehicle(r)]),
+    "AUV008": Case(
         lambda r: [vehicle(r, size=size(r, weightInWater=21.0))],
         lambda r: [vehicle(r, size=size(r, weightInWater=-21.0))],
     ),
-    "AUV009": (
+    "AUV009": Case(
         lambda r: [vehicle(r, thruster(r, operatingPower=0.0))],
         lambda r: [vehicle(r, thruster(r, operatingPower=1.0))],
     ),
-    "AUV010": (lambda r: [vehicle(r, pressuremeter=False)], lambda r: [vehicle(r)]),
-    "AUV011": (lambda r: [mixed(r)], lambda r: [vehicle(r)]),
-    "AUV012": (
+    "AUV010": Case(lambda r: [vehicle(r, pressuremeter=False)], lambda r: [vehicle(r)]),
+    "AUV011": Case(lambda r: [mixed(r)], lambda r: [vehicle(r)]),
+    "AUV012": Case(
         lambda r: [vehicle(r, thruster(r, (*ALL_ROUND, "YAW")))],
         lambda r: [vehicle(r, thruster(r, ALL_ROUND))],
     ),
-    "AUV013": (
+    "AUV013": Case(
         lambda r: [vehicle(r, size=size(r, weightInWater=-3.0))],
         lambda r: [vehicle(r, size=size(r, weightInWater=-2.0))],
     ),
@@ -98,35 +96,18 @@ CASES = {
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
 
-def test_every_constraint_has_a_failing_and_a_passing_model():
-    assert set(CASES) == set(BY_CODE)
+class TestConstraints(ConstraintConformance):
+    plugin = plugin
+    more_metamodels = (sample_tasks(),)
+    cases = CASES
 
 
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_breach_is_found_and_starts_with_its_culprit(code, registry, breaches):
-    found = breaches(BY_CODE[code], CASES[code][0](registry))
-    assert len(found) == 1
-    assert found[0][0].islower()
-    assert not found[0].endswith(".")
-
-
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_model_that_keeps_the_constraint_passes(code, registry, breaches):
-    assert breaches(BY_CODE[code], CASES[code][1](registry)) == []
-
-
-@pytest.mark.parametrize("metaclass", [AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER], ids=lambda name: name[1])
-def test_elements_without_any_feature_set_break_no_constraint(metaclass, registry, breaches):
-    empty = registry.create(*metaclass)
-    assert [found for each in CONSTRAINTS for found in breaches(each, [empty])] == []
-
-
-def test_a_plain_robot_breaks_no_constraint_of_underwater_vehicles(registry, breaches):
+def test_a_plain_robot_breaks_no_constraint_of_underwater_vehicles(registry):
     plain = registry.create(ROBOT_LANGUAGE, "Robot", name="Diver")
     models = [plain, mission(registry, 500.0), lake()]
     assert [found for each in CONSTRAINTS for found in breaches(each, models)] == []
 
 
-def test_the_hull_counts_for_the_depth_of_tasks(registry, breaches):
+def test_the_hull_counts_for_the_depth_of_tasks(registry):
     models = [vehicle(registry, maxOperatingPressure=200_000.0), mission(registry, 12.0), lake()]
     assert "the team's vehicles bear 10.1 m" in breaches(BY_CODE["AUV004"], models)[0]

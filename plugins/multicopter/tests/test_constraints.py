@@ -1,12 +1,14 @@
 from __future__ import annotations
 
-import pytest
+from mmrs_multicopter import plugin
 from mmrs_multicopter.constraints import CONSTRAINTS
 from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, MULTICOPTER, TAKE_OFF
 
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as ctx
 from mmrs_core.languages import mission as mml
+from mmrs_core.testing.conformance import Case, ConstraintConformance
+from mmrs_core.testing.models import breaches, sample_mission, sample_tasks, sample_visit
 
 ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
 
@@ -26,14 +28,11 @@ def plainly_sized(registry):
     return registry.create(*DRONE, name="Quad", size=registry.create(ROBOT_LANGUAGE, "Size", width=0.5))
 
 
-def mission(registry, altitude=0.0, home_up=0.0, **features):
-    point = mml.RelativeCoordinate(x=1.0, y=1.0, z=altitude)
-    visit = registry.create("urn:test:visits:1.0", "Visit", name="peak", point=point)
-    home = mml.RelativeCoordinate(x=0.0, y=0.0, z=home_up)
-    team = mml.Team(robots=[mml.Robot(name="Alba", type="Quad", home=home)])
-    return mml.Mission(
-        name="m", team=team, tasks=[visit], origin=mml.RelativeCoordinate(x=0.0, y=0.0), **features
-    )
+def mission(registry, altitude=0.0, home_up=0.0, transit=None):
+    visit = sample_visit(registry, 1.0, 1.0, altitude)
+    made = sample_mission(visit, robot_type="Quad", home=(0.0, 0.0, home_up))
+    made.transitAltitude = transit
+    return made
 
 
 def weather(wind):
@@ -46,84 +45,71 @@ def flying(registry, metaclass, **features):
 
 
 CASES = {
-    "MUL001": (lambda r: [drone(r, maxAltitude=0.0)], lambda r: [drone(r, maxAltitude=1.0)]),
-    "MUL002": (lambda r: [drone(r, launchType="HTOL")], lambda r: [drone(r, launchType="VTOL")]),
-    "MUL003": (lambda r: [plainly_sized(r)], lambda r: [drone(r)]),
-    "MUL004": (lambda r: [drone(r, {"propellers": 2})], lambda r: [drone(r, {"propellers": 3})]),
-    "MUL005": (lambda r: [drone(r, {"propellerSize": 0.0})], lambda r: [drone(r, {"propellerSize": 0.1})]),
-    "MUL006": (lambda r: [drone(r, {"propellerSize": 10.0})], lambda r: [drone(r, {"propellerSize": 127.0})]),
-    "MUL007": (lambda r: [drone(r, positionHold=0.0)], lambda r: [drone(r)]),
-    "MUL008": (
+    "MUL001": Case(lambda r: [drone(r, maxAltitude=0.0)], lambda r: [drone(r, maxAltitude=1.0)]),
+    "MUL002": Case(lambda r: [drone(r, launchType="HTOL")], lambda r: [drone(r, launchType="VTOL")]),
+    "MUL003": Case(lambda r: [plainly_sized(r)], lambda r: [drone(r)]),
+    "MUL004": Case(lambda r: [drone(r, {"propellers": 2})], lambda r: [drone(r, {"propellers": 3})]),
+    "MUL005": Case(
+        lambda r: [drone(r, {"propellerSize": 0.0})], lambda r: [drone(r, {"propellerSize": 0.1})]
+    ),
+    "MUL006": Case(
+        lambda r: [drone(r, {"propellerSize": 10.0})], lambda r: [drone(r, {"propellerSize": 127.0})]
+    ),
+    "MUL007": Case(lambda r: [drone(r, positionHold=0.0)], lambda r: [drone(r)]),
+    "MUL008": Case(
         lambda r: [drone(r, positionHold=8.0), mission(r), weather(8.5)],
         lambda r: [drone(r, positionHold=8.0), mission(r), weather(8.0)],
     ),
-    "MUL009": (
+    "MUL009": Case(
         lambda r: [drone(r), mission(r, altitude=121.0, home_up=20.0)],
         lambda r: [drone(r), mission(r, altitude=120.0, home_up=20.0)],
     ),
-    "MUL010": (
+    "MUL010": Case(
         lambda r: [flying(r, TAKE_OFF, altitude=0.0)],
         lambda r: [flying(r, TAKE_OFF, altitude=2.0)],
     ),
-    "MUL011": (
+    "MUL011": Case(
         lambda r: [drone(r), flying(r, TAKE_OFF, altitude=101.0)],
         lambda r: [drone(r), flying(r, TAKE_OFF, altitude=100.0)],
     ),
-    "MUL012": (
+    "MUL012": Case(
         lambda r: [plain(r), flying(r, TAKE_OFF, altitude=9.0)],
         lambda r: [drone(r), flying(r, TAKE_OFF, altitude=9.0)],
     ),
-    "MUL013": (lambda r: [plain(r), flying(r, LAND)], lambda r: [drone(r), flying(r, LAND)]),
-    "MUL014": (lambda r: [plain(r), flying(r, GO_TO)], lambda r: [drone(r), flying(r, GO_TO)]),
-    "MUL015": (
+    "MUL013": Case(lambda r: [plain(r), flying(r, LAND)], lambda r: [drone(r), flying(r, LAND)]),
+    "MUL014": Case(lambda r: [plain(r), flying(r, GO_TO)], lambda r: [drone(r), flying(r, GO_TO)]),
+    "MUL015": Case(
         lambda r: [drone(r), mission(r, altitude=20.9, home_up=20.0)],
         lambda r: [drone(r), mission(r, altitude=21.0, home_up=20.0)],
     ),
-    "MUL016": (
-        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transitAltitude=121.0)],
-        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transitAltitude=120.0)],
+    "MUL016": Case(
+        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transit=121.0)],
+        lambda r: [drone(r), mission(r, altitude=50.0, home_up=20.0, transit=120.0)],
     ),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
 
-def test_every_constraint_has_a_failing_and_a_passing_model():
-    assert set(CASES) == set(BY_CODE)
+class TestConstraints(ConstraintConformance):
+    plugin = plugin
+    more_metamodels = (sample_tasks(),)
+    cases = CASES
 
 
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_breach_is_found_and_starts_with_its_culprit(code, registry, breaches):
-    found = breaches(BY_CODE[code], CASES[code][0](registry))
-    assert len(found) == 1
-    assert found[0][0].islower()
-    assert not found[0].endswith(".")
-
-
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_model_that_keeps_the_constraint_passes(code, registry, breaches):
-    assert breaches(BY_CODE[code], CASES[code][1](registry)) == []
-
-
-@pytest.mark.parametrize("metaclass", [DRONE, DRONE_SIZE, TAKE_OFF, LAND, GO_TO], ids=lambda name: name[1])
-def test_elements_without_any_feature_set_break_no_constraint(metaclass, registry, breaches):
-    empty = registry.create(*metaclass)
-    assert [found for each in CONSTRAINTS for found in breaches(each, [empty])] == []
-
-
-def test_a_team_with_a_robot_of_unknown_ceiling_breaks_no_height(registry, breaches):
+def test_a_team_with_a_robot_of_unknown_ceiling_breaks_no_height(registry):
     models = [plain(registry), mission(registry, altitude=500.0)]
     assert breaches(BY_CODE["MUL009"], models) == []
 
 
-def test_a_task_at_depth_is_too_low_for_drones(registry, breaches):
+def test_a_task_at_depth_is_too_low_for_drones(registry):
     made = mission(registry)
     made.tasks[0].point = mml.GeoCoordinate(latitude=42.0, longitude=13.0, depth=3.0)
     made.origin = mml.GeoCoordinate(latitude=42.0, longitude=13.0, altitude=0.0)
     (found,) = breaches(BY_CODE["MUL015"], [drone(registry), made])
-    assert found == "task 'peak' is at -3 m, the team's drones fly no lower than 1 m"
+    assert found == "task 'visit' is at -3 m, the team's drones fly no lower than 1 m"
 
 
-def test_a_team_with_a_robot_that_is_no_drone_breaks_no_floor(registry, breaches):
+def test_a_team_with_a_robot_that_is_no_drone_breaks_no_floor(registry):
     assert breaches(BY_CODE["MUL015"], [plain(registry), mission(registry)]) == []
 
 

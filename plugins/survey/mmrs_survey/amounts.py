@@ -43,18 +43,19 @@ def amount_over(least: float, most: float = inf) -> _Check:
 
 
 def _amount(task: Element, models: ModelSet, positions: _Positions) -> float:
-    """Return about how many photos or samples a task takes; 0 where that is not known."""
+    """Return about how many photos or samples a task takes; 0 where that is not known, inf for too many."""
     if is_kind(task, *names.PHOTO_GRID_TASK):
         seen = _spacing(task, models)
-        return _area(task, positions) / (seen.width * seen.length) if seen is not None else 0.0
+        return _area(task, positions) / seen.width / seen.length if seen is not None else 0.0
     if is_kind(task, *names.MEASURE_TASK):
         spacing = number(task, "spacing") or 0.0
         if spacing <= 0.0:
             return 0.0
-        return _area(task, positions) / spacing**2 + _length(task, positions) / spacing
+        return _area(task, positions) / spacing / spacing + _length(task, positions) / spacing
     if is_kind(task, *names.ROAD_TASK):
         distance, strip = number(task, "photoDistance") or 0.0, number(task, "footprintWidth") or 0.0
-        sides = max(1, ceil((number(task, "width") or 0.0) / strip)) if strip > 0.0 else 1
+        asked = (number(task, "width") or 0.0) / strip if strip > 0.0 else 1.0
+        sides = max(1, ceil(asked)) if asked < TOO_MANY else asked
         return sides * _length(task, positions) / distance if distance > 0.0 else 0.0
     return 0.0
 

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
 import pytest
+from mmrs_survey import plugin
 from mmrs_survey.constraints import CONSTRAINTS
 from mmrs_survey.names import SURVEY
 
 from mmrs_core.languages import mission as mml
+from mmrs_core.testing.conformance import Case, ConstraintConformance
+from mmrs_core.testing.models import breaches
 
 ROBOT_LANGUAGE = "urn:mmrs:robot:1.0"
 OPTICS = {"sensor.width": "13.2", "sensor.height": "8.8", "focal.length": "8.8"}
@@ -78,55 +81,55 @@ def field(made, side=100.0):
 
 
 CASES = {
-    "SUR001": (
+    "SUR001": Case(
         lambda r: [sized(r, gridResolution=12.0)],
         lambda r: [grid(r, gridResolution=12.0)],
     ),
-    "SUR002": (lambda r: [grid(r), camera(r)], lambda r: [grid(r), camera(r, **OPTICS)]),
-    "SUR003": (lambda r: [sized(r, sideOverlap=1.0)], lambda r: [sized(r, sideOverlap=0.99)]),
-    "SUR004": (
+    "SUR002": Case(lambda r: [grid(r), camera(r)], lambda r: [grid(r), camera(r, **OPTICS)]),
+    "SUR003": Case(lambda r: [sized(r, sideOverlap=1.0)], lambda r: [sized(r, sideOverlap=0.99)]),
+    "SUR004": Case(
         lambda r: [grid(r, gridResolution=0.0)],
         lambda r: [grid(r, gridResolution=0.1)],
     ),
-    "SUR005": (lambda r: [grid(r, footprintWidth=9.0)], lambda r: [sized(r)]),
-    "SUR006": (lambda r: [sized(r, groundResolution=0.01)], lambda r: [grid(r, groundResolution=0.01)]),
-    "SUR007": (
+    "SUR005": Case(lambda r: [grid(r, footprintWidth=9.0)], lambda r: [sized(r)]),
+    "SUR006": Case(lambda r: [sized(r, groundResolution=0.01)], lambda r: [grid(r, groundResolution=0.01)]),
+    "SUR007": Case(
         lambda r: [grid(r, gridResolution=12.0, sideOverlap=0.5)],
         lambda r: [grid(r, gridResolution=12.0)],
     ),
-    "SUR008": (
+    "SUR008": Case(
         lambda r: [grid(r, groundResolution=0.01), camera(r, **OPTICS)],
         lambda r: [grid(r, groundResolution=0.01), camera(r, **PIXELS)],
     ),
-    "SUR009": (
+    "SUR009": Case(
         lambda r: [sized(r), two_cameras(r)],
         lambda r: [sized(r, deviceId="left"), two_cameras(r)],
     ),
-    "SUR010": (
+    "SUR010": Case(
         lambda r: [sized(r, deviceId="what people call it"), camera(r)],
         lambda r: [sized(r, deviceId="camera"), camera(r)],
     ),
-    "SUR011": (lambda r: [measure(r, altitude=1.0, depth=1.0)], lambda r: [measure(r, depth=1.0)]),
-    "SUR012": (lambda r: [measure(r, points=[])], lambda r: [measure(r)]),
-    "SUR013": (
+    "SUR011": Case(lambda r: [measure(r, altitude=1.0, depth=1.0)], lambda r: [measure(r, depth=1.0)]),
+    "SUR012": Case(lambda r: [measure(r, points=[])], lambda r: [measure(r)]),
+    "SUR013": Case(
         lambda r: [measure(r, shell=corners(3), spacing=1.0)],
         lambda r: [measure(r, points=[], shell=corners(3), spacing=1.0)],
     ),
-    "SUR014": (lambda r: [measure(r, "minutes"), probe(r)], lambda r: [measure(r, "seconds"), probe(r)]),
-    "SUR015": (
+    "SUR014": Case(lambda r: [measure(r, "minutes"), probe(r)], lambda r: [measure(r, "seconds"), probe(r)]),
+    "SUR015": Case(
         lambda r: [camera(r, **{"focal.length": "24 mm"})],
         lambda r: [camera(r, **{"focal.length": "24", "mount": "gimbal"})],
     ),
-    "SUR016": (lambda r: [accepting(r)], lambda r: [accepting(r, "clearance")]),
-    "SUR017": (
+    "SUR016": Case(lambda r: [accepting(r)], lambda r: [accepting(r, "clearance")]),
+    "SUR017": Case(
         lambda r: [task(r, "ObserveTask", duration=1.0)],
         lambda r: [task(r, "ObserveTask", duration=1.0, distance=5.0)],
     ),
-    "SUR018": (
+    "SUR018": Case(
         lambda r: [field(grid(r, gridResolution=0.7))],
         lambda r: [field(grid(r, gridResolution=0.71))],
     ),
-    "SUR019": (
+    "SUR019": Case(
         lambda r: [field(grid(r, gridResolution=0.1))],
         lambda r: [field(grid(r, gridResolution=10.0))],
     ),
@@ -134,28 +137,16 @@ CASES = {
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
 
-def test_every_constraint_has_a_failing_and_a_passing_model():
-    assert set(CASES) == set(BY_CODE)
-
-
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_breach_is_found_and_starts_with_its_culprit(code, registry, breaches):
-    found = breaches(BY_CODE[code], CASES[code][0](registry))
-    assert len(found) == 1
-    assert found[0][0].islower()
-    assert not found[0].endswith(".")
-
-
-@pytest.mark.parametrize("code", sorted(CASES))
-def test_a_model_that_keeps_the_constraint_passes(code, registry, breaches):
-    assert breaches(BY_CODE[code], CASES[code][1](registry)) == []
+class TestConstraints(ConstraintConformance):
+    plugin = plugin
+    cases = CASES
 
 
 TASKS = ["PhotoGridTask", "GoToTask", "RoadTask", "ObserveTask", "ApproachTask"]
 
 
 @pytest.mark.parametrize("metaclass", TASKS)
-def test_half_a_task_crashes_no_constraint(metaclass, registry, breaches):
+def test_half_a_task_crashes_no_constraint(metaclass, registry):
     codes = {code for code in BY_CODE if breaches(BY_CODE[code], [registry.create(SURVEY, metaclass)])}
     assert codes <= {"SUR002", "SUR012", "SUR016", "SUR017"}
 
@@ -171,27 +162,27 @@ def test_half_a_task_crashes_no_constraint(metaclass, registry, breaches):
         ("ApproachTask", "tolerance"),
     ],
 )
-def test_negative_figures_are_found_in_every_task(metaclass, feature, registry, breaches):
+def test_negative_figures_are_found_in_every_task(metaclass, feature, registry):
     (message,) = breaches(BY_CODE["SUR004"], [task(registry, metaclass, **{feature: -1.0})])
     assert message.startswith(f"{feature} of task 'it' is -1")
 
 
 @pytest.mark.parametrize("shell", [corners(2), corners(3)])
-def test_a_shell_needs_three_points_and_a_spacing(shell, registry, breaches):
+def test_a_shell_needs_three_points_and_a_spacing(shell, registry):
     models = [measure(registry, points=[], shell=shell)]
     assert len(breaches(BY_CODE["SUR012"], models)) == 1
 
 
-def test_a_road_without_photos_needs_no_camera(registry, breaches):
+def test_a_road_without_photos_needs_no_camera(registry):
     assert breaches(BY_CODE["SUR010"], [task(registry, "RoadTask"), probe(registry)]) == []
 
 
-def test_a_device_that_only_looks_must_be_carried_too(registry, breaches):
+def test_a_device_that_only_looks_must_be_carried_too(registry):
     models = [task(registry, "ObserveTask", deviceId="telescope"), probe(registry)]
     assert "no robot type has it" in breaches(BY_CODE["SUR010"], models)[0]
 
 
-def test_a_slip_of_the_unit_is_told_with_its_number(registry, breaches):
+def test_a_slip_of_the_unit_is_told_with_its_number(registry):
     found = breaches(BY_CODE["SUR019"], [field(grid(registry, gridResolution=0.1))])
     assert found == ["task 'field' takes about 1,000,000 photos"]
 
@@ -204,12 +195,12 @@ def test_a_slip_of_the_unit_is_told_with_its_number(registry, breaches):
         ({"groundResolution": 1e-4, "frontOverlap": 0.0, "sideOverlap": 0.0}, "83,333"),
     ],
 )
-def test_photos_are_counted_by_what_one_covers_less_the_overlaps(features, photos, registry, breaches):
+def test_photos_are_counted_by_what_one_covers_less_the_overlaps(features, photos, registry):
     models = [field(grid(registry, **features)), camera(registry)]
     assert breaches(BY_CODE["SUR018"], models) == [f"task 'field' takes about {photos} photos"]
 
 
-def test_samples_are_counted_by_area_and_by_length(registry, breaches):
+def test_samples_are_counted_by_area_and_by_length(registry):
     area = field(measure(registry, points=[], spacing=0.5))
     line = mml.Mission(
         name="m", origin=mml.RelativeCoordinate(x=0.0, y=0.0), tasks=[measure(registry, points=corners(5))]
@@ -219,7 +210,7 @@ def test_samples_are_counted_by_area_and_by_length(registry, breaches):
     assert breaches(BY_CODE["SUR018"], [line]) == ["task 'probe' takes about 40,000 samples"]
 
 
-def test_photos_of_a_road_are_counted_on_every_pass(registry, breaches):
+def test_photos_of_a_road_are_counted_on_every_pass(registry):
     road = task(registry, "RoadTask", photoDistance=0.001, width=20.0, footprintWidth=4.0, points=corners(6))
     made = mml.Mission(name="m", origin=mml.RelativeCoordinate(x=0.0, y=0.0), tasks=[road])
     assert breaches(BY_CODE["SUR018"], [made]) == ["task 'it' takes about 25,000 photos"]

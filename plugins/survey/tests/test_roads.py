@@ -94,7 +94,11 @@ def test_a_line_without_actions_may_be_split_at_its_corners_and_every_fifty_metr
 
 
 @given(
-    st.lists(st.tuples(st.floats(60.0, 200.0), st.floats(-1.0, 1.0)), min_size=1, max_size=5),
+    st.lists(
+        st.tuples(st.floats(60.0, 200.0), st.integers(-1000, 1000).map(lambda turn: turn / 1000)),
+        min_size=1,
+        max_size=5,
+    ),
     st.floats(10.0, 50.0),
     st.floats(5.0, 30.0),
 )
