@@ -74,6 +74,12 @@ def parse_boolean(text: str) -> bool:
 
 def parse_real(text: str) -> float:
     """Read a number in Java's notation, which has NaN, Infinity and a trailing d or f."""
+    # most numbers are in Python's notation too; it differs by underscores, other digits, words at the end
+    if text[-1:].isdigit() and "_" not in text and text.isascii():
+        try:
+            return float(text)
+        except ValueError:
+            raise ValueError(f"{shown(text)}: not a number") from None
     stripped = text.strip()
     if not _JAVA_REAL.fullmatch(stripped, 0):
         raise ValueError(f"{shown(text)}: not a number")
@@ -309,6 +315,8 @@ def builtin_type(ns_uri: str, name: str) -> DataType | None:
         found = declared_type(ns_uri, name, _XML_JAVA.get(name, "java.lang.String"))
         if found.python is float:
             return replace(found, parse=_parse_schema_real, render=_render_schema_real)
+        if found.python is Decimal:
+            return replace(found, render=lambda value: format(value, "f"))
         if name == "Base64Binary":
             return replace(found, parse=_parse_base64, render=_render_base64)
         return found

@@ -18,7 +18,6 @@ class LinkedList(list[Element]):
     __slots__ = ("_feature", "_owner")
 
     def __init__(self, owner: Element, feature: Feature) -> None:
-        super().__init__()
         self._owner = owner
         self._feature = feature
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Source
 from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
 from mmrs_core.languages.json_form.tree import is_json
@@ -87,7 +88,8 @@ class Reading:
 
     def _plain(self, draft: Draft) -> Model:
         file = Path(draft.source.file) if draft.source.path else draft.source.file
-        return Model(file, draft.source.roots, tuple(draft.diagnostics), (), frozenset(draft.broken))
+        faults = tuple(map(explained, draft.diagnostics))
+        return Model(file, draft.source.roots, faults, (), frozenset(draft.broken))
 
 
 @contextmanager

@@ -30,6 +30,10 @@ class Pending:
     line: int
 
 
+Quick = tuple[Element, Feature, str, int]
+"""The same for references without opposite that attributes give, as most are: smaller, and sooner made."""
+
+
 @dataclass(slots=True)
 class Draft:
     """A file between its parsing and the resolution of its references."""
@@ -37,10 +41,11 @@ class Draft:
     source: Source
     roots: list[Element] = field(default_factory=list)
     ids: dict[str, Element] = field(default_factory=dict)
-    pending: list[Pending] = field(default_factory=list)
+    pending: list[Pending | Quick] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     broken: set[tuple[Element, str]] = field(default_factory=set)
     found: dict[str, Element] = field(default_factory=dict)
+    lists: dict[str, list[object]] = field(default_factory=dict)
 
     def fault(
         self,
@@ -80,6 +85,31 @@ class Draft:
         if found is not None:
             self.found[fragment] = found
         return found
+
+    def nth(self, fragment: str) -> object:
+        """Return the same as `find` for a path into a list, sooner, and None for much else."""
+        head, _, index = fragment.rpartition(".")
+        values = self.lists.get(head)
+        if values is None:
+            values = self._list(head)
+        if len(index) < 10 and index.isdecimal() and index.isascii():
+            at = int(index)
+            return values[at] if at < len(values) else None
+        return None
+
+    def _list(self, head: str) -> list[object]:
+        """Return what lies behind a path without its last index, such as ``//@robots.3/@moves``."""
+        above, _, name = head.rpartition("/@")
+        owner = self.find(above) if above.startswith("/") else None
+        metaclass = type(owner)._mmrs_metaclass if owner is not None else None
+        feature = metaclass.by_name.get(name) if metaclass is not None else None
+        if owner is None or feature is None or not (feature.is_reference and feature.many):
+            return []
+        values = raw(owner, feature)
+        if isinstance(values, list):
+            self.lists[head] = values
+            return values
+        return []
 
     def _walk(self, fragment: str) -> Element | None:
         _, root, *steps = fragment.split("/") if fragment else ("", "")

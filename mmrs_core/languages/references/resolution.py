@@ -11,7 +11,7 @@ from mmrs_core.languages.element import Element, Unknown, descendants, label_of
 from mmrs_core.languages.links import raw, store
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.languages.references.addresses import Addresses
-from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.references.documents import Draft, Pending, Quick
 from mmrs_core.languages.references.hrefs import linked_file
 
 _HELPED_FAULTS = 20
@@ -34,6 +34,10 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pendi
     pending, draft.pending = draft.pending, []
     doubled = []
     for reference in pending:
+        if isinstance(reference, tuple):
+            if _quickly(reference, draft):
+                continue
+            reference = Pending(*reference)
         for uri in _uris(reference.text):
             target = _target(uri, reference, draft, opener, root)
             if target is not None and _set(reference, target, draft):
@@ -45,6 +49,18 @@ def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) ->
     """Make the other ends of a file's references know of them; a contradiction becomes a fault of that file."""
     for reference, target in doubled:
         _tell_other_end(reference, target, draft)
+
+
+def _quickly(reference: Quick, draft: Draft) -> bool:
+    """Set a reference whose text is one path to an element that it takes; return whether it was so."""
+    element, feature, text, _ = reference
+    if feature.many:
+        return False
+    target = draft.nth(text)
+    if target is None or not isinstance(target, feature.type.interface):  # type: ignore[union-attr]  # a class
+        return False
+    setattr(element, feature.attribute, target)
+    return True
 
 
 def _uris(text: str) -> Iterator[str]:

@@ -6,7 +6,7 @@ import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import NoReturn, Protocol
 from xml.parsers import expat
 
 from mmrs_core.errors import UnreadableError
@@ -17,6 +17,7 @@ MOST_ATTRIBUTES = 10_000
 _SHORTEST_ATTRIBUTE = len(' a=""')
 _TAG = re.compile(rb"<[^\s<>/=]+")
 _ATTRIBUTE = re.compile(rb"""\s+[^\s<>/="']+\s*=\s*(?:"[^"<]*"|'[^'<]*')""")
+_Start = Callable[[str, list[str]], None]
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
@@ -35,17 +36,24 @@ class Listener(Protocol):
 
 
 class Namespaces:
-    """The prefixes in scope while a document is parsed."""
+    """The prefixes in scope while a document is parsed.
+
+    Attributes:
+        changes: how often a prefix was bound or a binding undone.
+    """
 
     def __init__(self) -> None:
         self._bindings: dict[str, list[str]] = {}
+        self.changes = 0
 
     def open(self, prefix: str | None, uri: str | None) -> None:
         """Bind a prefix; None stands for the default namespace."""
+        self.changes += 1
         self._bindings.setdefault(prefix or "", []).append(uri or "")
 
     def close(self, prefix: str | None) -> None:
         """Undo the last binding of a prefix."""
+        self.changes += 1
         self._bindings[prefix or ""].pop()
 
     def uri(self, prefix: str) -> str | None:
@@ -66,6 +74,7 @@ class Document:
         data: its bytes, in an encoding that offsets count in.
         namespaces: the prefixes in scope at the current event.
         encoding: the declared one.
+        parser: expat's; for whoever needs the line of every element.
     """
 
     def __init__(self, data: bytes, file: str) -> None:
@@ -75,23 +84,23 @@ class Document:
         self.encoding = override or "UTF-8"
         self._depth = 0
         self._begun = False
-        self._parser = expat.ParserCreate(override, " ", {})
-        self._parser.buffer_text = True
-        self._parser.ordered_attributes = True
-        self._parser.XmlDeclHandler = self._declaration
-        self._parser.StartDoctypeDeclHandler = self._doctype
-        self._parser.StartNamespaceDeclHandler = self.namespaces.open
-        self._parser.EndNamespaceDeclHandler = self.namespaces.close
+        self.parser = expat.ParserCreate(override, " ", {})
+        self.parser.buffer_text = True
+        self.parser.ordered_attributes = True
+        self.parser.XmlDeclHandler = self._declaration
+        self.parser.StartDoctypeDeclHandler = self._doctype
+        self.parser.StartNamespaceDeclHandler = self.namespaces.open
+        self.parser.EndNamespaceDeclHandler = self.namespaces.close
 
     @property
     def line(self) -> int:
         """The line of the current event, counted from 1."""
-        return self._parser.CurrentLineNumber
+        return self.parser.CurrentLineNumber
 
     @property
     def offset(self) -> int:
         """The place of the current event in ``data``, in bytes."""
-        return self._parser.CurrentByteIndex
+        return self.parser.CurrentByteIndex
 
     def text_from(self, begin: int) -> str:
         """Return the text of the element that begins at an offset and whose end is the current event."""
@@ -100,19 +109,24 @@ class Document:
         end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
         return data[begin:end].decode(self.encoding, "replace")
 
-    def parse(self, listener: Listener) -> None:
+    def parse(self, listener: Listener, counts_depth: bool = False) -> None:
         """Send all events to the listener.
+
+        Args:
+            listener: takes them.
+            counts_depth: whether the listener calls `refuse_depth` itself; a call for each element is saved.
 
         Raises:
             UnreadableError: if it is not well-formed, has a DOCTYPE, nests too deeply, or an element has more
                 attributes than any model.
         """
-        self._parser.StartElementHandler = self._counted(listener.start)
-        self._parser.EndElementHandler = self._uncounted(listener.end)
-        self._parser.CharacterDataHandler = listener.text
+        start = listener.start if counts_depth else self._counted(listener.start)
+        self.parser.StartElementHandler = self._first(start)
+        self.parser.EndElementHandler = listener.end if counts_depth else self._uncounted(listener.end)
+        self.parser.CharacterDataHandler = listener.text
         _refuse_crowds(self.data, self.file)
         try:
-            self._parser.Parse(self.data, True)
+            self.parser.Parse(self.data, True)
         except expat.ExpatError as fault:
             reason = expat.errors.messages[fault.code]
             raise UnreadableError(f"{self.file}:{fault.lineno}: not well-formed XML: {reason}") from None
@@ -121,12 +135,23 @@ class Document:
                 raise
             raise UnreadableError(f"{self.file}: not readable as XML: {fault}") from None
 
-    def _counted(self, start: Callable[[str, list[str]], None]) -> Callable[[str, list[str]], None]:
-        def counted(tag: str, attributes: list[str]) -> None:
+    def refuse_depth(self) -> NoReturn:
+        """Raise the error for an element inside more than `DEEPEST_NESTING` others."""
+        raise UnreadableError(f"{self.file}:{self.line}: nested deeper than {DEEPEST_NESTING} levels")
+
+    def _first(self, start: _Start) -> _Start:
+        def first(tag: str, attributes: list[str]) -> None:
             self._begun = True
+            self.parser.StartElementHandler = start
+            start(tag, attributes)
+
+        return first
+
+    def _counted(self, start: _Start) -> _Start:
+        def counted(tag: str, attributes: list[str]) -> None:
             self._depth += 1
             if self._depth > DEEPEST_NESTING:
-                raise UnreadableError(f"{self.file}:{self.line}: nested deeper than {DEEPEST_NESTING} levels")
+                self.refuse_depth()
             start(tag, attributes)
 
         return counted

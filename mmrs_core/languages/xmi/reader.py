@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, Unknown, held, label_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
@@ -19,17 +17,13 @@ _NIL = f"{XSI} nil"
 _ID = f"{XMI} id"
 _UUID = f"{XMI} uuid"
 _WRAPPER = f"{XMI} XMI"
-_HARMLESS = frozenset(
+HARMLESS = frozenset(
     (_TYPE, _XMI_TYPE, f"{XMI} version", f"{XSI} schemaLocation", f"{XSI} noNamespaceSchemaLocation", _UUID)
 )
 
 
-class _Frame(NamedTuple):
-    """An open XML element: a model element, or a feature's value (then ``feature`` is given)."""
-
-    element: Element
-    metaclass: Metaclass
-    feature: Feature | None = None
+Frame = tuple[Element, Metaclass, Feature | None]
+"""An open XML element: a model element and its metaclass, or a feature's value (then with the feature)."""
 
 
 class XmiReader:
@@ -39,7 +33,7 @@ class XmiReader:
         self._document = document
         self._draft = draft
         self._registry = registry
-        self._open: list[_Frame] = []
+        self._open: list[Frame] = []
         self._text: list[str] = []
         self._ignored = 0
         self._wrapped = False
@@ -66,15 +60,15 @@ class XmiReader:
             if not self._ignored:
                 self._keep()
         elif self._open:
-            frame = self._open.pop()
-            if frame.feature is not None and not frame.feature.is_reference:
-                self._value_ends(frame.element, frame.feature)
+            element, _, feature = self._open.pop()
+            if feature is not None and not feature.is_reference:
+                self._value_ends(element, feature)
 
     def text(self, text: str) -> None:
         """Take character data."""
         if self._ignored:
             return
-        if self._open and self._open[-1].feature is not None:
+        if self._open and self._open[-1][2] is not None:
             self._text.append(text)
         elif not text.isspace():
             self._fault("XMI010", f"{text.strip()[:40]!r}: text where only elements may stand")
@@ -92,10 +86,10 @@ class XmiReader:
             return
         self._draft.roots.append(element)
         if metaclass is not None and not isinstance(element, Unknown):
-            self._open.append(_Frame(element, metaclass))
+            self._open.append((element, metaclass, None))
             self._attributes(element, metaclass, attributes)
 
-    def _inside(self, frame: _Frame, tag: str, attributes: list[str]) -> None:
+    def _inside(self, frame: Frame, tag: str, attributes: list[str]) -> None:
         element, metaclass, open_feature = frame
         if open_feature is not None:
             self._fault("XMI010", f"{tag}: an element inside a value of {open_feature.name}", element)
@@ -109,12 +103,15 @@ class XmiReader:
         elif not feature.is_reference:
             self._text.clear()
             self._nil = _value(attributes, _NIL) in ("true", "1")
-            self._open.append(_Frame(element, metaclass, feature))
-        elif (href := _value(attributes, "href")) and not self._owns_href(feature, attributes):
+            self._open.append((element, metaclass, feature))
+        elif (href := _value(attributes, "href")) and (
+            "#" in href or not self._owns_href(feature, attributes)
+        ):
             self._refer(element, feature, href)
-            self._open.append(_Frame(element, metaclass, feature))
+            self._open.append((element, metaclass, feature))
         elif _value(attributes, _NIL) in ("true", "1"):
-            self._open.append(_Frame(element, metaclass, feature))
+            self._leave_blank(element, feature)
+            self._open.append((element, metaclass, feature))
         elif feature.containment:
             self._contained(element, feature, attributes)
         else:
@@ -122,7 +119,7 @@ class XmiReader:
             self._ignored = 1
 
     def _owns_href(self, feature: Feature, attributes: list[str]) -> bool:
-        """Return whether ``href`` is a feature of the element itself; EMF would not ask."""
+        """Return whether ``href``, which is no link, is a feature of the element itself; EMF would not ask."""
         assert isinstance(feature.type, Metaclass)  # it is a reference
         if not feature.containment:
             return False
@@ -157,7 +154,7 @@ class XmiReader:
         if element is None:
             return
         if metaclass is not None and not isinstance(element, Unknown):
-            self._open.append(_Frame(element, metaclass))
+            self._open.append((element, metaclass, None))
             if not issubclass(metaclass.interface, feature.type.interface):
                 message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
                 self._fault("XMI008", message, owner, broken=feature)
@@ -232,11 +229,17 @@ class XmiReader:
                 self._attribute(element, feature, text)
             elif name == _ID:
                 self._identify(element, text, own=False)
-            elif name not in _HARMLESS:
+            elif name not in HARMLESS:
                 self._no_feature(element, metaclass, name.rpartition(" ")[2])
 
+    def _leave_blank(self, element: Element, feature: Feature) -> None:
+        if feature.unsettable:
+            self._draft.source.blanks.add((element, feature))
+
     def _attribute(self, element: Element, feature: Feature, text: str) -> None:
-        if feature.is_reference:
+        if feature.many and not text.strip():
+            self._leave_blank(element, feature)
+        elif feature.is_reference:
             self._refer(element, feature, text)
         elif feature.many:
             for word in text.split():
@@ -273,6 +276,8 @@ class XmiReader:
             self._fault("XMI005", f"{feature.name}: cannot be nil", element, broken=feature)
         elif feature.default is not None:
             type(element)._mmrs_slots[feature.attribute].__set__(element, None)
+        else:
+            self._leave_blank(element, feature)
         self._nil = False
 
     def _identify(self, element: Element, identifier: str, own: bool) -> None:

@@ -1,0 +1,116 @@
+"""Functions compiled for start tags that occur again and again: the same feature, type and attribute names.
+
+A large model has a few dozen such shapes and a million elements. What a shape means is worked out once; the
+function that is made of it, as dataclasses make theirs, sets the slots of an element one after the other and
+asks nothing. No text of a metamodel or a model gets into the source: slots are numbered, all else is bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.links import LinkedList
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metamodels.classes import bare_name
+from mmrs_core.languages.references.documents import Pending
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.element import Element, Source
+
+    Waiting = Callable[[Pending | tuple[Element, Feature, str, int]], None]
+    Maker = Callable[[Element, list[str], int, Source, Waiting], Element]
+    """Makes an element inside its owner, from attributes, line, source and where references wait.
+
+    It raises ValueError, and has changed nothing, if a value cannot be read or the owner's place is taken.
+    """
+
+_KEPT = 2048
+"""Functions kept for the next file; far more than the languages have shapes."""
+
+
+@lru_cache(_KEPT)
+def maker(
+    owner: Metaclass, feature: Feature, metaclass: Metaclass, names: tuple[Feature | None, ...]
+) -> Maker | None:
+    """Return the function for elements of a metaclass in a containment feature of an owner.
+
+    Args:
+        names: the feature that each attribute gives, in order; None where it says nothing of the element.
+
+    Returns:
+        None if the shape needs more than that: identifiers, lists of values, containment by reference.
+    """
+    if metaclass.implementation is None or not all(each is None or _simple(each) for each in names):
+        return None
+    bound: dict[str, object] = {
+        "new": object.__new__,
+        "cls": metaclass.implementation,
+        "feature": feature,
+        "LinkedList": LinkedList,
+        "append": list.append,
+        "Pending": Pending,
+    }
+    check = [] if feature.many else _vacancy(owner, feature)
+    lines = [*check, *_body(metaclass, names, bound), *_attachment(owner, feature, metaclass), "    return e"]
+    source = "\n".join(["def make(owner, attributes, line, source, wait):", *lines])
+    exec(compile(source, f"<reader of {metaclass.name}>", "exec"), bound)  # noqa: S102  # no foreign text in it
+    made: Maker = bound["make"]  # type: ignore[assignment]  # the source above defines it
+    return made
+
+
+def _simple(feature: Feature) -> bool:
+    """Whether one text is all there is to say about the value."""
+    if feature.is_reference:
+        return not feature.containment and not (feature.many and feature.unsettable)
+    return not (feature.many or feature.is_id)
+
+
+def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[str, object]) -> list[str]:
+    """Return the lines that make the element and set its slots, values before anything else can see it."""
+    given = {feature: f"v{at}" for at, feature in enumerate(names) if feature is not None}
+    lines: list[str] = []
+    if names:
+        lines.append(f"    {', '.join(f'_, v{at}' for at in range(len(names)))} = attributes")
+    lines.append("    e = new(cls)")
+    for index, feature in enumerate(metaclass.features):
+        text, slot = given.get(feature), f"e.{bare_name(index)}"
+        if text is None or feature.is_reference:
+            if not feature.nullable:
+                lines.append(f"    {slot} = None")
+        elif isinstance(feature.type, DataType) and feature.type.parse is str:
+            lines.append(f"    {slot} = {text}")
+        else:
+            bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
+            lines.append(f"    {slot} = p{index}({text})")
+    base = {"container": "owner", "feature": "feature", "line": "line", "source": "source"}
+    lines += [f"    e._mmrs_{name} = {value}" for name, value in base.items()]
+    for feature, text in given.items():
+        if feature.is_reference:
+            bound[f"f{text}"] = feature
+            lines.append(f"    wait({'Pending' if feature.linked else ''}(e, f{text}, {text}, line))")
+    return lines
+
+
+def _vacancy(owner: Metaclass, feature: Feature) -> list[str]:
+    place = f"owner.{bare_name(owner.features.index(feature))}"
+    return [f"    if {place} is not None:", "        raise ValueError"]
+
+
+def _attachment(owner: Metaclass, feature: Feature, metaclass: Metaclass) -> list[str]:
+    place = f"owner.{bare_name(owner.features.index(feature))}"
+    lines = []
+    if feature.many:
+        lines += [
+            f"    values = {place}",
+            "    if values is None:",
+            f"        values = {place} = LinkedList(owner, feature)",
+            "    append(values, e)",
+        ]
+    else:
+        lines += [f"    {place} = e"]
+    if feature.opposite is not None:
+        lines.append(f"    e.{bare_name(metaclass.features.index(feature.opposite))} = owner")
+    return lines
