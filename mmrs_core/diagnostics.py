@@ -45,6 +45,7 @@ class Diagnostic:
         message: lower case, no full stop, the culprit first.
         place: where it stands.
         hint: how to mend it; may be empty.
+        expected: what there ought to be instead; may be empty.
     """
 
     code: str
@@ -52,12 +53,14 @@ class Diagnostic:
     message: str
     place: Place = Place()
     hint: str = ""
+    expected: str = ""
 
     def __str__(self) -> str:
-        """Return one line in the form compilers use, with the hint beneath it."""
+        """Return one line in the form compilers use; beneath it where, what was expected, and the hint."""
         where = f"{self.place}: " if str(self.place) else ""
-        hint = f"\n    hint: {self.hint}" if self.hint else ""
-        return f"{where}{self.severity.value}: {self.message} [{self.code}]{hint}"
+        told = {"at": self.place.path.strip("/") and self.place.path, "expected": self.expected}
+        lines = [f"\n    {word}: {words}" for word, words in {**told, "hint": self.hint}.items() if words]
+        return f"{where}{self.severity.value}: {self.message} [{self.code}]{''.join(lines)}"
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

@@ -16,6 +16,7 @@ from urllib.parse import quote
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.languages.codes import explained
 
 SCHEMA = Path(__file__).with_name("log.schema.json")
 SUFFIX = ".jsonl"
@@ -170,7 +171,7 @@ def _records(lines: Iterable[str], file: str) -> tuple[StepRecord, ...]:
         try:
             records.append(_record(line))
         except ValueError as error:
-            faults.append(Diagnostic("LOG001", Severity.ERROR, str(error), place))
+            faults.append(explained(Diagnostic("LOG001", Severity.ERROR, str(error), place)))
     if faults:
         raise InvalidModelError(f"{file}: {len(faults)} lines are not steps", faults)
     return tuple(records)

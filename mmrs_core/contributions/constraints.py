@@ -45,3 +45,8 @@ class Constraint:
     check: Callable[[Element, ModelSet], Iterable[Finding]]
     hint: str
     severity: Severity = Severity.ERROR
+
+    @property
+    def expected(self) -> str:
+        """What must hold, in the form of messages: the title without its capital and full stop."""
+        return self.title[:1].lower() + self.title[1:].removesuffix(".")

@@ -1,44 +1,220 @@
-"""The codes of all faults that reading and checking against the metamodels can report."""
+"""The codes of faults that are no constraint's: of reading, of metamodels, of projects, places and logs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-CODES: Mapping[str, str] = MappingProxyType(
+from mmrs_core.diagnostics import Diagnostic, Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """What all faults of one code have in common.
+
+    Attributes:
+        meaning: what is wrong.
+        expected: what there ought to be instead.
+        hint: how to mend it, where the fault itself knows nothing better.
+    """
+
+    meaning: str
+    expected: str
+    hint: str
+    severity: Severity = Severity.ERROR
+
+
+CODES: Mapping[str, Code] = MappingProxyType(
     {
-        "XMI001": "the metamodel of an element is not installed",
-        "XMI002": "a metamodel has no class of that name",
-        "XMI003": "an element of an abstract class",
-        "XMI004": "an element has something that its class does not know",
-        "XMI005": "a value that its type does not allow",
-        "XMI006": "a reference that leads to no element",
-        "XMI007": "a reference to a file that may not be opened",
-        "XMI008": "an element of the wrong class, contained or referred to",
-        "XMI009": "several values where one is allowed",
-        "XMI010": "text where only elements may stand, or the reverse",
-        "XMI011": "an extension of XMI that is not read",
-        "XMI012": "an id that two elements of a file have",
-        "XMI013": "the two ends of a reference contradict each other",
-        "XMI014": "a namespace prefix that is not declared",
-        "XMI015": "a root element without a namespace",
-        "XMI016": "a reference to a file that cannot be read",
-        "XMI017": "an element of another file that cannot be contained here",
-        "ECO001": "a required value is missing",
-        "ECO002": "too few or too many values",
-        "ECO003": "a value of the wrong type",
-        "ECO004": "a value that is not a literal of its enumeration",
-        "ECO005": "an element of the wrong class",
-        "ECO006": "the same value twice among values that must differ",
-        "ECO007": "an element that its container does not know, or that two contain",
-        "ECO008": "a reference to an element that stands in no model",
-        "ECO009": "a number that is not finite",
-        "ECO010": "an element of a metamodel that is not installed",
-        "ECO011": "a reference whose other end does not refer back",
-        "ECO012": "an identifier that two elements of a model have",
-        "MIG001": "a model of an older version of its language, migrated while it was read",
-        "MIG002": "a value that the newer version of a language has no place for",
-        "PRJ001": "two types of robot of one name",
-        "PRJ002": "a file of a project that does not hold what belongs there",
+        "XMI001": Code(
+            "the metamodel of an element is not installed",
+            "a metamodel that is installed, by its nsURI",
+            "install the plug-in that brings it, or correct the nsURI",
+        ),
+        "XMI002": Code(
+            "a metamodel has no class of that name",
+            "the name of a class of that metamodel",
+            "correct the name; 'mmrs metamodel list' says what is installed",
+        ),
+        "XMI003": Code(
+            "an element of an abstract class",
+            "the name of a class that elements can be made of",
+            "say which kind of it by xsi:type, or by $type in JSON",
+        ),
+        "XMI004": Code(
+            "an element has something that its class does not know",
+            "only features of the element's class",
+            "correct the name, or take it away",
+        ),
+        "XMI005": Code(
+            "a value that its type does not allow",
+            "a value of the feature's type",
+            "correct the value, or leave the attribute out where it is optional",
+        ),
+        "XMI006": Code(
+            "a reference that leads to no element",
+            "a reference to an element, as //@tasks.0 or #id",
+            "count from 0 in the order of the file, or correct the id",
+        ),
+        "XMI007": Code(
+            "a reference to a file that may not be opened",
+            "a reference to a model inside the project's folder",
+            "move the other file into the project, and refer to it by its relative path",
+        ),
+        "XMI008": Code(
+            "an element of the wrong class, contained or referred to",
+            "an element of the class that the feature takes",
+            "choose a class that fits, or refer to another element",
+        ),
+        "XMI009": Code("several values where one is allowed", "one value", "keep one of them"),
+        "XMI010": Code(
+            "text where only elements may stand, or the reverse",
+            "elements inside elements, and text inside values",
+            "take it away, or put it into an attribute",
+        ),
+        "XMI011": Code(
+            "an extension of XMI that is not read",
+            "only the model's own elements",
+            "take it away if nobody needs it: saving the model loses it",
+            Severity.WARNING,
+        ),
+        "XMI012": Code(
+            "an id that two elements of a file have",
+            "an id that no other element has",
+            "give one of them another id, and correct what refers to it",
+        ),
+        "XMI013": Code(
+            "the two ends of a reference contradict each other",
+            "two ends that refer to each other",
+            "correct one end, or leave it out: it follows from the other",
+        ),
+        "XMI014": Code(
+            "a namespace prefix that is not declared",
+            "a prefix that is declared at the root",
+            'declare it as xmlns:prefix="nsURI", or among $languages in JSON',
+        ),
+        "XMI015": Code(
+            "a root element without a namespace",
+            "a root that says which metamodel it is of",
+            'write the root as prefix:Class, and declare xmlns:prefix="nsURI"; in JSON, give it a $type',
+        ),
+        "XMI016": Code(
+            "a reference to a file that cannot be read",
+            "a reference to a model that can be read",
+            "correct the path, or put the file there",
+        ),
+        "XMI017": Code(
+            "an element of another file that cannot be contained here",
+            "an element that no other element contains",
+            "contain it once, and refer to it elsewhere",
+        ),
+        "ECO001": Code(
+            "a required value is missing", "a value for everything that the metamodel requires", "add it"
+        ),
+        "ECO002": Code(
+            "too few or too many values", "as many values as the metamodel allows", "add or take away"
+        ),
+        "ECO003": Code("a value of the wrong type", "a value of the feature's type", "correct the value"),
+        "ECO004": Code(
+            "a value that is not a literal of its enumeration",
+            "a literal of the enumeration",
+            "choose one of those that the message lists",
+        ),
+        "ECO005": Code(
+            "an element of the wrong class",
+            "an element of the class that the feature takes",
+            "put an element of another class there",
+        ),
+        "ECO006": Code(
+            "the same value twice among values that must differ",
+            "each value once",
+            "take the repetition away",
+        ),
+        "ECO007": Code(
+            "an element that its container does not know, or that two contain",
+            "an element that one container holds",
+            "contain it once",
+        ),
+        "ECO008": Code(
+            "a reference to an element that stands in no model",
+            "a reference to an element of a model",
+            "put it into a containment feature of the model",
+        ),
+        "ECO009": Code(
+            "a number that is not finite",
+            "a finite number",
+            "give a number; leave the attribute out where the value is not known",
+        ),
+        "ECO010": Code(
+            "an element of a metamodel that is not installed",
+            "an element of a metamodel that is installed",
+            "install the plug-in that brings it",
+        ),
+        "ECO011": Code(
+            "a reference whose other end does not refer back",
+            "two ends that refer to each other",
+            "set one end; the other follows",
+        ),
+        "ECO012": Code(
+            "an identifier that two elements of a model have",
+            "an identifier that no other element has",
+            "give one of them another",
+        ),
+        "MIG001": Code(
+            "a model of an older version of its language, migrated while it was read",
+            "a model of the installed version",
+            "save the model to have it in the new version",
+            Severity.NOTE,
+        ),
+        "MIG002": Code(
+            "a value that the newer version of a language has no place for",
+            "only what the newer version knows",
+            "check whether it is needed, and say it in another way",
+            Severity.WARNING,
+        ),
+        "GND001": Code(
+            "a coordinate that has no place",
+            "a coordinate whose origin and reference are known",
+            "correct the coordinate or what it counts from",
+        ),
+        "GND002": Code(
+            "something that a robot type needs for planning is missing",
+            "a robot type with size and speed",
+            "add it to the robot type",
+        ),
+        "GND003": Code(
+            "a robot of a type that is not among the models",
+            "the name of a robot type of the project",
+            "add the robot type to the project's robots folder, or correct the name",
+        ),
+        "GND004": Code(
+            "an element whose plug-in is not installed, where it is needed",
+            "elements of metamodels that are installed",
+            "install the plug-in that brings it",
+        ),
+        "LOG001": Code(
+            "a line of a log that is no step",
+            "one step a line, as the logs' schema says",
+            "take the line away, or write the log anew",
+        ),
+        "PRJ001": Code(
+            "two types of robot of one name",
+            "robot types with different names",
+            "give each type its own name",
+        ),
+        "PRJ002": Code(
+            "a file of a project that does not hold what belongs there",
+            "one mission in mission.xmi, one context in context.xmi, robot types in robots",
+            "move it to a file of its own",
+        ),
     }
 )
+
+
+def explained(fault: Diagnostic) -> Diagnostic:
+    """Return a fault with what its code expects, and with its code's hint if it has none of its own."""
+    code = CODES.get(fault.code)
+    if code is None:
+        return fault
+    return replace(fault, expected=fault.expected or code.expected, hint=fault.hint or code.hint)

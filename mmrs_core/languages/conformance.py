@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, held, label_of, place_of, root_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
@@ -59,12 +60,13 @@ class _Check:
         if not feature.many:
             if feature.required and not count and feature.default is None:
                 hint = "" if feature.is_reference else feature.documentation
-                yield _fault("ECO001", element, f"{_owner(element)}: {feature.name} is missing", hint)
+                message = f"{_owner(element)}: {feature.name} is missing"
+                yield _fault("ECO001", element, message, hint, _wanted(feature))
         elif count < feature.lower or count > feature.upper >= 0:
             few = count < feature.lower
             wanted = f"at least {feature.lower}" if few else f"at most {feature.upper}"
             message = f"{_owner(element)}: {feature.name} has {count or 'none'}, needs {wanted}"
-            yield _fault("ECO002" if count or not few else "ECO001", element, message)
+            yield _fault("ECO002" if count or not few else "ECO001", element, message, "", _wanted(feature))
 
     def _attributes(
         self, element: Element, feature: Feature, values: Sequence[object]
@@ -162,11 +164,18 @@ def _repeated(
         seen.add(mark)
 
 
+def _wanted(feature: Feature) -> str:
+    """Return what a feature takes, and how much of it."""
+    most = "" if feature.upper < 0 else f" to {feature.upper}"
+    count = f"{feature.lower}{most or ' or more'}" if feature.upper != feature.lower else f"{feature.lower}"
+    return f"{feature.name} with {count} {feature.type.name}"
+
+
 def _owner(element: Element) -> str:
     """Return what messages call an element: its class, and its name if it has one."""
     label = label_of(element)
     return f"{type(element).__name__}{label and f' {label!r}'}"
 
 
-def _fault(code: str, element: Element, message: str, hint: str = "") -> Diagnostic:
-    return Diagnostic(code, Severity.ERROR, message, place_of(element), hint)
+def _fault(code: str, element: Element, message: str, hint: str = "", expected: str = "") -> Diagnostic:
+    return explained(Diagnostic(code, Severity.ERROR, message, place_of(element), hint, expected))

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
@@ -132,8 +133,8 @@ def read_project(
     place = _single(drafts[1], where, faults) if context_file else None
     types = _robot_types(drafts[len(files) - len(robot_files) :], registry, faults)
     if found is None:
-        return None, tuple(faults)
-    return ModelSet(found, place or None, types, models), tuple(faults)  # type: ignore[arg-type]
+        return None, tuple(map(explained, faults))
+    return ModelSet(found, place or None, types, models), tuple(map(explained, faults))  # type: ignore[arg-type]
 
 
 def _common_folder(files: Sequence[Path]) -> Path:
@@ -189,4 +190,4 @@ def _robot_roots(
                 faults.append(Diagnostic("PRJ002", Severity.ERROR, message, place_of(root)))
         if not draft.source.roots and not draft.diagnostics:
             message = f"{metaclass.name}: the file holds none"
-            faults.append(Diagnostic("PRJ002", Severity.ERROR, message))
+            faults.append(Diagnostic("PRJ002", Severity.ERROR, message, Place(draft.source.file, 1)))

@@ -104,4 +104,5 @@ def _diagnostic(constraint: Constraint, breach: Finding) -> Diagnostic:
         breach.message,
         place_of(breach.element),
         breach.hint or constraint.hint,
+        constraint.expected,
     )

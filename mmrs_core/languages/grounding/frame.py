@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias, get_args
 
 from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, descendants, is_kind, place_of
 from mmrs_core.languages.grounding.values import child, children, literal, number, text
 from mmrs_core.scene import AltitudeReference, Frame
@@ -152,4 +153,4 @@ def origin_faults(model: Element, origin: Element, frame: Frame) -> Iterator[str
 def fault(element: Element, message: str, hint: str = "", code: str = NOWHERE) -> Diagnostic:
     """Return an error of an element, which the message does not name yet."""
     place = place_of(element)
-    return Diagnostic(code, Severity.ERROR, f"{place.path} {message}", place, hint)
+    return explained(Diagnostic(code, Severity.ERROR, f"{place.path} {message}", place, hint))
