@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import subprocess
+import threading
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,23 +13,76 @@ import pytest
 
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
-PROJECT = Path(__file__).parents[3]
+HERE = Path(__file__).parent
+PROJECT = HERE.parents[2]
 JARS = [Path("/usr/share/java") / f"eclipse-emf-{name}.jar" for name in ("common", "ecore", "ecore-xmi")]
+OPTIONS = ("-Xshare:auto", "-XX:TieredStopAtLevel=1", "-Xmx512m", "-Dfile.encoding=UTF-8")
+LONGEST_ANSWER = 300  # seconds
 
 
 @dataclass(frozen=True)
 class Verdict:
-    accepted: bool
+    """What EMF answered."""
+
     lines: tuple[str, ...]
 
     @property
     def faults(self):
-        return [line.removeprefix("FAULT ") for line in self.lines if line.startswith("FAULT ")]
+        return self.all("FAULT")
+
+    @property
+    def accepted(self):
+        return not self.faults
+
+    def all(self, word):
+        """Return what follows a word at the beginning of lines."""
+        return [line.removeprefix(f"{word} ") for line in self.lines if line.startswith(f"{word} ")]
+
+
+class Referee:
+    """One Java process, asked as often as need be."""
+
+    def __init__(self, command, metamodels):
+        self._process = subprocess.Popen(
+            list(map(str, command)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8"
+        )
+        self._metamodels = metamodels
+        self.ask("metamodels", *metamodels)
+
+    def ask(self, *words):
+        """Return the answer to a question; what can be asked stands in Referee.java."""
+        watch = threading.Timer(LONGEST_ANSWER, self._process.kill)
+        watch.start()
+        try:
+            self._process.stdin.write("\t".join(map(str, words)) + "\n")
+            self._process.stdin.flush()
+            lines = list(iter(self._line, "DONE"))
+        finally:
+            watch.cancel()
+        return Verdict(tuple(lines))
+
+    @contextmanager
+    def knowing(self, *metamodels):
+        """Let it know these metamodels and no other for a while; yield what it thinks of them."""
+        try:
+            yield self.ask("metamodels", *metamodels)
+        finally:
+            self.ask("metamodels", *self._metamodels)
+
+    def close(self):
+        self._process.stdin.close()
+        self._process.stdout.close()
+        self._process.wait(timeout=30)
+
+    def _line(self):
+        line = self._process.stdout.readline()
+        assert line, "the referee has ended"
+        return line.rstrip("\n")
 
 
 @pytest.fixture(scope="session")
-def referee(tmp_path_factory, need_program):
-    """Return a function that runs the referee with arguments and returns its verdict."""
+def referee(tmp_path_factory, need_program, every_metamodel):
+    """Return the referee, who knows all our metamodels and the foreign ones."""
     java = need_program("java", "Eclipse EMF judges metamodels and models")
     javac = need_program("javac", "the referee is compiled for the tests")
     missing = [jar.name for jar in JARS if not jar.is_file()]
@@ -36,46 +91,42 @@ def referee(tmp_path_factory, need_program):
         pytest.fail(message) if os.environ.get("MMRS_REQUIRE_PEERS") == "1" else pytest.skip(message)
     classes = tmp_path_factory.mktemp("referee")
     path = os.pathsep.join(map(str, [classes, *JARS]))
-    source = Path(__file__).with_name("Referee.java")
-    subprocess.run([javac, "-cp", path, "-d", classes, source], check=True, timeout=120)
-
-    def run(*arguments):
-        command = [
-            java,
-            "-Xshare:auto",
-            "-XX:TieredStopAtLevel=1",
-            "-Dfile.encoding=UTF-8",
-            "-cp",
-            path,
-            "Referee",
-        ]
-        done = subprocess.run(
-            [*command, *map(str, arguments)], capture_output=True, text=True, timeout=240, check=False
-        )
-        assert done.returncode in (0, 1), done.stderr
-        return Verdict(done.returncode == 0, tuple(done.stdout.splitlines()))
-
-    return run
+    sources = sorted(HERE.glob("*.java"))
+    subprocess.run(
+        [javac, "-encoding", "UTF-8", "-cp", path, "-d", classes, *sources], check=True, timeout=120
+    )
+    referee = Referee([java, *OPTIONS, "-cp", path, "Referee"], every_metamodel)
+    yield referee
+    referee.close()
 
 
 @pytest.fixture(scope="session")
 def metamodels():
     """Return the .ecore files of the core and the plug-ins, those that others need first."""
     core = [PROJECT / "metamodels" / f"{name}.ecore" for name in ("robot", "mission", "context", "behaviour")]
-    return [*core, *sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))]
+    return [*core, *plug_ins()]
+
+
+def plug_ins():
+    return sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
 
 
 @pytest.fixture(scope="session")
-def zoo_file():
-    return PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore"
+def foreign():
+    """Return metamodels that have nothing to do with robots and use what Ecore offers beyond ours."""
+    zoo = PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore"
+    return [zoo, HERE / "metamodels" / "suite.ecore", HERE / "metamodels" / "parts.ecore"]
 
 
 @pytest.fixture(scope="session")
-def registry(metamodels, zoo_file):
-    """The core, the plug-ins' metamodels and a foreign one that uses what Ecore offers beyond ours."""
-    sources = [
-        MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem)
-        for file in metamodels
-        if file.parent.name == "metamodels" and file.parent.parent != PROJECT
-    ]
-    return registry_with([*sources, MetamodelSource("urn:test:zoo", zoo_file, "zoo")])
+def every_metamodel(metamodels, foreign):
+    return [*metamodels, *foreign]
+
+
+@pytest.fixture(scope="session")
+def registry(foreign):
+    """The core, the plug-ins' metamodels and the foreign ones."""
+    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in plug_ins()]
+    return registry_with(
+        [*sources, *(MetamodelSource(f"urn:test:{file.stem}", file, file.stem) for file in foreign)]
+    )

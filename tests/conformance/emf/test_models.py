@@ -1,15 +1,16 @@
+"""Models that we write, and EMF reads and writes again."""
+
 from __future__ import annotations
 
-import random
+import shutil
 from pathlib import Path
 
 import pytest
 
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
+from mmrs_core.languages.metamodels.export import export_metamodels, schema_locations
 from mmrs_core.languages.reading import read_model
-from mmrs_core.languages.writing import to_xmi, write_model
+from mmrs_core.languages.writing import write_model
 
 pytestmark = pytest.mark.peer
 
@@ -35,59 +36,70 @@ RICH = """name="&lt;&amp;&quot;' &#xA;&#x9;>" star="//@animals.0" favourites="//
 
 
 @pytest.fixture
-def judge(referee, registry, metamodels, zoo_file, tmp_path):
-    """Return a function that has EMF read and write files, and returns the faults and the texts it wrote."""
+def rewritten(referee, tmp_path):
+    """Return a function that lets EMF read and write a file, and returns its faults and what it wrote."""
 
-    def judge(*files):
-        arguments = []
-        for file in files:
-            arguments += ["--", "save", file, tmp_path / f"{file.name}.emf"]
-        verdict = referee(*metamodels, zoo_file, *arguments)
-        return verdict.faults, [(tmp_path / f"{file.name}.emf").read_bytes() for file in files]
+    def rewrite(file):
+        out = tmp_path / f"{file.name}.emf"
+        return referee.ask("save", file, out).faults, out.read_bytes()
 
-    return judge
+    return rewrite
 
 
-def test_emf_writes_what_we_write(judge, registry, tmp_path):
+def test_emf_writes_what_we_write(rewritten, registry, tmp_path):
     (tmp_path / "rich.xmi").write_text(HEAD + RICH)
     model = read_model(tmp_path / "rich.xmi", registry)
     assert model.diagnostics == ()
     assert check_conformance(model, registry) == ()
     write_model(model.roots, tmp_path / "ours.xmi", registry)
-    faults, (theirs,) = judge(tmp_path / "ours.xmi")
-    assert faults == []
-    assert theirs == (tmp_path / "ours.xmi").read_bytes()
+    assert rewritten(tmp_path / "ours.xmi") == ([], (tmp_path / "ours.xmi").read_bytes())
 
 
-def test_emf_reads_our_nil_though_it_would_not_write_it(judge, registry, tmp_path):
+def test_emf_reads_our_nil_though_it_would_not_write_it(rewritten, registry, tmp_path):
     (tmp_path / "nil.xmi").write_text(
         f'{HEAD}><animals xsi:type="zoo:Lion" name="l"><motto xsi:nil="true"/></animals></zoo:Zoo>'
     )
     write_model(read_model(tmp_path / "nil.xmi", registry).roots, tmp_path / "ours.xmi", registry)
     assert b'<motto xsi:nil="true"/>' in (tmp_path / "ours.xmi").read_bytes()
-    faults, (theirs,) = judge(tmp_path / "ours.xmi")
+    faults, theirs = rewritten(tmp_path / "ours.xmi")
     assert faults == []
     assert b"motto" not in theirs
 
 
-EXAMPLES = sorted((Path(__file__).parents[3] / "examples").rglob("*.xmi"))
+FOLDER = Path(__file__).parents[3] / "examples"
+EXAMPLES = sorted(FOLDER.rglob("*.xmi"))
 
 
-def test_emf_accepts_every_example_and_writes_it_as_we_do(judge, registry, tmp_path):
+def test_there_are_examples():
     assert len(EXAMPLES) > 10
-    files = []
-    for index, example in enumerate(EXAMPLES):
-        model = read_model(example, registry, root=example.parents[1])
-        assert model.diagnostics == ()
-        files.append(tmp_path / f"{index}.xmi")
-        write_model(model.roots, files[-1], registry)
-    faults, theirs = judge(*files)
-    assert faults == []
-    for example, file, text in zip(EXAMPLES, files, theirs, strict=True):
-        assert text == file.read_bytes(), example
 
 
-def test_emf_writes_references_to_other_files_as_we_do(judge, registry, tmp_path):
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: "-".join(path.parts[-3:]))
+def test_emf_accepts_every_example_and_writes_it_as_we_do(rewritten, registry, tmp_path, example):
+    model = read_model(example, registry, root=example.parents[1])
+    assert model.diagnostics == ()
+    write_model(model.roots, tmp_path / "ours.xmi", registry)
+    assert rewritten(tmp_path / "ours.xmi") == ([], (tmp_path / "ours.xmi").read_bytes())
+
+
+@pytest.mark.parametrize("project", sorted({path.relative_to(FOLDER).parts[0] for path in EXAMPLES}))
+def test_eclipse_opens_every_example_by_schema_location_alone(
+    referee, registry, tmp_path, project, exported_folder
+):
+    shutil.copytree(FOLDER / project, tmp_path / project)
+    files = sorted((tmp_path / project).rglob("*.xmi"))
+    for file in files:
+        model = read_model(file, registry, root=tmp_path / project)
+        places = schema_locations(registry, exported_folder, file)
+        write_model(model.roots, file, registry, schema_location=places)
+    assert [referee.ask("alone", "check", file).faults for file in files] == [[]] * len(files)
+
+
+def test_without_schema_location_eclipse_finds_no_metamodel(referee):
+    assert not referee.ask("alone", "check", EXAMPLES[0]).accepted
+
+
+def test_emf_writes_references_to_other_files_as_we_do(rewritten, registry, tmp_path):
     lion = '<animals xsi:type="zoo:Lion" name="l"/>'
     (tmp_path / "far.xmi").write_text(f'{HEAD} name="far">{lion}</zoo:Zoo>')
     (tmp_path / "near.xmi").write_text(
@@ -97,60 +109,32 @@ def test_emf_writes_references_to_other_files_as_we_do(judge, registry, tmp_path
     )
     model = read_model(tmp_path / "near.xmi", registry)
     write_model(model.roots, tmp_path / "ours.xmi", registry)
-    faults, (theirs,) = judge(tmp_path / "ours.xmi")
-    assert faults == []
-    assert theirs == (tmp_path / "ours.xmi").read_bytes()
+    assert rewritten(tmp_path / "ours.xmi") == ([], (tmp_path / "ours.xmi").read_bytes())
 
 
-def test_emf_writes_several_roots_as_we_do(judge, registry, tmp_path):
+def test_emf_writes_several_roots_as_we_do(rewritten, registry, tmp_path):
     lions = [registry.create(ZOO, "Lion", name=name) for name in "ab"]
     lions[0].mate = lions[1]
     write_model([*lions, registry.create(ZOO, "Zoo", star=lions[1])], tmp_path / "ours.xmi", registry)
-    faults, (theirs,) = judge(tmp_path / "ours.xmi")
-    assert faults == []
-    assert theirs == (tmp_path / "ours.xmi").read_bytes()
+    assert rewritten(tmp_path / "ours.xmi") == ([], (tmp_path / "ours.xmi").read_bytes())
 
 
-def test_eclipse_opens_a_model_by_schema_location_alone(referee, registry, tmp_path):
-    export_metamodels(registry, tmp_path / "metamodels")
-    locations = {uri: f"metamodels/{name}" for uri, name in exported_names(registry).items()}
-    move = registry.create("urn:mmrs:multicopter:1.0", "Land", name="l")
-    robot = registry.create("urn:mmrs:behaviour:1.0", "Robot", id="r", typeName="t", moves=[move])
-    made = registry.create("urn:mmrs:behaviour:1.0", "Behaviour", robots=[robot])
-    write_model([made], tmp_path / "b.xmi", registry, schema_location=locations)
-    assert referee("--unregistered", "--", "check", tmp_path / "b.xmi").faults == []
-    write_model([made], tmp_path / "without.xmi", registry)
-    assert not referee("--unregistered", "--", "check", tmp_path / "without.xmi").accepted
+def test_packages_inside_packages_are_found_by_schema_location(referee, registry, tmp_path, exported_folder):
+    nest = registry.create("urn:test:zoo:wing", "Nest", eggs=2)
+    parrot = registry.create("urn:test:zoo:wing", "Parrot", name="p", nest=nest)
+    deep = registry.create("urn:test:suite:deeper", "Deep", depth=1.5)
+    file = tmp_path / "several.xmi"
+    write_model(
+        [parrot, deep], file, registry, schema_location=schema_locations(registry, exported_folder, file)
+    )
+    assert referee.ask("alone", "check", file).faults == []
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.thorough)])
-def test_emf_writes_random_models_as_we_do(judge, registry, tmp_path, count):
-    files = []
-    for seed in range(count):
-        file = tmp_path / f"{seed}.xmi"
-        write_model([RandomModel(registry, seed).root()], file, registry)
-        files.append(file)
-    faults, theirs = judge(*files)
-    assert [
-        fault for fault in faults if "required feature" not in fault and "must have at least" not in fault
-    ] == []
-    for file, text in zip(files, theirs, strict=True):
-        assert text == file.read_bytes(), file.name
-
-
-@pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.thorough)])
-def test_emf_misses_the_same_required_values(referee, registry, metamodels, zoo_file, tmp_path, count):
-    files = []
-    for seed in range(count):
-        files.append(tmp_path / f"{seed}.xmi")
-        write_model([RandomModel(registry, seed).root()], files[-1], registry)
-    arguments = [part for file in files for part in ("--", "check", file)]
-    verdict = referee(*metamodels, zoo_file, *arguments)
-    for file in files:
-        model = read_model(file, registry)
-        ours = {fault.code for fault in check_conformance(model, registry)}
-        theirs = [fault for fault in verdict.faults if fault.startswith(f"{file.name}:")]
-        assert bool(ours) == bool(theirs), (file.name, ours, theirs)
+@pytest.fixture(scope="module")
+def exported_folder(registry, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("exported metamodels")
+    export_metamodels(registry, folder)
+    return folder
 
 
 WRONG = {
@@ -185,104 +169,12 @@ RIGHT = {
 }
 
 
-def test_emf_and_we_refuse_and_accept_the_same(referee, registry, metamodels, zoo_file, tmp_path):
-    cases = {**WRONG, **RIGHT}
-    files = {}
-    for index, (title, text) in enumerate(cases.items()):
-        files[title] = tmp_path / f"{index}.xmi"
-        files[title].write_text(f"{HEAD}{text}</zoo:Zoo>")
-    arguments = [part for file in files.values() for part in ("--", "check", file)]
-    verdict = referee(*metamodels, zoo_file, *arguments)
-    refused = {fault.partition(":")[0] for fault in verdict.faults}
-    theirs = {title: file.name in refused for title, file in files.items()}
-    ours = {}
-    for title, file in files.items():
-        model = read_model(file, registry)
-        found = (*model.diagnostics, *check_conformance(model, registry))
-        ours[title] = any(fault.severity.value == "error" and fault.code != "ECO009" for fault in found)
-    assert ours == {title: title in WRONG for title in cases}
-    assert theirs == ours
-
-
-class RandomModel:
-    """A random model of all metamodels; it may lack required values, but each value is right for its type."""
-
-    TEXTS = ("", "a", "a b", "<&>\"'", "ä\n\t€", "]]>", " x ", "😀")
-    VALUES = {
-        str: TEXTS,
-        float: (0.0, -0.0, 1.5, 1e7, 1e-3, 1e-4, 123456.789, -9.87e22, 42.36928, 13.349674, 1 / 3),
-        int: (0, 1, -1, 100),
-        bool: (True, False),
-    }
-
-    def __init__(self, registry, seed):
-        self.random = random.Random(seed)
-        self.registry = registry
-        self.metaclasses = [
-            metaclass
-            for package in registry.packages
-            for metaclass in package.metaclasses
-            if metaclass.implementation and metaclass.name != "Odd"
-        ]
-        self.roots = [kind for kind in self.metaclasses if any(each.containment for each in kind.features)]
-        self.elements = []
-
-    def root(self):
-        found = self.tree(self.random.choice(self.roots), 0)
-        for element in self.elements:
-            self.refer(element)
-        return found
-
-    def tree(self, metaclass, depth):
-        element = metaclass.interface()
-        self.elements.append(element)
-        for feature in metaclass.features:
-            if feature.is_reference and feature.containment and depth < 3:
-                kinds = [kind for kind in self.metaclasses if feature.type.key in kind.ancestry]
-                count = self.random.choice((0, 1, 2, 3)) if feature.many else self.random.choice((0, 1))
-                made = [self.tree(self.random.choice(kinds), depth + 1) for _ in range(count if kinds else 0)]
-                setattr(element, feature.attribute, made if feature.many else made[0] if made else None)
-            elif not feature.is_reference and self.random.random() < 0.5:
-                self.value(element, feature)
-        return element
-
-    def value(self, element, feature):
-        if getattr(feature.type, "names", None):
-            choices = feature.type.names
-        elif feature.is_id:
-            choices = (f"id{len(self.elements)}",)
-        elif (
-            feature.type.name in ("EFloat", "Colour")
-            or feature.type.python not in self.VALUES
-            or feature.name == "grade"
-        ):
-            return
-        else:
-            choices = self.VALUES[feature.type.python]
-        if feature.many:
-            count = self.random.randrange(3)
-            values = self.random.sample(choices, min(count, len(choices)))
-            setattr(element, feature.attribute, values)
-        else:
-            setattr(element, feature.attribute, self.random.choice(choices))
-
-    def refer(self, element):
-        for feature in metaclass_of(element).features:
-            if not feature.is_reference or feature.containment or feature.is_container:
-                continue
-            targets = [target for target in self.elements if feature.type.accepts(target)]
-            if feature.name in ("mate", "mateOf"):  # EMF drops a pair that is each other's mate both ways
-                targets = [target for target in targets if target.mate is None and target.mateOf is None]
-                targets = [target for target in targets if target is not element and element.mateOf is None]
-            if not targets or self.random.random() < 0.4:
-                continue
-            if feature.many:
-                setattr(element, feature.attribute, self.random.sample(targets, min(2, len(targets))))
-            else:
-                setattr(element, feature.attribute, self.random.choice(targets))
-
-
-def test_the_random_models_are_worth_their_name(registry):
-    texts = {to_xmi([RandomModel(registry, seed).root()], registry) for seed in range(40)}
-    assert len(texts) > 30
-    assert max(map(len, texts)) > 2500
+@pytest.mark.parametrize("title", [*WRONG, *RIGHT])
+def test_emf_and_we_refuse_and_accept_the_same(referee, registry, tmp_path, title):
+    file = tmp_path / "case.xmi"
+    file.write_text(f"{HEAD}{(WRONG | RIGHT)[title]}</zoo:Zoo>")
+    model = read_model(file, registry)
+    found = (*model.diagnostics, *check_conformance(model, registry))
+    ours = [fault for fault in found if fault.severity.value == "error" and fault.code != "ECO009"]
+    theirs = referee.ask("check", file).faults
+    assert (bool(ours), bool(theirs)) == (title in WRONG, title in WRONG)
