@@ -19,15 +19,17 @@ class Source:
         path: where it lies; None for text that came from no file.
         roots: the elements at its top.
         ids: the identifiers that the file itself gave to elements (``xmi:id``).
+        blanks: the unsettable features that the file states to be nil or empty; EMF takes them for set.
     """
 
-    __slots__ = ("file", "ids", "path", "roots")
+    __slots__ = ("blanks", "file", "ids", "path", "roots")
 
     def __init__(self, file: str, path: Path | None) -> None:
         self.file = file
         self.path = path
         self.roots: tuple[Element, ...] = ()
         self.ids: dict[Element, str] = {}
+        self.blanks: set[tuple[Element, Feature]] = set()
 
 
 class ElementType(type):

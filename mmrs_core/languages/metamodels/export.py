@@ -15,6 +15,7 @@ from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.metamodels.locating import Directory, Located
 from mmrs_core.languages.metamodels.tables import PackageTable
 from mmrs_core.languages.metamodels.text import package_text
+from mmrs_core.languages.references.hrefs import relative_href
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file
 from mmrs_core.languages.xmi.events import Document, read_bytes
@@ -36,7 +37,7 @@ _PROJECT = """<?xml version="1.0" encoding="UTF-8"?>
 def exported_names(registry: Registry) -> dict[str, str]:
     """Return the file name that each metamodel gets, by nsURI; packages inside others have no own file.
 
-    Models point there by ``schema_location`` of `to_xmi`.
+    Models point there by what `schema_locations` returns.
     """
     names: dict[str, str] = {}
     for package in registry.packages:
@@ -47,6 +48,28 @@ def exported_names(registry: Registry) -> dict[str, str]:
             name = f"{package.name}-{len(names)}.ecore"
         names[package.ns_uri] = name
     return names
+
+
+def schema_locations(registry: Registry, directory: Path, file: Path) -> dict[str, str]:
+    """Return where the metamodels exported to a folder lie, by nsURI, as a model file has to say it.
+
+    Given to `write_model`, it lets Eclipse open the file without any metamodel being registered.
+
+    Args:
+        registry: the metamodels.
+        directory: where `export_metamodels` has put them.
+        file: the model file; paths are relative to its folder.
+    """
+    names = exported_names(registry)
+    base = file.resolve().parent
+    places: dict[str, str] = {}
+    for package in registry.packages:  # one package comes before those inside it
+        if not package.parent:
+            places[package.ns_uri] = relative_href(directory.resolve() / names[package.ns_uri], base)
+        else:
+            above = places[package.parent]
+            places[package.ns_uri] = f"{above}{'/' if '#' in above else '#//'}{package.name}"
+    return places
 
 
 def export_metamodels(registry: Registry, directory: Path, *, force: bool = False) -> list[Path]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element, Source, held, metaclass_of, root_of
+from mmrs_core.languages.metaclass import Feature
 from mmrs_core.languages.references.hrefs import relative_href
+
+
+_ID = re.compile(r"[^\s#:%/][^\s#:%]*")
 
 
 class Addresses:
@@ -32,6 +37,16 @@ class Addresses:
         if source is None or source.path is None or id(source) in self._sources or id(element) in self._here:
             return False
         return any(root is element for root in source.roots)
+
+    def stands_apart(self, element: Element) -> bool:
+        """Return whether a root of the document is contained in an element of another file."""
+        container = element._mmrs_container
+        return container is not None and id(element) in self._here and not self.stands_here(container)
+
+    def is_blank(self, element: Element, feature: Feature) -> bool:
+        """Return whether the file of an element says that nothing is in a feature, which is not silence."""
+        source = element._mmrs_source
+        return source is not None and (element, feature) in source.blanks
 
     def fragment(self, element: Element) -> str:
         """Return the fragment of an element of this document."""
@@ -93,7 +108,15 @@ class Addresses:
 
 
 def _own_id(element: Element) -> str | None:
-    """Return the value of its id attribute, or the ``xmi:id`` that its file gave to it."""
+    """Return the value of its id attribute, or the ``xmi:id`` that its file gave to it, fit to refer with.
+
+    A text that readers would not take for one id, such as two words, is none: then the path refers.
+    """
+    identifier = _identifier(element)
+    return identifier if identifier is not None and _ID.fullmatch(identifier) else None
+
+
+def _identifier(element: Element) -> str | None:
     if element._mmrs_source is not None and element in element._mmrs_source.ids:
         return element._mmrs_source.ids[element]
     if type(element)._mmrs_metaclass is None:
@@ -101,7 +124,7 @@ def _own_id(element: Element) -> str | None:
     for feature in metaclass_of(element).features:
         if feature.is_id:
             for value in held(element, feature):
-                return str(value) or None
+                return str(value)
     return None
 
 

@@ -125,7 +125,10 @@ class XmiWriter:
         attributes: _Attributes = []
         children: list[_Job] = []
         for feature in metaclass.features:
-            if not feature.stored or feature.is_container or not holds(element, feature):
+            if not feature.stored or (feature.is_container and not self._addresses.stands_apart(element)):
+                continue
+            if not holds(element, feature):
+                self._blank(element, feature, depth, attributes, children)
                 continue
             values = held(element, feature)
             if not feature.is_reference:
@@ -135,6 +138,23 @@ class XmiWriter:
             else:
                 self._references(element, feature, values, depth, attributes, children)
         return attributes, children
+
+    def _blank(
+        self,
+        element: Element,
+        feature: Feature,
+        depth: int,
+        attributes: _Attributes,
+        children: list[_Job],
+    ) -> None:
+        """Write that nothing is in a feature, if its file said so."""
+        if not feature.unsettable or not self._addresses.is_blank(element, feature):
+            return
+        if feature.many:
+            attributes.append((feature.name, ""))
+        else:
+            self._typed = True
+            children.append(f'{"  " * depth}<{feature.name} xsi:nil="true"/>\n')
 
     def _values(
         self,
@@ -150,7 +170,7 @@ class XmiWriter:
         if not texts:
             self._typed = True
             children.append(f'{indent}<{feature.name} xsi:nil="true"/>\n')
-        elif feature.many:
+        elif feature.many or feature.name == "href":  # as an attribute, EMF would take that for a link
             children.extend(f"{indent}<{feature.name}>{_text(text)}</{feature.name}>\n" for text in texts)
         else:
             attributes.append((feature.name, _attribute(texts[0])))
