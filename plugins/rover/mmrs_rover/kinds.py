@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import degrees
+from math import pi
 
 from mmrs_core.contributions.rules import MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
@@ -14,7 +14,10 @@ from mmrs_rover.names import ROVER
 from mmrs_rover.terrain import barrier
 
 SHUNTING_PACE = 0.5
-"""Share of its cruise speed at which a rover shunts; the halts in between are counted in it."""
+"""Share of its cruise speed at which a rover shunts."""
+
+ARCS = 3
+"""Forwards, backwards and forwards: each begins and ends at a standstill."""
 
 
 def kinematics(robot: Robot, scene: Scene) -> Kinematics:
@@ -23,7 +26,7 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     A rover that cannot turn on the spot comes round by three arcs, forwards, backwards and forwards, each
     as narrow as it can: together they are as long as the angle times the radius, and no point of them is
     further from where the rover stands than the radius (Reeds and Shepp, "Optimal paths for a car that
-    goes both forwards and backwards", 1990, section 8: curves of the sort C|C|C).
+    goes both forwards and backwards", 1990: curves of the sort C|C|C).
 
     Raises:
         InfeasibleError: the type does not say how narrow its curves are, or has no capability for the
@@ -35,7 +38,8 @@ def kinematics(robot: Robot, scene: Scene) -> Kinematics:
     if radius == 0.0:
         return known
     pace = max(known.slowest, SHUNTING_PACE * known.cruise)
-    return replace(known, turning_radius=radius, turn_rate=min(known.turn_rate, degrees(pace / radius)))
+    half_turn = pi * radius / pace + ARCS * pace / known.acceleration
+    return replace(known, turning_radius=radius, turn_rate=min(known.turn_rate, 180.0 / half_turn))
 
 
 def turning_radius(robot_type: RobotType) -> float:

@@ -27,14 +27,17 @@ def registry() -> Registry:
 def rover() -> Callable[..., Robot]:
     """Make a rover at a height, with what its type states."""
 
-    def make(up: float = 2.0, turn_rate: float | None = None, **stated: object) -> Robot:
+    def make(
+        up: float = 2.0, turn_rate: float | None = None, acceleration: float | None = None, **stated: object
+    ) -> Robot:
+        figures = Capability(0.0, 3600.0, (0.0, 2.0), acceleration=acceleration, turn_rate=turn_rate)
         robot_type = RobotType(
             name="Field rover",
             metaclasses=(ROVER, ROBOT),
             capability_metaclasses=(),
             half_diagonal=0.8,
             max_payload=None,
-            capabilities=(Capability(0.0, 3600.0, (0.0, 2.0), turn_rate=turn_rate),),
+            capabilities=(figures,),
             batteries=(),
             devices={},
             part=Part((ROVER, ROBOT), {"drive": "WHEELS", **stated}),

@@ -39,6 +39,11 @@ def test_half_a_turn_by_shunting_is_a_half_circle_at_half_the_cruise_speed(rover
     assert found.shunting == pytest.approx(pi * 1.5 / 0.5)
 
 
+def test_every_arc_of_a_turn_begins_and_ends_at_a_standstill(rover, field):
+    found = kinematics(rover(turningRadius=1.5, acceleration=0.25), field)
+    assert found.shunting == pytest.approx(pi * 1.5 / 0.5 + 3 * 0.5 / 0.25)
+
+
 def test_a_turn_rate_that_is_smaller_than_the_curve_allows_stands(rover, field):
     assert kinematics(rover(turningRadius=0.1, turn_rate=20.0), field).turn_rate == 20.0
 
