@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from hypothesis import reject
@@ -43,9 +43,36 @@ def instances_of(
     @st.composite
     def tree(draw: st.DrawFn) -> Element:
         root = draw(st.sampled_from(sorted(roots, key=lambda each: each.key)))
-        return _Growth(draw, roots[root], levels, values).tree(root)
+        return _Growth(draw, roots[root], levels, values).forest([root])[0]
 
     return tree()
+
+
+def models_of(
+    registry: Registry, *roots: tuple[str, str], levels: int = 2, values: Values | None = None
+) -> st.SearchStrategy[tuple[Element, ...]]:
+    """Draw valid models whose roots are of these metaclasses, as `instances_of` does.
+
+    References lead from each tree into all of them, so that elements can be drawn that are not valid
+    without others beside them.
+
+    Args:
+        registry: the metamodels.
+        roots: nsURI and name of the class of each root, in order.
+        levels: as for `instances_of`.
+        values: as for `instances_of`.
+
+    Raises:
+        ValueError: if there is no such class, or no valid model.
+    """
+    metaclasses = [registry.metaclass(*root) for root in roots]
+    kinds = kinds_below(registry, *metaclasses)
+
+    @st.composite
+    def forest(draw: st.DrawFn) -> tuple[Element, ...]:
+        return _Growth(draw, kinds, levels, values).forest(metaclasses)
+
+    return forest()
 
 
 def _roots(registry: Registry, ns_uri: str, name: str) -> dict[Metaclass, Kinds]:
@@ -67,7 +94,7 @@ def _roots(registry: Registry, ns_uri: str, name: str) -> dict[Metaclass, Kinds]
 
 
 class _Growth:
-    """One tree while it grows."""
+    """Trees while they grow."""
 
     def __init__(self, draw: st.DrawFn, kinds: Kinds, levels: int, values: Values | None) -> None:
         self._draw = draw
@@ -77,8 +104,8 @@ class _Growth:
         self._elements: list[Element] = []
         self._identifiers: set[object] = set()
 
-    def tree(self, root: Metaclass) -> Element:
-        made = self._grow(root, self._levels)
+    def forest(self, roots: Iterable[Metaclass]) -> tuple[Element, ...]:
+        made = tuple(self._grow(root, self._levels) for root in roots)
         for _ in range(_MOST_ROUNDS):
             for element, feature in list(self._unmet()):
                 self._meet(element, feature)
@@ -158,7 +185,7 @@ class _Growth:
         ]
 
     def _made_for(self, feature: Feature) -> list[Element]:
-        """Return an element for a reference to lead to, put where the tree has room; else nothing."""
+        """Return an element for a reference to lead to, put where a tree has room; else nothing."""
         assert isinstance(feature.type, Metaclass)  # it is a reference
         best: tuple[Element, tuple[Step, ...]] | None = None
         for element in self._elements:

@@ -106,27 +106,28 @@ class Kinds:
         return min((heights[each] for each in self.fitting(feature.type, feature.owner.ns_uri)), default=inf)
 
 
-def kinds_below(registry: Registry, root: Metaclass) -> Kinds:
-    """Return the classes that valid trees with such a root can hold.
+def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
+    """Return the classes that valid models with such roots can hold.
 
     Raises:
-        ValueError: if there is no valid tree with such a root; says why.
+        ValueError: if there is no valid model with such roots; says why.
     """
     concrete = [
         kind for package in registry.everything for kind in package.metaclasses if kind.implementation
     ]
     while True:
         kinds = Kinds(concrete)
-        if kinds.height.get(root, inf) == inf:
-            raise ValueError(f"{root.name}: no finite element of it is valid by itself")
-        inside = kinds.inside([root])
+        for root in roots:
+            if kinds.height.get(root, inf) == inf:
+                raise ValueError(f"{root.name}: no finite element of it is valid by itself")
+        inside = kinds.inside(roots)
         lacking = {kind: feature for kind in inside for feature in _unmet(kind, inside)}
-        if root in lacking:
-            feature = lacking[root]
-            raise ValueError(
-                f"{root.name}: no element of it is valid by itself: "
-                f"{feature.name} refers to {feature.type.name}, which cannot stand inside it"
-            )
+        for root in roots:
+            if root in lacking:
+                raise ValueError(
+                    f"{root.name}: no element of it is valid by itself: {lacking[root].name} refers to "
+                    f"{lacking[root].type.name}, which cannot stand inside it"
+                )
         if not lacking:
             return Kinds(kind for kind in concrete if kind in inside)
         concrete = [kind for kind in concrete if kind not in lacking]

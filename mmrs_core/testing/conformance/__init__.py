@@ -6,13 +6,24 @@ asks for as attributes, and pytest runs all its laws. Needs pytest and hypothesi
 
 import pytest
 
-_MODULES = ("constraints", "declared", "metamodels", "missions", "plugins", "rules")
+_MODULES = (
+    "constraints",
+    "declared",
+    "metamodels",
+    "missions",
+    "move_kinds",
+    "plugins",
+    "robot_kinds",
+    "rules",
+)
 pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
+from mmrs_core.testing.conformance.move_kinds import MoveKindConformance  # noqa: E402
 from mmrs_core.testing.conformance.plugins import PluginConformance  # noqa: E402
+from mmrs_core.testing.conformance.robot_kinds import RobotKindConformance  # noqa: E402
 from mmrs_core.testing.conformance.rules import RuleConformance  # noqa: E402
 
 __all__ = [
@@ -20,6 +31,8 @@ __all__ = [
     "ConstraintConformance",
     "MetamodelConformance",
     "MissionConformance",
+    "MoveKindConformance",
     "PluginConformance",
+    "RobotKindConformance",
     "RuleConformance",
 ]

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-import pytest
 from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
 from mmrs_core.testing.conformance.declared import Conformance, declared
-from mmrs_core.testing.instances import instances_of
+from mmrs_core.testing.instances import instances_of, models_of
 from mmrs_core.testing.models import breaches, findings
 
 Roots = Callable[[Registry], Iterable[Element]]
+WHOLE = (
+    ("urn:mmrs:mission:1.0", "Mission"),
+    ("urn:mmrs:context:1.0", "Context"),
+    ("urn:mmrs:behaviour:1.0", "Behaviour"),
+)
 RELAXED = settings(
     deadline=None, max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
@@ -75,15 +80,11 @@ class ConstraintConformance(Conformance):
 
     def test_random_models_crash_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
         """Whatever a model holds, a constraint yields findings with places."""
-        try:
-            models = instances_of(registry, *constraint.metaclass)
-        except ValueError:
-            pytest.skip(f"no {constraint.metaclass[1]} can stand alone")
 
         @RELAXED
-        @given(models)
-        def law(root: Element) -> None:
-            for finding in findings(constraint, [root]):
+        @given(self._random_models(constraint, registry))
+        def law(roots: Sequence[Element]) -> None:
+            for finding in findings(constraint, roots):
                 assert isinstance(finding.element, Element)
                 assert finding.message
 
@@ -94,3 +95,12 @@ class ConstraintConformance(Conformance):
         assert constraint.title[0].isupper()
         assert not constraint.title.endswith(".")
         assert constraint.hint
+
+    def _random_models(
+        self, constraint: Constraint, registry: Registry
+    ) -> st.SearchStrategy[Sequence[Element]]:
+        """Draw elements of the constraint's class; whole projects where none can stand alone."""
+        try:
+            return instances_of(registry, *constraint.metaclass).map(lambda root: (root,))
+        except ValueError:
+            return models_of(registry, *WHOLE)

@@ -14,7 +14,7 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.testing.instances import instances_of
+from mmrs_core.testing.instances import instances_of, models_of
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parents[2]
@@ -128,3 +128,16 @@ def test_more_levels_make_deeper_trees(registry):
 
     cubs = instances_of(registry, "urn:test:zoo", "Lion", levels=4)
     assert found(cubs, lambda lion: depth(lion) > 3)
+
+
+@RELAXED
+@given(data=st.data())
+def test_elements_that_need_others_are_drawn_beside_them(registry, data):
+    roots = data.draw(models_of(registry, (KNOTS, "Knot"), (KNOTS, "Fibre"), (KNOTS, "Fibre")))
+    assert [metaclass_of(root).name for root in roots] == ["Knot", "Fibre", "Fibre"]
+    assert check_conformance(Model("m", roots), registry) == ()
+
+
+def test_models_whose_needs_nothing_meets_are_refused(registry):
+    with pytest.raises(ValueError, match="cannot stand inside it"):
+        models_of(registry, (KNOTS, "Knot"), (KNOTS, "Strand"))
