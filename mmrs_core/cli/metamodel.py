@@ -10,6 +10,7 @@ import typer
 from mmrs_core.cli.output import counted, say, say_json
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.cli.tables import table
+from mmrs_core.errors import UnreadableError
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -41,6 +42,41 @@ def list_metamodels(call: typer.Context, json: Json = False) -> int:
         for line in table(("language", "name", "provided by", "classes"), rows):
             say(line)
     return 0
+
+
+@app.command("diff")
+def diff(
+    call: typer.Context,
+    old: Annotated[str, typer.Argument(metavar="OLD", help="An .ecore file, or the nsURI of a language.")],
+    new: Annotated[str, typer.Argument(metavar="NEW", help="Another version of it.")],
+    json: Json = False,
+) -> int:
+    """Say what changed between two versions of a metamodel, and whether old models still load.
+
+    Exit codes: 0 where they do, 1 where some do not.
+
+    Example: mmrs metamodel diff kites-1.0.ecore kites.ecore
+    """
+    from mmrs_core.cli.metamodel_words import difference_lines, verdict_line
+    from mmrs_core.languages.evolution.differences import differences, steps_between
+    from mmrs_core.languages.evolution.verdicts import Verdict
+    from mmrs_core.languages.evolution.versions import version_of
+
+    registry = settings_of(call).plugins().contributions.languages
+    try:
+        versions = version_of(old, registry), version_of(new, registry)
+    except ValueError as fault:
+        raise UnreadableError(f"{fault} (an .ecore file is named by its path)") from None
+    chain = steps_between(*versions, registry.migrations)
+    found = differences(*versions, chain)
+    loads = all(each.verdict is not Verdict.INCOMPATIBLE for each in found)
+    if json:
+        say_json({"old_models_load": loads, "differences": found, "migrations": len(chain)})
+    else:
+        for line, colour in difference_lines(found):
+            say(line, colour)
+        say(verdict_line(found, chain))
+    return 0 if loads else 1
 
 
 @app.command("export")

@@ -84,7 +84,7 @@ def _candidates(model: Path, missing: frozenset[str]) -> Iterator[Path]:
         if ns_uri in missing and (file := _file_at(place, model.parent)) is not None:
             yield file
     for file, tables in _beside(model.parent):
-        if any(table.ns_uri in missing for table in _flat(tables)):
+        if any(table.ns_uri in missing for table in flat(tables)):
             yield file
 
 
@@ -102,18 +102,18 @@ def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSou
             continue
         seen.add(file.resolve())
         tables = read_tables(file)
-        names = {table.ns_uri for table in _flat(tables)}
+        names = {table.ns_uri for table in flat(tables)}
         if any(registry.has(name) or name in brought for name in names):
             continue
         brought |= names
         yield MetamodelSource(tables[0].ns_uri, file, str(file))
-        for document in dict.fromkeys(_documents(tables)):
+        for document in dict.fromkeys(documents_of(tables)):
             pending += [other for other in _meant(document, file, registry) if other.resolve() not in seen]
 
 
-def _documents(tables: Iterable[PackageTable]) -> Iterator[str]:
+def documents_of(tables: Iterable[PackageTable]) -> Iterator[str]:
     """Yield the documents that packages refer to."""
-    for table in _flat(tables):
+    for table in flat(tables):
         for row in table.classes:
             uris = (*row.supertypes, *(uri for each in row.features for uri in (each.type, each.opposite)))
             yield from (document for uri in uris if (document := uri.partition("#")[0]))
@@ -128,7 +128,7 @@ def _meant(document: str, referrer: Path, registry: Registry) -> Iterator[Path]:
         yield file
         return
     for beside, tables in _beside(referrer.parent):
-        if any(table.ns_uri == document for table in _flat(tables)):
+        if any(table.ns_uri == document for table in flat(tables)):
             yield beside
 
 
@@ -152,10 +152,11 @@ def _beside(folder: Path) -> Iterator[tuple[Path, tuple[PackageTable, ...]]]:
             continue
 
 
-def _flat(tables: Iterable[PackageTable]) -> Iterator[PackageTable]:
+def flat(tables: Iterable[PackageTable]) -> Iterator[PackageTable]:
+    """Yield packages, and those inside them."""
     for table in tables:
         yield table
-        yield from _flat(table.subpackages)
+        yield from flat(table.subpackages)
 
 
 def kept_places(source: Path, target: Path) -> Mapping[str, str]:

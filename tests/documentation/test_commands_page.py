@@ -21,7 +21,7 @@ CORE = (
     "diff",
     "migrate",
 )
-GROUPS = ("plugin list", "metamodel list", "metamodel export", "metamodel docs")
+GROUPS = ("plugin list", "metamodel list", "metamodel diff", "metamodel export", "metamodel docs")
 HEAD = "# Commands\n\nThis page is made from the help of the commands; do not edit it.\n"
 
 

@@ -58,7 +58,23 @@ SAMPLE = b"""{
 }
 """
 PIECES = st.sampled_from(
-    [b"", b"{", b"}", b"[", b"]", b",", b":", b'"', b"\\", b"null", b"1e999", b"-0.0", b"NaN", b"\xff", b"\x00"]
+    [
+        b"",
+        b"{",
+        b"}",
+        b"[",
+        b"]",
+        b",",
+        b":",
+        b'"',
+        b"\\",
+        b"null",
+        b"1e999",
+        b"-0.0",
+        b"NaN",
+        b"\xff",
+        b"\x00",
+    ]
     + [b'"$type"', b'"$ref"', b'{"$ref": "x.json#/"}', b'"$roots": []', b"9" * 500, b"[" * 30, b'"\\ud800"']
 )
 

@@ -1,0 +1,140 @@
+"""What changes of a feature mean for older models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.evolution.verdicts import Difference, Verdict, changed, refused
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+
+Image = Callable[[tuple[str, str]], tuple[str, str]]
+"""From (nsURI, name) of a class of the older version to that in the newer one."""
+
+_BITS = {"EByte": 8, "EShort": 16, "EInt": 32, "ELong": 64, "EBigInteger": 1000}
+
+
+def feature_differences(what: str, old: Feature, new: Feature, image: Image) -> Iterator[Difference]:
+    """Yield what is different about a feature that both versions have."""
+    if old.is_reference != new.is_reference:
+        sorts = ("an attribute", "a reference")
+        words = f"{sorts[old.is_reference]} became {sorts[new.is_reference]}"
+        yield refused(what, words, "values cannot be read as elements, nor elements as values")
+        return
+    if old.containment != new.containment:
+        now = "contains" if new.containment else "only refers to"
+        yield refused(what, f"now {now} its elements", "older models hold them the other way")
+        return
+    yield from _types(what, old, new, image)
+    yield from _bounds(what, old, new)
+    yield from _defaults(what, old, new)
+    yield from _flags(what, old, new)
+
+
+def _types(what: str, old: Feature, new: Feature, image: Image) -> Iterator[Difference]:
+    ours, theirs = image((old.type.ns_uri, old.type.name)), (new.type.ns_uri, new.type.name)
+    if ours == theirs:
+        return
+    words = f"its type was {old.type.name}, is {new.type.name}"
+    if isinstance(old.type, Metaclass) and isinstance(new.type, Metaclass):
+        yield _class_change(what, words, old, new, ours)
+    elif _widens(old.type, new.type):
+        yield changed(what, words)
+    else:
+        yield refused(what, words, f"not every {old.type.name} can be read as {new.type.name}")
+
+
+def _class_change(what: str, words: str, old: Feature, new: Feature, ours: tuple[str, str]) -> Difference:
+    assert isinstance(old.type, Metaclass)
+    assert isinstance(new.type, Metaclass)
+    known = next((kind for kind in _kinds_around(new) if kind.key == ours), None)
+    if known is None or not issubclass(known.interface, new.type.interface):
+        return refused(what, words, f"a {old.type.name} is no {new.type.name}")
+    if old.containment and not old.type.abstract:
+        reason = f"elements that do not say their class would be read as {new.type.name}"
+        return refused(what, words, reason)
+    return changed(what, words)
+
+
+def _kinds_around(feature: Feature) -> Iterator[Metaclass]:
+    package = feature.owner.package
+    for known in package.known.values() if package is not None else ():
+        yield from known.metaclasses
+
+
+def _widens(old: object, new: object) -> bool:
+    """Return whether every value of one type is written as a value of another, with the same meaning."""
+    if not isinstance(new, DataType):
+        return False
+    if new.python is str and new.java_class not in ("char", "java.lang.Character"):
+        return not (isinstance(old, DataType) and old.java_class in ("char", "java.lang.Character"))
+    if isinstance(old, Enumeration) or not isinstance(old, DataType):
+        return False
+    ours, theirs = _plain(old), _plain(new)
+    if ours == theirs:
+        return True
+    if ours in _BITS:
+        return _BITS[ours] <= _BITS.get(theirs, 0) or theirs in ("EDouble", "EBigDecimal")
+    return (ours, theirs) == ("EFloat", "EDouble")
+
+
+def _plain(kind: DataType) -> str:
+    """Return a type's name without what says that its values may be null."""
+    return {"EIntegerObject": "EInt"}.get(kind.name, kind.name.removesuffix("Object"))
+
+
+def _bounds(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
+    if (old.lower, old.upper) == (new.lower, new.upper):
+        return
+    words = f"takes {_range(new)}, took {_range(old)}"
+    if new.lower > old.lower and not (new.default is not None and not new.many):
+        yield refused(what, words, f"older models may have fewer than {new.lower}")
+    elif 0 <= new.upper < old.upper or (old.upper < 0 <= new.upper):
+        yield refused(what, words, f"older models may have more than {new.upper}")
+    elif new.many and not old.many and not new.is_reference and getattr(new.type, "python", str) is str:
+        yield refused(what, words, "texts with blanks would be read as several values")
+    else:
+        yield changed(what, words)
+
+
+def _range(feature: Feature) -> str:
+    if feature.upper < 0:
+        return f"{feature.lower} or more"
+    return str(feature.lower) if feature.lower == feature.upper else f"{feature.lower} to {feature.upper}"
+
+
+def _defaults(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
+    if old.is_reference or old.many or new.many or _same(old.default, new.default):
+        return
+    words = f"its default was {_shown(old)}, is {_shown(new)}"
+    yield changed(what, words, Verdict.MEANING, "older models that leave it out mean something else now")
+
+
+def _same(ours: object, theirs: object) -> bool:
+    """Return whether defaults mean the same: 0 and 0.0 do, null and 0 do not."""
+    numbers = isinstance(ours, int | float) and isinstance(theirs, int | float)
+    return ours == theirs if numbers else repr(ours) == repr(theirs)
+
+
+def _shown(feature: Feature) -> str:
+    if feature.default is None or isinstance(feature.type, Metaclass):
+        return "none"
+    return repr(feature.type.render(feature.default))
+
+
+def _flags(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
+    if old.is_id and not new.is_id:
+        yield refused(what, "identifies its element no longer", "references by this id lead nowhere")
+    if new.is_id and not old.is_id:
+        yield refused(what, "identifies its element now", "older models may have it twice")
+    if new.unique and not old.unique and new.many:
+        yield refused(what, "holds a value only once now", "older models may hold one twice")
+    if old.stored and not new.stored:
+        yield changed(what, "is not written any more", Verdict.MEANING, "it is lost when a model is saved")
+    if old.unsettable and not new.unsettable:
+        yield changed(
+            what, "cannot be unset any more", Verdict.MEANING, "a stated default is no statement now"
+        )
+    if new.opposite is not None and old.opposite is None:
+        reason = "older models may contradict it"
+        yield changed(what, f"has {new.opposite.name} as its other end now", Verdict.MEANING, reason)

@@ -1,0 +1,99 @@
+"""Two versions of a metamodel: what changed, and whether old models still load."""
+
+from __future__ import annotations
+
+import pytest
+from metamodel_edits import EDITS, ZOO, edited
+
+from mmrs_core.errors import PluginError
+from mmrs_core.languages.evolution.differences import differences, steps_between
+from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.evolution.versions import version_of
+
+
+@pytest.fixture
+def between(core, tmp_path):
+    """Return a function that compares the zoo with an edited one."""
+
+    def compare(text, *migrations):
+        new = tmp_path / "new.ecore"
+        new.write_text(text, encoding="utf-8")
+        versions = version_of(str(ZOO), core), version_of(str(new), core)
+        return differences(*versions, steps_between(*versions, migrations))
+
+    return compare
+
+
+def test_a_metamodel_does_not_differ_from_itself(between):
+    assert between(edited()) == ()
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_every_edit_has_its_verdict(between, name):
+    before, after, verdict = EDITS[name]
+    assert before in ZOO.read_text(encoding="utf-8")
+    assert before != after
+    found = {each.verdict.value for each in between(edited(name))}
+    if verdict == "compatible":
+        assert found <= {"compatible"}
+    else:
+        assert verdict in found
+
+
+def test_a_reason_is_given_for_whatever_does_not_load(between):
+    for name, (_, _, verdict) in EDITS.items():
+        if verdict != "compatible":
+            assert all(each.reason for each in between(edited(name)) if each.verdict.value != "compatible")
+
+
+def test_a_feature_of_the_same_type_in_its_place_is_told_as_the_likely_new_name(between):
+    (gone, come) = between(edited("a feature is renamed"))
+    assert gone.what == "Lion.weight"
+    assert gone.reason == "older models may say it; if it is mass now, a migration has to say so"
+    assert (come.what, come.sort) == ("Lion.mass", "added")
+
+
+def test_a_feature_that_goes_to_a_supertype_is_no_difference_for_models(between):
+    feature = EDITS["a feature is removed"][0]
+    text = edited("a feature is removed").replace(
+        'name="Animal" abstract="true">', f'name="Animal" abstract="true">{feature}'
+    )
+    assert {each.verdict.value for each in between(text)} == {"compatible"}
+
+
+def test_a_new_name_of_the_language_needs_a_migration(between):
+    text = edited().replace('nsURI="urn:test:zoo"', 'nsURI="urn:test:zoo:2"')
+    (difference,) = between(text)
+    assert difference.reason == "older models name the older one, and no migration leads there"
+    (allowed,) = between(text, Migration("urn:test:zoo", "urn:test:zoo:2"))
+    assert allowed.verdict.value == "compatible"
+
+
+def test_what_a_migration_renames_is_the_same(between):
+    text = edited("a feature is renamed").replace('nsURI="urn:test:zoo"', 'nsURI="urn:test:zoo:2"')
+    step = Migration("urn:test:zoo", "urn:test:zoo:2", features={"Lion.weight": "mass"})
+    assert {each.verdict.value for each in between(text, step)} == {"compatible"}
+
+
+def test_what_a_migration_drops_has_another_meaning(between):
+    text = edited("a feature is removed").replace('nsURI="urn:test:zoo"', 'nsURI="urn:test:zoo:2"')
+    step = Migration("urn:test:zoo", "urn:test:zoo:2", dropped=frozenset({"Lion.weight"}))
+    assert "changed meaning" in {each.verdict.value for each in between(text, step)}
+
+
+def test_an_installed_language_is_named_by_its_ns_uri(core):
+    installed = version_of("urn:mmrs:mission:1.0", core)
+    file = version_of(str(installed.packages[0].ecore), core)
+    assert differences(installed, file) == ()
+
+
+def test_a_name_that_is_neither_installed_nor_a_file_is_refused(core):
+    with pytest.raises(ValueError, match=r"no such metamodel; did you mean urn:mmrs:mission:1\.0"):
+        version_of("urn:mmrs:misson:1.0", core)
+
+
+def test_a_metamodel_that_needs_another_says_which(core, tmp_path):
+    file = tmp_path / "lost.ecore"
+    file.write_text(edited().replace('eType="#//Keeper"', 'eType="gone.ecore#//Keeper"', 1))
+    with pytest.raises(PluginError, match=r"needs the metamodel gone\.ecore"):
+        version_of(str(file), core)
