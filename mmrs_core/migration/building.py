@@ -92,6 +92,8 @@ class Builder:
             self._record.element(Category.CHANGED, rule.changed, node)
         for path, value in rule.set.items():
             put(element, path, value)
+            said = str(value).lower() if isinstance(value, bool) else str(value)
+            self._record.element(Category.DEFAULTED, f"{path} is {said} for all of this class", node)
         uses = self._mapping.uses(node.kind, rule, self._structure)
         for feature in self._in_order(node, uses):
             use = uses.get(feature)

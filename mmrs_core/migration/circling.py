@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import cos, pi, sin
 
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
@@ -13,6 +12,7 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.converting import number_in
 from mmrs_core.migration.drafts import Draft
 from mmrs_core.migration.findings import Category
+from mmrs_core.migration.headings import towards
 from mmrs_core.migration.mapping import Ring, Rule
 from mmrs_core.migration.nodes import Node
 from mmrs_core.migration.recording import Record
@@ -64,14 +64,9 @@ def _offsets(node: Node, ring: Ring, altitude: float) -> list[tuple[float, float
     if radius <= 0:
         raise ValueError(f"{ring.radius} is {radius:g} m")
     up = number_in(node.text(ring.height)) - altitude if node.text(ring.height) else 0.0
-    turn = 2 * pi / ring.points * (1 if node.text(ring.clockwise).lower() == "true" else -1)
+    turn = 360 / ring.points * (1 if node.text(ring.clockwise).lower() == "true" else -1)
     around = [(index % ring.points) * turn for index in range(ring.points + 1)]
-    return [(_rounded(radius * sin(angle)), _rounded(radius * cos(angle)), _rounded(up)) for angle in around]
-
-
-def _rounded(metres: float) -> float:
-    """Return a length to the millimetre, and no negative zero."""
-    return round(metres, 3) + 0.0
+    return [(*towards(angle, radius), round(up, 3)) for angle in around]
 
 
 def _further(first: bl.GoTo, index: int, registry: Registry) -> bl.GoTo:

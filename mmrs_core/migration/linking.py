@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from math import cos, radians, sin
 
 from mmrs_core.languages.element import (
     Element,
     containing_feature,
-    is_kind,
     label_of,
     metaclass_of,
-    root_of,
 )
 from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.converting import number_in
 from mmrs_core.migration.drafts import Draft
 from mmrs_core.migration.findings import Category
+from mmrs_core.migration.headings import set_heading
 from mmrs_core.migration.mapping import Counterpart, Rule, Use
 from mmrs_core.migration.nodes import Link, Node, Text
 from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
-
-BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 
 
 class Linker:
@@ -38,7 +33,7 @@ class Linker:
         """Set all references, then what is made of them."""
         for node, feature, element, use in self._draft.later:
             if use.bearing is not None:
-                self._bearing(node, feature, element, use)
+                set_heading(node, feature, element, use, self._draft, self._record)
             elif use.counterpart is not None:
                 self._counterparts(node, feature, element, use)
             else:
@@ -125,41 +120,6 @@ class Linker:
             reason = f"{label_of(owner)!r} has no {type(element).__name__} {name!r}"
             self._record.value(Category.LOST, reason, node, feature)
         return found
-
-    # directions
-
-    def _bearing(self, node: Node, feature: str, element: Element, use: Use) -> None:
-        """Make a heading to a place far away in a direction, because ours always lead to a place."""
-        assert use.bearing is not None  # asked before
-        value = next(value for value in node.values[feature] if isinstance(value, Text))
-        own = use.bearing.base == "self"
-        robot = next((each for each in self._draft.around(node) if is_kind(each, BEHAVIOUR, "Robot")), None)
-        owner = next(self._draft.around(node), None) if own else element
-        base = element if own else child(robot, "home") if robot is not None else None
-        try:
-            angle = radians(number_in(value.text))
-            heading = self._heading(
-                owner, base, (use.bearing.distance * sin(angle), use.bearing.distance * cos(angle))
-            )
-            assert owner is not None  # a heading was made for it
-            setattr(owner, metaclass_of(owner).feature(use.to[0]).attribute, heading)
-        except ValueError as fault:
-            self._record.value(Category.LOST, str(fault), node, feature, value)
-            return
-        reason = (
-            use.changed or f"headings lead to a place: one {use.bearing.distance:g} m away in this direction"
-        )
-        self._record.value(Category.CHANGED, reason, node, feature, value)
-
-    def _heading(self, owner: Element | None, base: Element | None, offset: tuple[float, float]) -> Element:
-        if owner is None:
-            raise ValueError("stands in no move")
-        place = self._registry.create(
-            BEHAVIOUR, "RelativeCoordinate", x=offset[0], y=offset[1], reference=base
-        )
-        targets = metaclass_of(root_of(owner)).feature("targets")
-        getattr(root_of(owner), targets.attribute).append(place)
-        return self._registry.create(BEHAVIOUR, "Heading", target=place)
 
     # conditions of transitions
 

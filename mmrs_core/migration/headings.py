@@ -1,0 +1,51 @@
+"""Directions as headings: ours lead to a place, so one is made far away."""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+
+from mmrs_core.languages import behaviour as bl
+from mmrs_core.languages.element import Element, metaclass_of, root_of
+from mmrs_core.migration.converting import number_in
+from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.findings import Category
+from mmrs_core.migration.mapping import Use
+from mmrs_core.migration.nodes import Node, Text
+from mmrs_core.migration.recording import Record
+
+
+def towards(angle_degrees: float, metres: float) -> tuple[float, float]:
+    """Return metres east and north, to the millimetre, of what lies that far away, clockwise from north.
+
+    >>> towards(90.0, 5.0), towards(180.0, 5.0)
+    ((5.0, 0.0), (0.0, -5.0))
+    """
+    angle = radians(angle_degrees)
+    # adding zero turns a negative zero into one that reads like any other
+    return round(metres * sin(angle), 3) + 0.0, round(metres * cos(angle), 3) + 0.0
+
+
+def set_heading(node: Node, feature: str, element: Element, use: Use, draft: Draft, record: Record) -> None:
+    """Give a move a heading for the angle that a feature holds; what hinders it is recorded."""
+    assert use.bearing is not None  # asked before
+    value = next((value for value in node.values[feature] if isinstance(value, Text)), None)
+    own = use.bearing.base == "self"
+    owner = next(draft.around(node), None) if own else element
+    robot = next((each for each in draft.around(node) if isinstance(each, bl.Robot)), None)
+    base = element if own else robot.home if robot is not None else None
+    behaviour = root_of(owner) if owner is not None else None
+    target = metaclass_of(owner).by_name.get(use.to[0]) if owner is not None else None
+    if value is None or owner is None or target is None or not isinstance(behaviour, bl.Behaviour):
+        record.value(Category.LOST, "stands in no move of a behaviour", node, feature)
+        return
+    try:
+        east, north = towards(number_in(value.text), use.bearing.distance)
+    except ValueError as fault:
+        record.value(Category.LOST, str(fault), node, feature, value)
+        return
+    reference = base if isinstance(base, bl.Coordinate) else None
+    place = bl.RelativeCoordinate(x=east, y=north, reference=reference)
+    behaviour.targets.append(place)
+    setattr(owner, target.attribute, bl.Heading(target=place))
+    reason = use.changed or f"headings lead to a place: one {use.bearing.distance:g} m away in this direction"
+    record.value(Category.CHANGED, reason, node, feature, value)
