@@ -209,11 +209,20 @@ def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:
     return written(files, directory)
 
 
-def save(behaviour: bl.Behaviour, path: Path, contributions: Contributions) -> None:
-    """Write a behaviour model, wholly or not at all."""
+def save(
+    behaviour: bl.Behaviour,
+    path: Path,
+    contributions: Contributions,
+    schema_location: Mapping[str, str] | None = None,
+) -> None:
+    """Write a behaviour model, wholly or not at all.
+
+    Args:
+        schema_location: for Eclipse, where the .ecore of each nsURI lies, relative to the file.
+    """
     from mmrs_core.languages.writing import write_model
 
-    write_model((behaviour,), path, contributions.languages)
+    write_model((behaviour,), path, contributions.languages, schema_location=schema_location)
 
 
 def simulate(

@@ -11,6 +11,7 @@ import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_mistake
 from mmrs_core.cli.output import counted, report, say, say_json
+from mmrs_core.cli.schema_places import SchemaLocation, places_in
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError, UnsupportedError
 
@@ -35,14 +36,7 @@ def convert(
         Form | None, typer.Option("--to", help="The form to write; else by OUT's ending, or the other one.")
     ] = None,
     metamodel: Metamodels = None,
-    schema_location: Annotated[
-        Path | None,
-        typer.Option(
-            "--schema-location",
-            metavar="DIR",
-            help="Write where Eclipse finds the metamodels that 'mmrs metamodel export DIR' wrote.",
-        ),
-    ] = None,
+    schema_location: SchemaLocation = None,
     force: Annotated[bool, typer.Option("--force", help="Replace OUT where it exists.")] = False,
     json: Json = False,
 ) -> int:
@@ -87,13 +81,10 @@ def _form_of(source: Path, target: Path | None) -> Form:
 
 def _text(found: ForeignModel, source: Path, target: Path | None, form: Form, exported: Path | None) -> bytes:
     from mmrs_core.languages.foreign import kept_places
-    from mmrs_core.languages.places import exported_places
     from mmrs_core.languages.writing import to_json, to_xmi
 
     file = target if target is not None else source
-    places = kept_places(source, file)
-    if exported is not None:
-        places = {**places, **exported_places(found.registry, exported, file)}
+    places = {**kept_places(source, file), **places_in(exported, found.registry, file)}
     write = to_json if form is Form.JSON else to_xmi
     try:
         return write(found.model.roots, found.registry, schema_location=places, file=file)

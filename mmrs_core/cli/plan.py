@@ -11,6 +11,7 @@ import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Context, Project, Robots, Seed, robot_files
+from mmrs_core.cli.schema_places import SchemaLocation, places_in
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def plan(
         Stage | None,
         typer.Option("--stop-after", help="Print what a stage makes as JSON, and write nothing."),
     ] = None,
+    schema_location: SchemaLocation = None,
     json: Json = False,
 ) -> int:
     """Plan a mission and write the behaviour of every robot.
@@ -75,8 +77,9 @@ def plan(
         return 0
     file = output if output is not None else folder_of(project) / "behaviour.xmi"
     require_writable(journey, file, "" if force else "--force replaces it")
+    places = places_in(schema_location, workshop.contributions.languages, file)
     require_sound(journey, str(project))
-    save(journey.transformed[0], file, workshop.contributions)
+    save(journey.transformed[0], file, workshop.contributions, places)
     if json:
         summary = plan_summary(journey.scene, journey.plan)
         say_json({"behaviour": file, **summary, "verdicts": journey.verdicts})

@@ -8,9 +8,6 @@ from pathlib import Path
 
 from mmrs_core.languages.json_form.reader import PLACES
 from mmrs_core.languages.json_form.tree import Node, Tree, is_json
-from mmrs_core.languages.metamodels.export import exported_names
-from mmrs_core.languages.references.hrefs import relative_href
-from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import XSI, Document, read_bytes
 
 _SCHEMA_LOCATION = f"{XSI} schemaLocation"
@@ -62,10 +59,3 @@ def _in_json(data: bytes, file: str) -> Mapping[str, str]:
     if not isinstance(places, Node):
         return {}
     return {ns_uri: place for ns_uri, place in places.members.items() if isinstance(place, str)}
-
-
-def exported_places(registry: Registry, directory: Path, file: Path) -> Mapping[str, str]:
-    """Return where a model in a file finds the metamodels exported to a folder, by nsURI, as ``href``."""
-    base = file.resolve().parent
-    names = exported_names(registry)
-    return {ns_uri: relative_href(directory.resolve() / name, base) for ns_uri, name in names.items()}
