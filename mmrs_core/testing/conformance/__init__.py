@@ -7,6 +7,7 @@ asks for as attributes, and pytest runs all its laws. Needs pytest and hypothesi
 import pytest
 
 _MODULES = (
+    "backends",
     "constraints",
     "declared",
     "metamodels",
@@ -15,9 +16,11 @@ _MODULES = (
     "plugins",
     "robot_kinds",
     "rules",
+    "targets",
 )
 pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
+from mmrs_core.testing.conformance.backends import BackendConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
@@ -25,8 +28,10 @@ from mmrs_core.testing.conformance.move_kinds import MoveKindConformance  # noqa
 from mmrs_core.testing.conformance.plugins import PluginConformance  # noqa: E402
 from mmrs_core.testing.conformance.robot_kinds import RobotKindConformance  # noqa: E402
 from mmrs_core.testing.conformance.rules import RuleConformance  # noqa: E402
+from mmrs_core.testing.conformance.targets import TargetConformance  # noqa: E402
 
 __all__ = [
+    "BackendConformance",
     "Case",
     "ConstraintConformance",
     "MetamodelConformance",
@@ -35,4 +40,5 @@ __all__ = [
     "PluginConformance",
     "RobotKindConformance",
     "RuleConformance",
+    "TargetConformance",
 ]

@@ -7,7 +7,10 @@ from typing import Any, ClassVar
 
 import pytest
 
+from mmrs_core import builtin
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
+from mmrs_core.plugins import load_plugins
 
 
 def declared(plugin: object, sort: str) -> tuple[Any, ...]:
@@ -21,10 +24,12 @@ class Conformance:
 
     Attributes:
         plugin: the module or object with its hooks.
+        name: of its entry point; matters only where it is looked for among the installed plug-ins.
         more_metamodels: those that tests need beside the plug-in's own.
     """
 
     plugin: ClassVar[object]
+    name: ClassVar[str] = "tested"
     more_metamodels: ClassVar[Iterable[MetamodelSource]] = ()
 
     @pytest.fixture(scope="class")
@@ -32,6 +37,18 @@ class Conformance:
     def registry(cls) -> Registry:
         """Return the core's metamodels with the plug-in's and those of the tests."""
         return registry_with((*declared(cls.plugin, "metamodels"), *cls.more_metamodels))
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def alone(cls) -> Contributions:
+        """Return what the core and this plug-in contribute, without any other."""
+        return cls.with_core()
+
+    @classmethod
+    def with_core(cls) -> Contributions:
+        """Return what the core and this plug-in contribute, without any other."""
+        extra = {} if cls.plugin is builtin else {cls.name: cls.plugin}
+        return load_plugins(only_core=True, extra=extra).contributions
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Run a test once for each descriptor of the sort that one of its arguments is named after."""

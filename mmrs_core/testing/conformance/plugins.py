@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import pytest
 
 from mmrs_core.contributions.registry import Contributions
@@ -18,18 +16,8 @@ MOVE = ("urn:mmrs:behaviour:1.0", "Move")
 class PluginConformance(Conformance):
     """A plug-in that works alone with the core, and leaves nothing that it brings without a meaning.
 
-    Attributes:
-        name: of its entry point.
+    Its ``name`` is that of its entry point.
     """
-
-    name: ClassVar[str]
-
-    @pytest.fixture(scope="class")
-    @classmethod
-    def alone(cls) -> Contributions:
-        """Return what the core and this plug-in contribute, without any other."""
-        found = load_plugins(only_core=True, extra={cls.name: cls.plugin})
-        return found.contributions
 
     @pytest.fixture(scope="class")
     @classmethod

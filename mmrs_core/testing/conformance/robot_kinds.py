@@ -13,12 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmrs_core import builtin
 from mmrs_core.behaviour.program import Move, Target
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.rules import MoveSpec, RobotKind, most_specific
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.plugins import load_plugins
 from mmrs_core.scene import Kinematics, PolicyEvent, PolicyResponse, Position, Robot, Scene, TravelMode
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.scenes import sample_scene
@@ -39,13 +37,6 @@ class RobotKindConformance(Conformance):
 
     robots: ClassVar[Mapping[str, Robot]]
     scene: ClassVar[Scene] = sample_scene()
-
-    @pytest.fixture(scope="class")
-    @classmethod
-    def alone(cls) -> Contributions:
-        """Return what the core and this plug-in contribute, without any other."""
-        extra = {} if cls.plugin is builtin else {"tested": cls.plugin}
-        return load_plugins(only_core=True, extra=extra).contributions
 
     def test_every_kind_has_a_robot(self) -> None:
         """No kind goes untested, and no robot is left over."""

@@ -1,0 +1,76 @@
+"""Laws for targets of code generation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+
+from mmrs_core.contributions.targets import Target, TargetInput
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.render import render
+from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.programs import target_input, two_drones
+
+UNHEARD_OF = (("urn:mmrs:testing:nowhere:1.0", "Somersault"), ("urn:mmrs:behaviour:1.0", "Move"))
+
+
+class TargetConformance(Conformance):
+    """Every target writes the same files for the same behaviour, and says what it cannot express.
+
+    Attributes:
+        inputs: a behaviour that the target can express, by the target's name. For a target that is not
+            among them it is two drones that take photos, one waiting for the other.
+    """
+
+    inputs: ClassVar[Mapping[str, TargetInput]] = {}
+
+    def test_there_is_a_target(self) -> None:
+        """A plug-in whose targets are tested has one, and no input is left over."""
+        names = {each.name for each in declared(self.plugin, "targets")}
+        assert names
+        assert set(self.inputs) <= names
+
+    def test_its_templates_are_there(self, target: Target) -> None:
+        """Templates travel with the plug-in."""
+        assert target.templates.is_dir()
+
+    def test_it_is_called_and_described_for_the_command_line(self, target: Target) -> None:
+        """The name is typed, the description is one line."""
+        assert target.name == target.name.lower()
+        assert " " not in target.name
+        assert target.description
+        assert "\n" not in target.description
+
+    def test_it_writes_files_that_can_be_read(self, target: Target) -> None:
+        """There is something beside the manifest, and all of it is text in UTF-8."""
+        files = render(target, self._input(target))
+        assert len(files) > 1
+        for file in files:
+            file.content.decode("utf-8")
+
+    def test_equal_behaviours_make_equal_files(
+        self, target: Target, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    ) -> None:
+        """Neither the time, nor the place, nor the machine gets into them."""
+        first = render(target, self._input(target))
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setenv("HOME", str(tmp_path))
+        assert render(target, self._input(target)) == first
+
+    def test_a_move_that_nobody_knows_is_refused(self, target: Target) -> None:
+        """A move is never left out without a word; the words name the robot and the move."""
+        given = self._input(target)
+        robot, *others = given.program.robots
+        moves = list(robot.moves)
+        moves[1] = replace(moves[1], metaclasses=UNHEARD_OF)
+        changed = replace(given.program, robots=(replace(robot, moves=tuple(moves)), *others))
+        with pytest.raises(UnsupportedError) as refusal:
+            render(target, replace(given, program=changed))
+        assert any(robot.id in each and moves[1].id in each for each in refusal.value.elements)
+
+    def _input(self, target: Target) -> TargetInput:
+        return self.inputs.get(target.name) or target_input(two_drones())
