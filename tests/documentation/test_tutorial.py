@@ -1,0 +1,139 @@
+"""The tutorial leads where it says: its files are written and its commands run, in its order."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import venv
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial"
+PAGES = sorted(TUTORIAL.glob("[0-9]-*.md"))
+BLOCK = re.compile(
+    r'^```(?P<sort>\w+)(?: title="(?P<file>[^"]+)")?\n(?P<text>.*?)^```$', re.DOTALL | re.MULTILINE
+)
+PICTURE = re.compile(r"<!-- picture: (?P<made>\S+) is (?P<shown>\S+) -->")
+PROGRAMS = {
+    "mmrs": "from mmrs_core.cli import main",
+    "pip": "from pip._internal.cli.main import main",
+    "pytest": "from pytest import main",
+}
+OFFLINE = {
+    "PIP_NO_DEPS": "1",
+    "PIP_NO_INDEX": "1",
+    "PIP_NO_BUILD_ISOLATION": "0",
+    "PIP_NO_WARN_SCRIPT_LOCATION": "1",
+}
+
+
+class Reader:
+    """Somebody who does what the pages say, in an environment that has what this one has.
+
+    Attributes:
+        folder: where the reader is now.
+    """
+
+    def __init__(self, folder, environment):
+        self.folder, self._environment = folder, environment
+
+    def follow(self, page):
+        """Write the files of a page, and run its commands."""
+        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+            if block["file"]:
+                file = self.folder / block["file"]
+                file.write_text(block["text"], encoding="utf-8")
+            elif block["sort"] == "console":
+                for command, expected in commands_in(block["text"]):
+                    self._run(command, expected, page)
+
+    def _run(self, command, expected, page):
+        if command.startswith("cd "):
+            self.folder = self.folder / command[3:]
+            return
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=self.folder,
+            env=self._environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=240,
+        )
+        said = done.stdout.rstrip() + "\n"
+        assert done.returncode == 0 or command.startswith("mmrs validate"), f"{page.name}: {command}\n{said}"
+        assert re.fullmatch(pattern_of(expected), said) or not expected, f"{page.name}: {command}\n{said}"
+
+
+def commands_in(text):
+    """Yield each command of a console block with the output that the page shows."""
+    for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
+        command, _, output = part.partition("\n")
+        yield command, output.rstrip()
+
+
+def pattern_of(expected):
+    """Return what output must match; an ellipsis stands for any words, on a line of its own for any lines."""
+    lines = (re.escape(line).replace("…", "[^\n]*") + "\n" for line in expected.splitlines())
+    return "".join("(?:[^\n]*\n)*?" if line == "[^\n]*\n" else line for line in lines)
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    """The variables of a virtual environment in which everything is installed that is here."""
+    home = tmp_path_factory.mktemp("environment")
+    venv.create(home, with_pip=False)
+    packages = Path(sysconfig.get_path("purelib", vars={"base": str(home)}))
+    here = sysconfig.get_path("purelib")
+    (packages / "here.pth").write_text(f"import site; site.addsitedir({here!r})\n", encoding="utf-8")
+    for name, entry in PROGRAMS.items():
+        script = home / "bin" / name
+        script.write_text(f"#!{home}/bin/python\nimport sys\n{entry}\nsys.exit(main())\n", encoding="utf-8")
+        script.chmod(0o755)
+    path = f"{home / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    return {**os.environ, **OFFLINE, "PATH": path, "NO_COLOR": "1", "COLUMNS": "120"}
+
+
+@pytest.fixture(scope="module")
+def reader(tmp_path_factory, environment):
+    return Reader(tmp_path_factory.mktemp("tutorial"), environment)
+
+
+def test_following_the_pages_leads_to_what_they_show(reader, update_golden):
+    for page in PAGES:
+        reader.follow(page)
+        for picture in PICTURE.finditer(page.read_text(encoding="utf-8")):
+            made, shown = reader.folder / picture["made"], page.parent / picture["shown"]
+            if update_golden:
+                shown.write_bytes(made.read_bytes())
+            assert made.read_bytes() == shown.read_bytes(), f"{page.name}: {shown.name}"
+
+
+def test_pages_are_linked_in_their_order():
+    index = (TUTORIAL / "index.md").read_text(encoding="utf-8")
+    linked = re.findall(r"\]\((\d-\S+?\.md)\)", index)
+    assert linked == [page.name for page in PAGES]
+    for page, following in pairwise(PAGES):
+        assert page.read_text(encoding="utf-8").rstrip().endswith(f"]({following.name})")
+
+
+def test_what_pages_link_to_exists():
+    for page in (*PAGES, TUTORIAL / "index.md"):
+        links = re.findall(r"\]\(([^)#]+?)\)", page.read_text(encoding="utf-8"))
+        assert [link for link in links if not (page.parent / link).exists()] == []
+
+
+def test_the_python_of_the_pages_is_formatted_like_that_of_the_core(tmp_path):
+    for page in PAGES:
+        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+            if block["sort"] == "python":
+                file = tmp_path / block["file"].replace("/", "_")
+                file.write_text(block["text"], encoding="utf-8")
+    command = [sys.executable, "-m", "ruff", "format", "--check", "--line-length", "110", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
