@@ -7,7 +7,7 @@ goal, or just above or below an area). A* with the exact time of a free way as i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from math import dist, hypot, sqrt
 
@@ -35,6 +35,10 @@ class Rates:
     descent: float
     acceleration: float = float("inf")
     shunting: float = 0.0
+
+    def straight_on(self) -> Rates:
+        """Return the rates where the robot need not turn before it goes."""
+        return replace(self, shunting=0.0)
 
     def upright(self, rise: float) -> float:
         """Return the seconds of an upright way; inf where it is ruled out."""

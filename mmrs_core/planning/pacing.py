@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
@@ -83,7 +82,7 @@ class _Line:
     def __init__(self, stroke: Stroke, pilot: Pilot, soonest: bool) -> None:
         self._robot = pilot.robot
         rates = rates_of(pilot.kinematics, commanded_speed(stroke, pilot.kinematics))
-        self._rates = replace(rates, shunting=0.0) if soonest else rates
+        self._rates = rates.straight_on() if soonest else rates
         self._eased = soonest and pilot.travel.fluid
         self._stops = stops_of(stroke)
         todo = list(stroke.actions)

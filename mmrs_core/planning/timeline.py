@@ -139,9 +139,9 @@ class _Walk:
         legs = list(pairwise(step.route))
         late = step.begin
         for points in _moves_along(legs):
-            seconds = sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(points))
-            late += seconds
-            self._ride(points, seconds, late, rates)
+            late += sum(rates.from_stop_to_stop(one, two) for one, two in pairwise(points))
+            least = sum(rates.straight_on().from_stop_to_stop(one, two) for one, two in pairwise(points))
+            self._ride(points, least, late, rates)
         self.radius = 0.0
 
     def _serve(self, step: Serve) -> None:
@@ -149,10 +149,10 @@ class _Walk:
         todo, done, late = list(step.stroke.actions), 0.0, step.begin
         for place in stops_of(step.stroke):
             done += dist(self.here, place)
-            seconds = rates.from_stop_to_stop(self.here, place)
-            late += seconds
+            late += rates.from_stop_to_stop(self.here, place)
             if place != self.here:
-                self._ride((self.here, place), seconds, late, rates)
+                least = rates.straight_on().from_stop_to_stop(self.here, place)
+                self._ride((self.here, place), least, late, rates)
             while todo and todo[0].at <= done + NEAR:
                 acting = action_seconds(self.robot.type, todo.pop(0))
                 late += acting

@@ -157,7 +157,7 @@ class Travel:
         return Way(route, self.space.seconds(route), length_of(route), lead=lead)
 
     def _lead(self, route: tuple[Position, ...], rates: Rates) -> float:
-        quickest = rates.leg if self.fluid else replace(rates, shunting=0.0).from_stop_to_stop
+        quickest = rates.leg if self.fluid else rates.straight_on().from_stop_to_stop
         return sum(rates.from_stop_to_stop(*leg) - quickest(*leg) for leg in pairwise(route))
 
     def _outward(self, goal: Position) -> Way | str:
