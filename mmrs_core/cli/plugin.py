@@ -1,4 +1,4 @@
-"""``mmrs plugin``: who contributed what."""
+"""``mmrs plugin``: who contributed what, and the beginning of a plug-in of one's own."""
 
 from __future__ import annotations
 
@@ -14,13 +14,16 @@ from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
 
 app = typer.Typer(
-    rich_markup_mode=None, help="Plug-ins: who contributed what.", no_args_is_help=True, add_completion=False
+    rich_markup_mode=None,
+    help="Plug-ins: who contributed what, and new ones.",
+    no_args_is_help=True,
+    add_completion=False,
 )
 
 
 @app.callback()
 def plugin() -> None:
-    """Plug-ins: who contributed what."""
+    """Plug-ins: who contributed what, and new ones."""
 
 
 @app.command("list")

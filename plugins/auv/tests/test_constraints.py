@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from mmrs_auv import plugin
 from mmrs_auv.constraints import CONSTRAINTS
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
@@ -100,6 +101,12 @@ class TestConstraints(ConstraintConformance):
     plugin = plugin
     more_metamodels = (sample_tasks(),)
     cases = CASES
+
+
+@pytest.mark.parametrize("metaclass", [AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER], ids=lambda name: name[1])
+def test_elements_without_any_feature_set_break_no_constraint(metaclass, registry):
+    empty = registry.create(*metaclass)
+    assert [found for each in CONSTRAINTS for found in breaches(each, [empty])] == []
 
 
 def test_a_plain_robot_breaks_no_constraint_of_underwater_vehicles(registry):

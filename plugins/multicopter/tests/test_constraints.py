@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from mmrs_multicopter import plugin
 from mmrs_multicopter.constraints import CONSTRAINTS
 from mmrs_multicopter.names import DRONE, DRONE_SIZE, GO_TO, LAND, MULTICOPTER, TAKE_OFF
@@ -94,6 +95,12 @@ class TestConstraints(ConstraintConformance):
     plugin = plugin
     more_metamodels = (sample_tasks(),)
     cases = CASES
+
+
+@pytest.mark.parametrize("metaclass", [DRONE, DRONE_SIZE, TAKE_OFF, LAND, GO_TO], ids=lambda name: name[1])
+def test_elements_without_any_feature_set_break_no_constraint(metaclass, registry):
+    empty = registry.create(*metaclass)
+    assert [found for each in CONSTRAINTS for found in breaches(each, [empty])] == []
 
 
 def test_a_team_with_a_robot_of_unknown_ceiling_breaks_no_height(registry):
