@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
 from mmrs_core.contributions.targets import Target
@@ -19,6 +20,14 @@ def mmrs_constraints() -> Iterable[Constraint]:
     from mmrs_core.analysis.constraints import CONSTRAINTS
 
     return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_fixes() -> Iterable[Fix]:
+    """Contribute what mends misspelt names and figures that can only be meant in one way."""
+    from mmrs_core.analysis.fixes import FIXES
+
+    return FIXES
 
 
 @hookimpl

@@ -17,6 +17,7 @@ from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
@@ -43,6 +44,11 @@ def mmrs_migrations() -> Iterable[Migration]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_constraints() -> Iterable[Constraint]:  # type: ignore[empty-body]
     """Contribute constraints on models; their codes are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_fixes() -> Iterable[Fix]:  # type: ignore[empty-body]
+    """Contribute what mends faults in the one right way; one fix for a code."""
 
 
 @hookspec

@@ -102,7 +102,8 @@ def read_behaviour_files(
     registry = workshop.contributions.languages
     files = (file, *([place] if place else []), *types)
     models = [read_model(each, registry, unsaved=unsaved) for each in files]
-    workshop.have_read(models, place)
+    if not unsaved:
+        workshop.have_read(models, place)
     return _as_files(file, models, place)
 
 

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import counted, report, say, say_json
+from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
-    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.analysis.fixes.repair import Diagnosis, Proposal, Repair
     from mmrs_core.diagnostics import Diagnostic
+
+Sarif = Annotated[
+    Path | None,
+    typer.Option("--sarif", metavar="FILE", help="Write the faults in SARIF 2.1.0; - for standard output."),
+]
+_Fix = Annotated[bool, typer.Option("--fix", help="Mend what has one right answer: shown as a diff first.")]
+_Yes = Annotated[bool, typer.Option("--yes", help="With --fix: change the files without asking.")]
+_DryRun = Annotated[bool, typer.Option("--dry-run", help="With --fix: only show what would change.")]
 
 
 def validate(
@@ -21,58 +29,93 @@ def validate(
     project: Project,
     context: Context = None,
     robots: Robots = None,
+    fix: _Fix = False,
+    yes: _Yes = False,
+    dry_run: _DryRun = False,
+    sarif: Sarif = None,
     json: Json = False,
 ) -> int:
-    """List everything that is wrong with a mission's models.
+    """List everything that is wrong with a mission's models, and mend what can only be meant in one way.
 
     Robot types and context are checked with the mission. A behaviour is checked by itself.
+
+    Example: mmrs validate field --fix
     """
-    from mmrs_core.cli.behaviours import is_behaviour
+    from mmrs_core.cli.diagnosing import Subject
+    from mmrs_core.cli.fixing import agreed, repairer_for, show, write
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.diagnostics import Severity, has_errors
+    from mmrs_core.cli.sarif import write_sarif
 
+    if (yes or dry_run) and not fix:
+        raise typer.BadParameter("--yes and --dry-run go with --fix")
+    if sarif == Path("-") and (json or fix):
+        raise typer.BadParameter("--sarif - is the whole of standard output; write SARIF to a file instead")
     workshop = Workshop(settings_of(call))
-    types = robot_files(robots)
-    if is_behaviour(workshop, project):
-        complete, faults = _faults_of_behaviour(workshop, project, context, types)
-    else:
-        complete, faults = _faults_of_mission(workshop, project, context, types)
-    report(faults)
-    valid = complete and not has_errors(faults)
+    subject = Subject(workshop, project, context, robot_files(robots))
+    found, changed = subject.examined(), False
+    repairer = repairer_for(workshop.contributions, subject.diagnose)
+    report(found.faults)
+    repair = repairer.repair(found) if fix else None
+    if repair is not None:
+        show(repair, tell if json else say)
+        changed = agreed(repair, yes=yes, dry_run=dry_run)
+        if changed:
+            write(repair)
+            found = repair.diagnosis
+    proposals = tuple(repairer.proposals(found))
+    if sarif is not None:
+        write_sarif(sarif, found.faults, workshop.contributions, proposals)
     if json:
-        say_json({"valid": valid, "diagnostics": faults})
-    else:
-        counts = [(s, sum(fault.severity is s for fault in faults)) for s in Severity]
-        found = ", ".join(counted(count, severity.value) for severity, count in counts if count)
-        say(f"{project}: {'valid' if valid else 'not valid'}" + (f" ({found})" if found else ""))
-    return 0 if valid else 1
+        say_json(_as_json(found, proposals, repair, changed))
+    elif sarif != Path("-"):
+        say(_summary(project, found, repair, changed))
+        _tell_of(proposals, project, asked=fix)
+    return 0 if _is_valid(found) else 1
 
 
-_Found = tuple[bool, tuple["Diagnostic", ...]]
-"""Whether there is a whole model to judge, and all faults."""
+def _is_valid(found: Diagnosis) -> bool:
+    from mmrs_core.diagnostics import has_errors
+
+    return found.complete and not has_errors(found.faults)
 
 
-def _faults_of_mission(
-    workshop: Workshop, project: Path, context: Path | None, robots: tuple[Path, ...]
-) -> _Found:
-    from mmrs_core.diagnostics import in_order
-    from mmrs_core.pipeline import check_models, read_models
-
-    models, faults = read_models(project, workshop.contributions, context=context, robots=robots)
-    if models is None:
-        return False, in_order(faults)
-    given = models
-    workshop.have_read(given.models, given.context)
-    checked = workshop.stage(
-        "check", "checking the models", lambda: check_models(given, workshop.contributions)
-    )
-    return True, in_order((*faults, *checked))
+def _summary(project: Path, found: Diagnosis, repair: Repair | None, changed: bool) -> str:
+    counts = _counts(found.faults)
+    mended = counted(len(repair.applied), "fault") if repair is not None and changed else ""
+    words = f"{project}: {'valid' if _is_valid(found) else 'not valid'}" + (f" ({counts})" if counts else "")
+    return f"{words}; {mended} mended" if mended else words
 
 
-def _faults_of_behaviour(
-    workshop: Workshop, file: Path, context: Path | None, robots: tuple[Path, ...]
-) -> _Found:
-    from mmrs_core.cli.behaviours import faults_of, read_behaviour_files
+def _counts(faults: tuple[Diagnostic, ...]) -> str:
+    from mmrs_core.diagnostics import Severity
 
-    files = read_behaviour_files(workshop, file, context=context, robots=robots)
-    return True, workshop.stage("check", "checking the behaviour", lambda: faults_of(workshop, files))
+    counts = [(severity, sum(fault.severity is severity for fault in faults)) for severity in Severity]
+    return ", ".join(counted(count, severity.value) for severity, count in counts if count)
+
+
+def _tell_of(proposals: tuple[Proposal, ...], project: Path, *, asked: bool) -> None:
+    if proposals and not asked:
+        count = len(proposals)
+        tell(f"'mmrs validate {project} --fix' mends {counted(count, 'fault')}, and shows how first")
+
+
+def _as_json(
+    found: Diagnosis, proposals: tuple[Proposal, ...], repair: Repair | None, changed: bool
+) -> dict[str, object]:
+    from mmrs_core.cli.fixing import difference
+
+    told: dict[str, object] = {
+        "valid": _is_valid(found),
+        "diagnostics": found.faults,
+        "fixable": [
+            {"code": each.fault.code, "place": each.fault.place, "fix": each.title} for each in proposals
+        ],
+    }
+    if repair is not None:
+        told["fix"] = {
+            "changed": changed,
+            "mended": [each.fault for each in repair.applied],
+            "refused": [each.fault for each in repair.refused],
+            "diff": difference(repair.changes),
+        }
+    return told

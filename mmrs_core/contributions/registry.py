@@ -12,6 +12,7 @@ from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
@@ -31,6 +32,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "metamodels": lambda source: source.ns_uri,
     "migrations": lambda migration: f"{migration.from_uri} to {migration.to_uri}",
     "constraints": lambda constraint: constraint.code,
+    "fixes": lambda fix: fix.code,
     "rules": lambda rule: rule.name,
     "robot_kinds": lambda kind: kind.name,
     "move_kinds": lambda kind: "#//".join(kind.metaclass),
@@ -93,6 +95,11 @@ class Contributions:
                 )
         self._refuse_misspelt("constraints")
         return tuple(self._by("constraints", lambda constraint: constraint.code).values())
+
+    @cached_property
+    def fixes(self) -> Mapping[str, Fix]:
+        """Return what mends faults, by code."""
+        return self._by("fixes", lambda fix: fix.code)
 
     @cached_property
     def rules(self) -> Mapping[Name, Rule]:
@@ -199,7 +206,7 @@ def called(sort: str, item: object) -> str:
 
 
 def _singular(sort: str) -> str:
-    return sort.removesuffix("s").replace("_", " ")
+    return sort.removesuffix("es" if sort == "fixes" else "s").replace("_", " ")
 
 
 def by_key(sort: str, items: Iterable[tuple[str, Item]], key: Callable[[Item], Key]) -> dict[Key, Item]:

@@ -55,12 +55,22 @@ def test_an_example_is_a_plugin_that_loads(example, tmp_path):
 def test_every_field_of_what_is_declared_is_told():
     from dataclasses import fields
 
-    from mmrs_core.contributions import checks, commands, constraints, execution, rules, symbols, targets
+    from mmrs_core.contributions import (
+        checks,
+        commands,
+        constraints,
+        execution,
+        fixes,
+        rules,
+        symbols,
+        targets,
+    )
     from mmrs_core.languages.evolution.migration import Migration
 
     told = {
         "mmrs_migrations": Migration,
         "mmrs_constraints": constraints.Constraint,
+        "mmrs_fixes": fixes.Fix,
         "mmrs_rules": rules.Rule,
         "mmrs_robot_kinds": rules.RobotKind,
         "mmrs_move_kinds": rules.MoveKind,

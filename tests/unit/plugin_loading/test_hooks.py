@@ -12,6 +12,7 @@ from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
@@ -66,6 +67,11 @@ def test_hook_mmrs_migrations():
     contributions = contributions_with("mmrs_migrations", migration)
     assert contributions.migrations == (migration,)
     assert contributions.languages.migrations == (migration,)
+
+
+def test_hook_mmrs_fixes():
+    fix = Fix("KITE001", "shorten the line", lambda wrong: [])
+    assert contributions_with("mmrs_fixes", fix).fixes["KITE001"].title == "shorten the line"
 
 
 def test_hook_mmrs_constraints():

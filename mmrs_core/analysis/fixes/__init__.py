@@ -1,0 +1,11 @@
+"""Quick fixes of the core, and what applies those of all plug-ins."""
+
+from __future__ import annotations
+
+from mmrs_core.analysis.fixes import figures, spelling, values
+from mmrs_core.contributions.fixes import Fix
+
+FIXES: tuple[Fix, ...] = tuple(
+    sorted((*spelling.FIXES, *values.FIXES, *figures.FIXES), key=lambda each: each.code)
+)
+"""The fixes of the core, by code."""

@@ -1,0 +1,238 @@
+"""Applies quick fixes to texts, and keeps only those that make the models better."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.contributions.fixes import Edit, Fix, Wrong
+from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.element import Element, Unknown, descendants, path_of
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xmi.events import read_bytes
+from mmrs_core.languages.xmi.markup import Markup
+
+_MOST_ROUNDS = 8
+"""Mending a fault may uncover others; what takes longer is better looked at by a person."""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """All that is known of a project.
+
+    Attributes:
+        complete: whether there is a whole model to judge.
+        models: every file that was read.
+        project: None where there is no mission.
+        robots: the types of robot.
+    """
+
+    complete: bool
+    faults: tuple[Diagnostic, ...]
+    models: tuple[Model, ...] = ()
+    project: ModelSet | None = None
+    robots: tuple[Element, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """A fix of one fault, as changes of the file that the fault stands in."""
+
+    fault: Diagnostic
+    title: str
+    file: Path
+    edits: tuple[Edit, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a file holds, and what it is to hold; ``name`` is what the user calls it."""
+
+    name: str
+    file: Path
+    before: bytes
+    after: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """What fixes came to.
+
+    Attributes:
+        changes: of files, by name.
+        applied: what was mended, in order.
+        refused: what was not, because it would bring other errors.
+        diagnosis: what is left.
+    """
+
+    changes: tuple[Change, ...]
+    applied: tuple[Proposal, ...]
+    refused: tuple[Proposal, ...]
+    diagnosis: Diagnosis
+
+
+Diagnose = Callable[[Mapping[Path, bytes]], Diagnosis]
+"""Reads and checks the project, with other texts for some of its files."""
+
+
+class Repairer:
+    """Finds and tries fixes.
+
+    Args:
+        fixes: by code.
+        checks: names of all checks of behaviours.
+    """
+
+    def __init__(
+        self, fixes: Mapping[str, Fix], registry: Registry, checks: Iterable[str], diagnose: Diagnose
+    ) -> None:
+        self._fixes = fixes
+        self._registry = registry
+        self._checks = tuple(checks)
+        self._diagnose = diagnose
+
+    def proposals(
+        self, diagnosis: Diagnosis, texts: Mapping[Path, bytes] | None = None
+    ) -> Iterator[Proposal]:
+        """Yield the fixes of faults that have one; files in JSON have none.
+
+        Args:
+            texts: what files are to hold, where they hold something else.
+        """
+        files = {str(model.file): model for model in diagnosis.models if isinstance(model.file, Path)}
+        markups: dict[Path, Markup | None] = {}
+        for fault in diagnosis.faults:
+            fix, model = self._fixes.get(fault.code), files.get(fault.place.file)
+            if fix is None or model is None:
+                continue
+            file = Path(fault.place.file).resolve()
+            if file not in markups:
+                markups[file] = _markup(file, texts or {})
+            edits = self._edits(fix, fault, model, markups[file], diagnosis)
+            if edits:
+                yield Proposal(fault, fix.title, file, edits)
+
+    def _edits(
+        self, fix: Fix, fault: Diagnostic, model: Model, markup: Markup | None, diagnosis: Diagnosis
+    ) -> tuple[Edit, ...]:
+        tag = markup.at(fault.place.path, fault.place.line) if markup is not None else None
+        if markup is None or tag is None:
+            return ()
+        element = _element(model, fault.place.path)
+        wrong = Wrong(
+            fault, element, tag, markup, self._registry, diagnosis.project, diagnosis.robots, self._checks
+        )
+        return tuple(dict.fromkeys(fix.edits(wrong)))
+
+    def repair(self, now: Diagnosis) -> Repair:
+        """Return what the project's files are to hold so that they have fewer faults, and no new ones.
+
+        Args:
+            now: the diagnosis of the files as they are.
+        """
+        texts = dict[Path, bytes]()
+        applied: list[Proposal] = []
+        refused: dict[tuple[str, str], Proposal] = {}
+        for _ in range(_MOST_ROUNDS):
+            found = [each for each in self.proposals(now, texts) if _key(each.fault) not in refused]
+            # what hides a part of the model comes first: the part may have faults of its own
+            wanted = [each for each in found if _is_reading(each.fault)] or found
+            if not wanted:
+                break
+            for batch in (wanted, *([each] for each in wanted if len(wanted) > 1)):
+                tried = self._tried(now, texts, batch)
+                if tried is not None:
+                    now, texts = tried
+                    applied += batch
+                    break
+                if len(batch) == 1:
+                    refused[_key(batch[0].fault)] = batch[0]
+        return Repair(tuple(_changes(texts, now)), tuple(applied), tuple(refused.values()), now)
+
+    def _tried(
+        self, now: Diagnosis, texts: Mapping[Path, bytes], batch: Sequence[Proposal]
+    ) -> tuple[Diagnosis, dict[Path, bytes]] | None:
+        """Return what holds after some fixes; None if it is not better than before."""
+        after = dict(texts)
+        for file in {each.file for each in batch}:
+            edits = {edit for each in batch if each.file == file for edit in each.edits}
+            changed = with_edits(after[file] if file in after else read_bytes(file), edits)
+            if changed is None:
+                return None
+            after[file] = changed
+        try:
+            then = self._diagnose(after)
+        except UnreadableError:
+            return None
+        return (then, after) if _is_better(now, then, batch) else None
+
+
+def with_edits(data: bytes, edits: Iterable[Edit]) -> bytes | None:
+    """Return a text with other parts; None if two of the edits get into each other's way."""
+    parts, end = [], 0
+    for edit in sorted(edits):
+        if edit.begin < end:
+            return None
+        parts += [data[end : edit.begin], edit.text.encode()]
+        end = edit.end
+    return b"".join((*parts, data[end:]))
+
+
+def _markup(file: Path, texts: Mapping[Path, bytes]) -> Markup | None:
+    """Return the markup of a file; None for JSON, and for what is not in UTF-8."""
+    if file.suffix.lower() == ".json":
+        return None
+    try:
+        return Markup(texts[file] if file in texts else read_bytes(file), str(file))
+    except UnreadableError:
+        return None
+
+
+def _element(model: Model, path: str) -> Element | None:
+    for root in model.roots:
+        for element in (root, *descendants(root)) if path.strip("/") else (root,):
+            if path_of(element) == (path or "/") and not isinstance(element, Unknown):
+                return element
+    return None
+
+
+def _is_reading(fault: Diagnostic) -> bool:
+    return fault.code.startswith("XMI")
+
+
+def _key(fault: Diagnostic) -> tuple[str, str]:
+    """Return what makes a fault the same before and after: lines and counts may change."""
+    return fault.code, f"{fault.place.file}{fault.place.path}: {fault.message}"
+
+
+def _is_better(before: Diagnosis, after: Diagnosis, mended: Sequence[Proposal]) -> bool:
+    """Return whether faults have gone and no error has come; mending what hides a part may uncover others."""
+    left = Counter(map(_key, after.faults))
+    if after.complete < before.complete or any(left[_key(each.fault)] for each in mended):
+        return False
+    if all(_is_reading(each.fault) for each in mended):
+        lines = {(each.fault.place.file, each.fault.place.line) for each in mended}
+        return _on_lines(after.faults, lines) <= _on_lines(before.faults, lines)
+    known = {(each.code, each.place.file, each.place.path) for each in before.faults}
+    errors = (each for each in after.faults if each.severity is Severity.ERROR)
+    worse = any((each.code, each.place.file, each.place.path) not in known for each in errors)
+    return not worse and len(after.faults) < len(before.faults)
+
+
+def _on_lines(faults: Iterable[Diagnostic], lines: Container[tuple[str, int]]) -> int:
+    """Return how many faults of reading are on some lines."""
+    return sum(_is_reading(each) and (each.place.file, each.place.line) in lines for each in faults)
+
+
+def _changes(texts: Mapping[Path, bytes], diagnosis: Diagnosis) -> Iterator[Change]:
+    files = (model.file for model in diagnosis.models if isinstance(model.file, Path))
+    names = {file.resolve(): str(file) for file in files}
+    for file, after in sorted(texts.items()):
+        before = read_bytes(file)
+        if before != after:
+            yield Change(names.get(file, str(file)), file, before, after)

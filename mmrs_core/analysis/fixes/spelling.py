@@ -1,0 +1,174 @@
+"""Misspelt names: of metamodels, prefixes, classes, features, and of what models themselves name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from mmrs_core.analysis.fixes.likeness import meant
+from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_attribute, with_name, with_value
+from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of
+from mmrs_core.languages.grounding.values import children, text
+from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.xmi.markup import Attribute, Tag
+
+BEHAVIOUR = "urn:mmrs:behaviour:1.0"
+_TYPES = ("xsi:type", "xmi:type")
+
+
+def _features(wrong: Wrong) -> Iterator[Edit]:
+    """Give an attribute or child that its class does not know the name that it was meant to have."""
+    if wrong.element is None:
+        return
+    metaclass = metaclass_of(wrong.element)
+    for attribute in wrong.tag.attributes:
+        if (
+            ":" not in attribute.name
+            and attribute.name != "xmlns"
+            and attribute.name not in metaclass.by_name
+        ):
+            name = meant(attribute.name, _free(wrong.tag, metaclass, lambda each: not each.containment))
+            if name is not None:
+                yield with_name(attribute, name)
+    for tag in wrong.children:
+        if tag.name not in metaclass.by_name and ":" not in tag.name:
+            name = meant(tag.name, _free(wrong.tag, metaclass, lambda each: each.containment))
+            if name is not None:
+                yield from _renamed(tag, name)
+
+
+def _free(tag: Tag, metaclass: Metaclass, wanted: Callable[[Feature], bool]) -> list[str]:
+    """Return the features of a kind that the tag could still have."""
+    given = tag.content_names()
+    found = (each for each in metaclass.features if each.stored and wanted(each))
+    return [each.name for each in found if each.many or each.name not in given]
+
+
+def _renamed(tag: Tag, name: str) -> Iterator[Edit]:
+    begin = tag.begin + 1
+    yield Edit(begin, begin + len(tag.name.encode()), name)
+    if tag.closing < tag.end:
+        yield Edit(tag.closing + 2, tag.closing + 2 + len(tag.name.encode()), name)
+
+
+def _classes(wrong: Wrong) -> Iterator[Edit]:
+    """Correct the class in an ``xsi:type``, or that of a root."""
+    for tag in (wrong.tag, *wrong.children):
+        for attribute in tag.attributes:
+            if attribute.name in _TYPES:
+                prefix, _, name = attribute.value.rpartition(":")
+                right = _class(wrong, tag.prefixes().get(prefix, ""), name)
+                if right is not None:
+                    yield with_value(attribute, f"{prefix}:{right}")
+        prefix, colon, name = tag.name.rpartition(":")
+        right = _class(wrong, tag.prefixes().get(prefix, ""), name) if colon else None
+        if right is not None:
+            yield from _renamed(tag, f"{prefix}:{right}")
+
+
+def _class(wrong: Wrong, ns_uri: str, name: str) -> str | None:
+    if not wrong.registry.has(ns_uri):
+        return None
+    classes = {each.name for each in wrong.registry.package(ns_uri).metaclasses}
+    return None if name in classes else meant(name, classes)
+
+
+def _metamodels(wrong: Wrong) -> Iterator[Edit]:
+    """Correct the nsURI of a declaration."""
+    known = [package.ns_uri for package in wrong.registry.packages if package.ns_uri]
+    for tag in wrong.markup.root.everything():
+        for attribute in tag.attributes:
+            foreign = not attribute.name.startswith("xmlns:") or attribute.value.startswith("http://www.")
+            if not foreign and not wrong.registry.has(attribute.value):
+                right = meant(attribute.value, known)
+                if right is not None and _same_version(attribute.value, right):
+                    yield with_value(attribute, right)
+
+
+def _same_version(one: str, other: str) -> bool:
+    """Return whether two nsURIs differ in letters only: another version is another language."""
+    return [c for c in one if c.isdigit()] == [c for c in other if c.isdigit()]
+
+
+def _prefixes(wrong: Wrong) -> Iterator[Edit]:
+    """Declare a prefix that one metamodel only has."""
+    declared = wrong.tag.prefixes()
+    for tag in (wrong.tag, *wrong.children):
+        for name in _TYPES:
+            attribute = tag.attribute(name)
+            prefix = attribute.value.rpartition(":")[0] if attribute is not None else ""
+            found = [each for each in wrong.registry.packages if each.prefix == prefix]
+            if prefix and prefix not in declared and len(found) == 1:
+                yield with_attribute(wrong.markup.root, f"xmlns:{prefix}", found[0].ns_uri)
+
+
+def _named(feature: str, known: Callable[[Wrong], Iterable[str]]) -> Callable[[Wrong], Iterator[Edit]]:
+    """Return what gives an attribute the one known name that its value, or a word of it, was meant for."""
+
+    def edits(wrong: Wrong) -> Iterator[Edit]:
+        names = tuple(known(wrong))
+        for attribute, value in _values(wrong.tag, feature):
+            right = meant(value, names) if value not in names else None
+            if right is not None:
+                begin = attribute.value_begin + wrong.markup.data[
+                    attribute.value_begin : attribute.value_end
+                ].find(value.encode())
+                yield Edit(begin, begin + len(value.encode()), right)
+
+    return edits
+
+
+def _values(tag: Tag, feature: str) -> Iterator[tuple[Attribute, str]]:
+    attribute = tag.attribute(feature)
+    if attribute is not None and "&" not in attribute.value:
+        yield attribute, attribute.value
+
+
+def _accepted(wrong: Wrong) -> Iterator[Edit]:
+    for tag in wrong.tag.named("acceptedUnknowns"):
+        content = wrong.markup.data[tag.inside : tag.closing].decode()
+        right = meant(content, wrong.checks) if content not in wrong.checks else None
+        if right is not None:
+            yield Edit(tag.inside, tag.closing, right)
+    attribute = wrong.tag.attribute("acceptedUnknowns")
+    for word in attribute.value.split() if attribute is not None else ():
+        right = meant(word, wrong.checks) if word not in wrong.checks else None
+        if attribute is not None and right is not None:
+            words = [right if each == word else each for each in attribute.value.split()]
+            yield with_value(attribute, " ".join(words))
+
+
+def _types(wrong: Wrong) -> Iterator[str]:
+    return (text(each, "name") for each in wrong.robots)
+
+
+def _robot_type(wrong: Wrong) -> Element | None:
+    owner = wrong.element
+    while owner is not None and not is_kind(owner, BEHAVIOUR, "Robot"):
+        owner = container_of(owner)
+    name = text(owner, "typeName") if owner is not None else ""
+    return next((each for each in wrong.robots if text(each, "name") == name), None)
+
+
+def _devices(wrong: Wrong) -> list[str]:
+    return [text(each, "id") for each in children(_robot_type(wrong), "devices")]
+
+
+def _actions(wrong: Wrong) -> list[str]:
+    device = text(wrong.element, "deviceId") if wrong.element is not None else ""
+    found = (each for each in children(_robot_type(wrong), "devices") if text(each, "id") == device)
+    return [text(each, "name") for one in found for each in children(one, "supportedActions")]
+
+
+FIXES = (
+    Fix("XMI001", "correct the nsURI", _metamodels),
+    Fix("XMI002", "correct the name of the class", _classes),
+    Fix("XMI004", "correct the name of the feature", _features),
+    Fix("XMI014", "declare the prefix", _prefixes),
+    Fix("MML004", "correct the name of the robot type", _named("type", _types)),
+    Fix("BL035", "correct the name of the robot type", _named("typeName", _types)),
+    Fix("BL036", "correct the identifier of the device", _named("deviceId", _devices)),
+    Fix("BL037", "correct the name of the action", _named("actionName", _actions)),
+    Fix("BL039", "correct the identifier of the device", _named("deviceId", _devices)),
+    Fix("MML012", "correct the name of the check", _accepted),
+    Fix("BL049", "correct the name of the check", _accepted),
+)

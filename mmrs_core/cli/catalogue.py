@@ -1,0 +1,52 @@
+"""Every diagnostic there is: what its code means, what is expected, and how to mend it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mmrs_core.diagnostics import Severity
+
+if TYPE_CHECKING:
+    from mmrs_core.contributions.registry import Contributions
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What all faults of a code have in common.
+
+    Attributes:
+        meaning: what is wrong, or the property that a verdict is about.
+        subject: the class of elements it is about; empty where it is about files.
+        fix: what its quick fix does; empty if it has none.
+        plugin: the distribution of the plug-in that brings it; empty for the core.
+    """
+
+    code: str
+    severity: Severity
+    meaning: str
+    expected: str
+    hint: str
+    subject: str = ""
+    fix: str = ""
+    plugin: str = ""
+
+
+def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
+    """Return what is known of every code, by code in order."""
+    from mmrs_core.languages.codes import CODES
+
+    fixes = {code: fix.title for code, fix in contributions.fixes.items()}
+    entries = [
+        Entry(code, about.severity, about.meaning, about.expected, about.hint, "", fixes.get(code, ""))
+        for code, about in CODES.items()
+    ]
+    for each in contributions.constraints:
+        broken, brought = f"broken: {each.expected}", contributions.distribution_of("constraints", each)
+        plugin = "" if brought == "mmrs-core" else brought
+        fix, subject = fixes.get(each.code, ""), each.metaclass[1]
+        entries.append(
+            Entry(each.code, each.severity, broken, each.expected, each.hint, subject, fix, plugin)
+        )
+    return {entry.code: entry for entry in sorted(entries, key=lambda entry: entry.code)}

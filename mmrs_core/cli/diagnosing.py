@@ -1,0 +1,81 @@
+"""Finds every fault of a mission or behaviour, as its files are or as they might be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_core.analysis.fixes.repair import Diagnosis
+from mmrs_core.cli.behaviours import faults_of, is_behaviour, read_behaviour_files
+from mmrs_core.cli.journey import Workshop
+from mmrs_core.diagnostics import Diagnostic, in_order
+from mmrs_core.errors import InvalidModelError
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.reading import read_model
+from mmrs_core.pipeline import check_models, read_models
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What is examined: a mission with what belongs to it, or a behaviour."""
+
+    workshop: Workshop
+    file: Path
+    context: Path | None = None
+    robots: tuple[Path, ...] = ()
+
+    def examined(self) -> Diagnosis:
+        """Return all faults, and let observers know; errors as in `diagnose`."""
+        doing = "checking the behaviour" if self._is_behaviour() else "checking the models"
+        found: list[Diagnosis] = []
+
+        def check() -> tuple[Diagnostic, ...]:
+            found.append(self.diagnose({}))
+            return found[0].faults
+
+        self.workshop.stage("check", doing, check)
+        if (project := found[0].project) is not None:
+            self.workshop.have_read(found[0].models, project.context)
+        return found[0]
+
+    def diagnose(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
+        """Return all faults, with other texts for some files.
+
+        Raises:
+            UnreadableError: if a file is missing or no model at all.
+            InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
+        """
+        return self._behaviour(unsaved) if self._is_behaviour() else self._mission(unsaved)
+
+    def _is_behaviour(self) -> bool:
+        return is_behaviour(self.workshop, self.file)
+
+    def _mission(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
+        contributions = self.workshop.contributions
+        models, faults = read_models(
+            self.file, contributions, context=self.context, robots=self.robots, unsaved=unsaved
+        )
+        if models is None:
+            return Diagnosis(False, in_order(faults), self._files(faults, unsaved))
+        checked = check_models(models, contributions)
+        robots = tuple(models.robots.values())
+        return Diagnosis(True, in_order((*faults, *checked)), models.models, models, robots)
+
+    def _files(self, faults: tuple[Diagnostic, ...], unsaved: Mapping[Path, bytes]) -> tuple[Model, ...]:
+        """Return the files that faults are in, where there is no mission to hold them together."""
+        names = dict.fromkeys(fault.place.file for fault in faults if fault.place.file)
+        registry = self.workshop.contributions.languages
+        return tuple(read_model(Path(name), registry, unsaved=unsaved) for name in names)
+
+    def _behaviour(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
+        files = read_behaviour_files(
+            self.workshop, self.file, context=self.context, robots=self.robots, unsaved=unsaved
+        )
+        robots = tuple(files.types.values())
+        try:
+            return Diagnosis(True, faults_of(self.workshop, files), files.models, None, robots)
+        except InvalidModelError as error:
+            if not unsaved:
+                raise
+            return Diagnosis(False, error.diagnostics, files.models, None, robots)

@@ -1,0 +1,77 @@
+"""``mmrs validate --fix``: shows what quick fixes would change, asks, and changes it."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+import typer
+
+from mmrs_core.cli.output import counted, say, tell
+
+if TYPE_CHECKING:
+    from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
+    from mmrs_core.contributions.registry import Contributions
+
+_COLOURS = {"+": "32", "-": "31", "@": "36"}
+
+
+def repairer_for(contributions: Contributions, diagnose: Diagnose) -> Repairer:
+    """Return what finds and tries the quick fixes of all plug-ins."""
+    from mmrs_core.analysis.fixes.repair import Repairer
+
+    checks = (check.name for check in contributions.checks)
+    return Repairer(contributions.fixes, contributions.languages, checks, diagnose)
+
+
+def difference(changes: Iterable[Change]) -> str:
+    """Return a unified diff of all changes, as ``patch -p1`` takes it; empty if there are none."""
+    return "".join(line for change in changes for line in _lines(change))
+
+
+def _lines(change: Change) -> Iterator[str]:
+    before, after = (text.decode("utf-8").splitlines(keepends=True) for text in (change.before, change.after))
+    name = change.name.lstrip("/")
+    for line in difflib.unified_diff(before, after, f"a/{name}", f"b/{name}"):
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def show(repair: Repair, say_line: Callable[..., None] = say) -> None:
+    """Print the diff, what it mends, and what it cannot mend."""
+    for line in difference(repair.changes).splitlines():
+        heading = line.startswith(("+++", "---"))
+        say_line(line, "1" if heading else _COLOURS.get(line[:1], ""))
+    for proposal in repair.applied:
+        say_line(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
+    for proposal in repair.refused:
+        tell(f"{_where(proposal)}: not mended: that would bring other errors [{proposal.fault.code}]")
+
+
+def _where(proposal: Proposal) -> str:
+    return f"{proposal.fault.place}: {proposal.title}"
+
+
+def agreed(repair: Repair, *, yes: bool, dry_run: bool) -> bool:
+    """Return whether the changes are to be made: after asking, where somebody can be asked."""
+    if dry_run or not repair.changes:
+        return False
+    if yes:
+        return True
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        tell("nothing is changed: there is no terminal to ask on; --yes changes it without asking")
+        return False
+    return typer.confirm(f"change {counted(len(repair.changes), 'file')}?", default=False, err=True)
+
+
+def write(repair: Repair) -> None:
+    """Make the changes, each file in one step.
+
+    Raises:
+        OSError: if a file cannot be written; it is as it was before.
+    """
+    from mmrs_core.languages.writing import replace_file
+
+    for change in repair.changes:
+        replace_file(change.file, change.after)
