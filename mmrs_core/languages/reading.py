@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Source
 from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
 from mmrs_core.languages.json_form.tree import is_json
@@ -58,7 +57,7 @@ class Reading:
     def parse(self, data: bytes, source: Source) -> Draft:
         """Read the text of a file; errors as in `open`."""
         draft = Draft(source)
-        with _collector_at_rest():
+        with collector_at_rest():
             if is_json(source.file):
                 read_json(data, draft, self._registry)
             elif may_be_old(data, self._registry):
@@ -73,7 +72,7 @@ class Reading:
     def follow(self) -> None:
         """Resolve the references of all files read so far, and of those that they lead to."""
         doubled = []
-        with _collector_at_rest():
+        with collector_at_rest():
             while self._unresolved:
                 draft = self._unresolved.pop(0)
                 doubled.append((draft, resolve(draft, self.open, self._root)))
@@ -90,18 +89,6 @@ class Reading:
         file = Path(draft.source.file) if draft.source.path else draft.source.file
         faults = tuple(map(explained, draft.diagnostics))
         return Model(file, draft.source.roots, faults, (), frozenset(draft.broken))
-
-
-@contextmanager
-def _collector_at_rest() -> Iterator[None]:
-    """Keep the cyclic collector from walking a growing model again and again: nothing in it is garbage."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def read_model(

@@ -7,11 +7,12 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form.tree import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.xmi.writer import XmiWriter
+from mmrs_core.languages.xmi.quick_writer import writer_for
 
 
 def to_xmi(
@@ -33,7 +34,8 @@ def to_xmi(
         ValueError: if a value is not of its type, holds a character that XML cannot hold, or a reference
             leads to an element that stands in no file.
     """
-    return XmiWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
+    with collector_at_rest():
+        return writer_for(tuple(roots), registry, file).document(schema_location or {}).encode()
 
 
 def to_json(

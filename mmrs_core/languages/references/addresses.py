@@ -10,7 +10,6 @@ from mmrs_core.languages.element import Element, Source, held, metaclass_of, roo
 from mmrs_core.languages.metaclass import Feature
 from mmrs_core.languages.references.hrefs import relative_href
 
-
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
 
 
@@ -23,13 +22,11 @@ class Addresses:
         self._here = {id(root) for root in roots}
         self._sources = {id(root._mmrs_source) for root in roots if root._mmrs_source is not None}
         self._folder = file.resolve().parent if file is not None else None
-        self._fragments: dict[int, str] = {}
-        for index, root in enumerate(roots):
-            self._enter(root, f"/{index}" if len(roots) > 1 else "/")
+        self._entered: dict[int, str] = {}
 
     def stands_here(self, element: Element) -> bool:
         """Return whether the document holds the element."""
-        return id(element) in self._fragments
+        return id(element) in self._fragments()
 
     def stands_elsewhere(self, element: Element) -> bool:
         """Return whether a contained element is the root of another file, and stays there."""
@@ -50,7 +47,7 @@ class Addresses:
 
     def fragment(self, element: Element) -> str:
         """Return the fragment of an element of this document."""
-        return self._fragments[id(element)]
+        return self._fragments()[id(element)]
 
     def identifier(self, element: Element) -> str | None:
         """Return the ``xmi:id`` that its file gave to an element."""
@@ -92,11 +89,18 @@ class Addresses:
         number = str(source.roots.index(top)) if len(source.roots) > 1 else ""
         return f"/{number}{''.join(reversed(steps))}"
 
+    def _fragments(self) -> dict[int, str]:
+        """Return the fragments of all elements; not worked out before somebody asks for one."""
+        if not self._entered:
+            for index, root in enumerate(self._roots):
+                self._enter(root, f"/{index}" if len(self._roots) > 1 else "/")
+        return self._entered
+
     def _enter(self, root: Element, fragment: str) -> None:
         pending = [(root, fragment)]
         while pending:
             element, fragment = pending.pop()
-            self._fragments[id(element)] = _own_id(element) or fragment
+            self._entered[id(element)] = _own_id(element) or fragment
             metaclass = type(element)._mmrs_metaclass
             for feature in metaclass.features if metaclass is not None else ():
                 if not feature.containment:

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_text
 from mmrs_core.languages.xmi.events import XMI, XSI
+from mmrs_core.languages.xmi.unknowns import text_of
 
-_ATTRIBUTE_ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\n": "&#xA;", "\t": "&#x9;", "\r": "&#xD;"}
-_IN_ATTRIBUTE = re.compile('[&<"\n\t\r]')
-_TEXT_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\r": "&#xD;"}
-_IN_TEXT = re.compile('[&<"\r]|(?<=]])>')
-_NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
-
+_DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 _Attributes = list[tuple[str, str]]
-_Job = str | tuple[Element, str, Feature | None, int]
+
+class Row(NamedTuple):
+    """What is left to be written of the elements in a containment feature."""
+
+    owner: Element
+    feature: Feature
+    values: Iterator[object]
+    depth: int
+
+
+Job = str | Row
+"""What is left to be done: a text to be added, or elements to be written."""
 
 
 class XmiWriter:
@@ -40,16 +48,17 @@ class XmiWriter:
             ValueError: if a value has the wrong type, holds a character that XML cannot hold, or a reference
                 leads to an element that stands in no file.
         """
+        if len(self._roots) == 1 and isinstance(self._roots[0], Unknown):
+            return f"{_DECLARATION}{text_of(self._roots[0], lambda prefix, ns_uri: False)}\n"
         wrapped = len(self._roots) != 1
         for root in self._roots:
             self._tree(root, 1 if wrapped else 0)
         head = "".join(f' {name}="{value}"' for name, value in self._head(schema_location))
-        declaration = '<?xml version="1.0" encoding="UTF-8"?>\n'
-        if not wrapped:
-            return f"{declaration}{self._lines[0]}{head}{''.join(self._lines[1:])}"
         if not self._roots:
-            return f"{declaration}<xmi:XMI{head}/>\n"
-        return f"{declaration}<xmi:XMI{head}>\n{''.join(self._lines)}</xmi:XMI>\n"
+            return f"{_DECLARATION}<xmi:XMI{head}/>\n"
+        if wrapped:
+            return "".join((_DECLARATION, f"<xmi:XMI{head}>\n", *self._lines, "</xmi:XMI>\n"))
+        return "".join((_DECLARATION, self._lines[0], head, *self._lines[1:]))
 
     def _head(self, schema_location: Mapping[str, str]) -> _Attributes:
         head = [("xmi:version", "2.0"), ("xmlns:xmi", XMI)]
@@ -57,26 +66,46 @@ class XmiWriter:
         places = [f"{ns_uri} {schema_location[ns_uri]}" for _, ns_uri in used if ns_uri in schema_location]
         if self._typed or places:
             head.append(("xmlns:xsi", XSI))
-        head += [(f"xmlns:{prefix}", _attribute(ns_uri)) for prefix, ns_uri in used]
+        head += [(f"xmlns:{prefix}", in_attribute(ns_uri)) for prefix, ns_uri in used]
         if places:
-            head.append(("xsi:schemaLocation", _attribute(" ".join(places))))
+            head.append(("xsi:schemaLocation", in_attribute(" ".join(places))))
         return head
 
     def _tree(self, root: Element, depth: int) -> None:
-        jobs: list[_Job] = [(root, "", None, depth)]
+        jobs: list[Job] = []
+        self._element(root, "", None, depth, jobs)
+        self._run(jobs)
+
+    def _run(self, jobs: list[Job]) -> None:
         while jobs:
             job = jobs.pop()
             if isinstance(job, str):
                 self._lines.append(job)
             else:
-                self._element(*job, jobs)
+                self._row(job, jobs)
+
+    def _row(self, row: Row, jobs: list[Job]) -> None:
+        """Write the next element of a row, and leave what follows as jobs."""
+        for value in row.values:
+            jobs.append(row)
+            self._child(row, value, jobs)
+            return
+
+    def _child(self, row: Row, value: object, jobs: list[Job]) -> None:
+        element, feature, _, depth = row
+        if not isinstance(value, Element):
+            raise ValueError(f"{_where(element, feature)}: {value!r} is no element")
+        if self._addresses.stands_elsewhere(value):
+            self._lines.append(self._href(element, feature, value, depth))
+        else:
+            self._element(value, feature.name, feature, depth, jobs)
 
     def _element(
-        self, element: Element, tag: str, feature: Feature | None, depth: int, jobs: list[_Job]
+        self, element: Element, tag: str, feature: Feature | None, depth: int, jobs: list[Job]
     ) -> None:
         indent = "  " * depth
         if isinstance(element, Unknown):
-            self._unknown(element, indent, jobs)
+            self._unknown(element, indent)
             return
         metaclass = metaclass_of(element)
         if feature is None:
@@ -85,7 +114,7 @@ class XmiWriter:
             tag = f'{tag} xsi:type="{self._kind(metaclass)}"'
         identifier = self._addresses.identifier(element)
         if identifier is not None:
-            tag = f'{tag} xmi:id="{_attribute(identifier)}"'
+            tag = f'{tag} xmi:id="{in_attribute(identifier)}"'
         attributes, children = self._features(element, metaclass, depth + 1)
         text = "".join(f' {name}="{value}"' for name, value in attributes)
         if feature is None:
@@ -99,7 +128,7 @@ class XmiWriter:
             self._lines.append(f"{indent}<{tag}{text}/>\n")
 
     def _open_root(
-        self, tag: str, text: str, indent: str, metaclass: Metaclass, children: list[_Job], jobs: list[_Job]
+        self, tag: str, text: str, indent: str, metaclass: Metaclass, children: list[Job], jobs: list[Job]
     ) -> None:
         """Write in two pieces: the namespaces come between them, once it is known which are used."""
         self._lines.append(tag)
@@ -108,22 +137,20 @@ class XmiWriter:
             jobs.append(f"{indent}</{self._name(metaclass)}>\n")
             jobs.extend(reversed(children))
 
-    def _unknown(self, element: Unknown, indent: str, jobs: list[_Job]) -> None:
-        text = element._mmrs_xml
-        end = re.match(r"<[^\s/>]+", text)
-        assert end is not None  # it was cut out of a well-formed document
-        head, rest = text[: end.end()], text[end.end() :]
-        own = "".join(
-            f' xmlns{prefix and ":" + prefix}="{_attribute(uri)}"'
-            for prefix, uri in element._mmrs_scope.items()
-            if uri and f"xmlns{prefix and ':' + prefix}=" not in rest.partition(">")[0]
-        )
-        self._lines.append(f"{indent}{head}{own}")
-        self._lines.append(f"{rest}\n")
+    def _unknown(self, element: Unknown, indent: str) -> None:
+        self._lines.append(f"{indent}{text_of(element, self._declares)}\n")
 
-    def _features(self, element: Element, metaclass: Metaclass, depth: int) -> tuple[_Attributes, list[_Job]]:
+    def _declares(self, prefix: str, ns_uri: str) -> bool:
+        """Return whether the root can declare a prefix for what was kept of an element."""
+        if (prefix, ns_uri) == ("xsi", XSI):
+            self._typed = True
+        elif prefix not in ("xmi", "xsi", *self._prefixes.values()) and ns_uri not in self._prefixes:
+            self._prefixes[ns_uri] = prefix
+        return self._prefixes.get(ns_uri) == prefix or (prefix, ns_uri) in (("xsi", XSI), ("xmi", XMI))
+
+    def _features(self, element: Element, metaclass: Metaclass, depth: int) -> tuple[_Attributes, list[Job]]:
         attributes: _Attributes = []
-        children: list[_Job] = []
+        children: list[Job] = []
         for feature in metaclass.features:
             if not feature.stored or (feature.is_container and not self._addresses.stands_apart(element)):
                 continue
@@ -134,7 +161,7 @@ class XmiWriter:
             if not feature.is_reference:
                 self._values(element, feature, values, depth, attributes, children)
             elif feature.containment:
-                children.extend(self._contained(element, feature, values, depth))
+                children.append(Row(element, feature, iter(values), depth))
             else:
                 self._references(element, feature, values, depth, attributes, children)
         return attributes, children
@@ -145,7 +172,7 @@ class XmiWriter:
         feature: Feature,
         depth: int,
         attributes: _Attributes,
-        children: list[_Job],
+        children: list[Job],
     ) -> None:
         """Write that nothing is in a feature, if its file said so."""
         if not feature.unsettable or not self._addresses.is_blank(element, feature):
@@ -163,7 +190,7 @@ class XmiWriter:
         values: Iterable[object],
         depth: int,
         attributes: _Attributes,
-        children: list[_Job],
+        children: list[Job],
     ) -> None:
         indent = "  " * depth
         texts = [self._rendered(element, feature, value) for value in values]
@@ -171,31 +198,20 @@ class XmiWriter:
             self._typed = True
             children.append(f'{indent}<{feature.name} xsi:nil="true"/>\n')
         elif feature.many or feature.name == "href":  # as an attribute, EMF would take that for a link
-            children.extend(f"{indent}<{feature.name}>{_text(text)}</{feature.name}>\n" for text in texts)
+            children.extend(f"{indent}<{feature.name}>{in_text(text)}</{feature.name}>\n" for text in texts)
         else:
-            attributes.append((feature.name, _attribute(texts[0])))
+            attributes.append((feature.name, in_attribute(texts[0])))
 
     def _rendered(self, element: Element, feature: Feature, value: object) -> str:
         kind = feature.type
         if isinstance(kind, Metaclass) or not kind.accepts(value):
             raise ValueError(f"{_where(element, feature)}: {value!r} is not of the type {kind.name}")
         text = kind.render(value)
-        bad = _NO_XML.search(text)
+        bad = NO_XML.search(text)
         if bad is not None:
             code = ord(bad.group())
             raise ValueError(f"{_where(element, feature)}: holds U+{code:04X}, which XML cannot hold")
         return text
-
-    def _contained(
-        self, element: Element, feature: Feature, values: Iterable[object], depth: int
-    ) -> Iterable[_Job]:
-        for value in values:
-            if not isinstance(value, Element):
-                raise ValueError(f"{_where(element, feature)}: {value!r} is no element")
-            if self._addresses.stands_elsewhere(value):
-                yield self._href(element, feature, value, depth)
-            else:
-                yield value, feature.name, feature, depth
 
     def _references(
         self,
@@ -204,14 +220,21 @@ class XmiWriter:
         values: Iterable[object],
         depth: int,
         attributes: _Attributes,
-        children: list[_Job],
+        children: list[Job],
     ) -> None:
         targets = [value for value in values if isinstance(value, Element)]
-        if all(self._addresses.stands_here(target) for target in targets):
-            fragments = " ".join(self._addresses.fragment(target) for target in targets)
-            attributes.append((feature.name, _attribute(fragments)))
+        if _pairs_with_itself(element, feature, targets):
+            children.append(self._href(element, feature, element, depth))
+            return
+        fragments = [self._fragment(target) for target in targets]
+        if None not in fragments:
+            attributes.append((feature.name, in_attribute(" ".join(map(str, fragments)))))
         else:
             children.extend(self._href(element, feature, target, depth) for target in targets)
+
+    def _fragment(self, target: Element) -> str | None:
+        """Return the fragment of an element; None if it is not in the document."""
+        return self._addresses.fragment(target) if self._addresses.stands_here(target) else None
 
     def _href(self, element: Element, feature: Feature, target: Element, depth: int) -> str:
         metaclass = metaclass_of(target)
@@ -220,7 +243,7 @@ class XmiWriter:
             href = self._addresses.href(target)
         except ValueError as fault:
             raise ValueError(f"{_where(element, feature)}: {fault}") from None
-        return f'{"  " * depth}<{feature.name}{kind} href="{_attribute(href)}"/>\n'
+        return f'{"  " * depth}<{feature.name}{kind} href="{in_attribute(href)}"/>\n'
 
     def _kind(self, metaclass: Metaclass) -> str:
         self._typed = True
@@ -243,12 +266,10 @@ class XmiWriter:
         return prefix
 
 
-def _attribute(value: str) -> str:
-    return _IN_ATTRIBUTE.sub(lambda match: _ATTRIBUTE_ESCAPES[match.group()], value)
-
-
-def _text(value: str) -> str:
-    return _IN_TEXT.sub(lambda match: _TEXT_ESCAPES[match.group()], value)
+def _pairs_with_itself(element: Element, feature: Feature, targets: Sequence[Element]) -> bool:
+    """Return whether an element is the other end of its own pair, which EMF reads as a link only."""
+    opposite = feature.opposite
+    return opposite is not None and not feature.many and not opposite.many and targets[0] is element
 
 
 def _where(element: Element, feature: Feature) -> str:

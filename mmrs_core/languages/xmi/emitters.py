@@ -1,0 +1,174 @@
+"""Functions compiled for metaclasses, which write an element with all inside it.
+
+As for the reader, no text of a metamodel or a model gets into the source: slots are numbered, all else is
+bound. A function adds nothing before it knows that it can add the whole start tag; else it raises
+`UnusualError`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from mmrs_core.languages.datatypes import DataType, render_real
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+from mmrs_core.languages.metamodels.classes import bare_name
+from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute
+
+DEEPEST_CALL = 50
+"""Elements that stand deeper than this are not written by functions that call each other."""
+
+_KEPT = 1024
+_SUSPICIOUS = re.compile(f'[&<"\n\t\r]|{NO_XML.pattern}')
+
+Emitter = Callable[[Element, int], None]
+"""Writes an element at a depth."""
+
+
+class UnusualError(Exception):
+    """An element needs more than its function can do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the functions for one document share.
+
+    Attributes:
+        add: takes pieces of text.
+        home: the source that elements come from, if they come from any.
+        places: the escaped fragment of each element; raises `UnusualError` for what stands elsewhere.
+        tables: the function of each class that may stand in a feature.
+        slowly: writes an element inside an owner in the careful way.
+    """
+
+    add: Callable[[str], None]
+    home: object
+    places: Mapping[Element, str]
+    tables: Mapping[Feature, Mapping[type, Emitter]]
+    slowly: Callable[[Element, Feature, Element, int], None]
+
+
+def emitter(metaclass: Metaclass, head: str, name: str, surroundings: Surroundings) -> Emitter | None:
+    """Return the function for elements of a metaclass, or None where each needs the careful way.
+
+    Args:
+        head: their start tag up to the first attribute of the model.
+        name: their tag.
+        surroundings: of the document.
+    """
+    make = _factory(metaclass)
+    return None if make is None else make(head, f"</{name}>\n", surroundings)
+
+
+@lru_cache(_KEPT)
+def _factory(metaclass: Metaclass) -> Callable[[str, str, Surroundings], Emitter] | None:
+    features = [
+        (index, feature)
+        for index, feature in enumerate(metaclass.features)
+        if feature.stored and not feature.is_container
+    ]
+    if any(feature.nullable or feature.name == "href" for _, feature in features):
+        return None
+    bound: dict[str, object] = {"Unusual": UnusualError, "clean": clean, "real": render_real}
+    bound |= {"opened": ">\n", "empty": "/>\n", "deepest": DEEPEST_CALL}
+    bound["pads"] = ["  " * depth for depth in range(DEEPEST_CALL + 1)]
+    children: list[tuple[int, Feature]] = []
+    body = [
+        "s = e._mmrs_source",
+        "if s is not None and s is not home or depth > deepest: raise Unusual",
+        "t = pads[depth] + head",
+    ]
+    for index, feature in features:
+        bound[f"f{index}"] = feature
+        bound[f"a{index}"] = f' {feature.name}="'
+        body.append(f"v = e.{bare_name(index)}")
+        if feature.is_reference and feature.containment:
+            body[-1] = f"v{index} = e.{bare_name(index)}"
+            children.append((index, feature))
+        elif feature.is_reference:
+            body += _reference(index, feature)
+        else:
+            body += _value(index, feature, bound)
+    body += _inside(children)
+    source = "\n".join(
+        [
+            "def factory(head, tail, surroundings):",
+            "    add, home, places = surroundings.add, surroundings.home, surroundings.places",
+            "    slowly = surroundings.slowly",
+            *(f"    t{index} = surroundings.tables[f{index}]" for index, _ in children),
+            "    def emit(e, depth):",
+            *(f"        {line}" for line in body),
+            "    return emit",
+        ]
+    )
+    exec(compile(source, f"<writer of {metaclass.name}>", "exec"), bound)  # noqa: S102  # no foreign text in it
+    made: Callable[[str, str, Surroundings], Emitter] = bound["factory"]  # type: ignore[assignment]
+    return made
+
+
+def _reference(index: int, feature: Feature) -> list[str]:
+    lines = ["if v:" if feature.many else "if v is not None:"]
+    if feature.opposite is not None:  # an element that is its own other end
+        lines.append(f"    if {'e in v' if feature.many else 'v is e'}: raise Unusual")
+    text = '" ".join([places[x] for x in v])' if feature.many else "places[v]"
+    return [*lines, f"    t += f'{{a{index}}}{{{text}}}\"'"]
+
+
+def _value(index: int, feature: Feature, bound: dict[str, object]) -> list[str]:
+    """Return the lines that add an attribute, unless it holds nothing or its default."""
+    kind = feature.type
+    if feature.many or isinstance(kind, Metaclass):
+        return ["if v: raise Unusual"]
+    guard, text = _rendering(kind, index, bound)
+    lines = ["if v is not None:", f"    if {guard}: raise Unusual"]
+    indent = "    "
+    if feature.default is not None and not feature.unsettable:
+        bound[f"d{index}"] = feature.default
+        zeros = f" or repr(v) != repr(d{index})" if isinstance(feature.default, float) else ""
+        lines.append(f"    if v != d{index}{zeros}:")
+        indent *= 2
+    return [*lines, f"{indent}t += f'{{a{index}}}{{{text}}}\"'"]
+
+
+def _rendering(kind: DataType | Enumeration, index: int, bound: dict[str, object]) -> tuple[str, str]:
+    """Return when a value is not of the usual class, and the expression for its text."""
+    if isinstance(kind, Enumeration):
+        bound[f"k{index}"] = {each.name: in_attribute(each.literal) for each in kind.literals}
+        return f"v.__class__ is not str or v not in k{index}", f"k{index}[v]"
+    if kind.render is str and kind.python is str:
+        return "v.__class__ is not str", "v if v.isalnum() else clean(v)"
+    if kind.render is str and kind.python is int:
+        return "v.__class__ is not int", "v"
+    if kind.render is render_real:
+        # between these bounds Python and Java agree
+        return "v.__class__ is not float", "repr(v) if 1e-3 <= v < 1e7 else real(v)"
+    bound[f"k{index}"] = kind
+    return f"not k{index}.accepts(v)", f"clean(k{index}.render(v))"
+
+
+def _inside(children: list[tuple[int, Feature]]) -> list[str]:
+    """Return the lines that add the start tag, and the elements inside with the end tag if there are any."""
+    if not children:
+        return ["add(t + empty)"]
+    lines = [f"if {' or '.join(f'v{index}' for index, _ in children)}:", "    add(t + opened)"]
+    for index, feature in children:
+        loop = f"for c in v{index}" if feature.many else f"for c in (v{index},)"
+        lines += [
+            f"    if v{index}:",
+            f"        {loop}:",
+            f"            try: t{index}[c.__class__](c, depth + 1)",
+            f"            except (Unusual, TypeError): slowly(e, f{index}, c, depth + 1)",
+        ]
+    return [*lines, "    add(pads[depth] + tail)", "else:", "    add(t + empty)"]
+
+
+def clean(text: str) -> str:
+    """Return a text as it stands in an attribute; raises `UnusualError` if XML cannot hold it."""
+    if _SUSPICIOUS.search(text) is None:
+        return text
+    if NO_XML.search(text) is not None:
+        raise UnusualError
+    return in_attribute(text)
