@@ -52,7 +52,7 @@ def _strange(found: ForeignModel) -> frozenset[str]:
     from mmrs_core.languages.foreign import missing_from
     from mmrs_core.languages.missing import DISTRIBUTIONS, stem_of
 
-    missing = missing_from(found.model, found.registry)
+    missing = missing_from(found.model, found.registry, certainly=True)
     return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
 
 

@@ -8,12 +8,13 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Unknown
+from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.places import stated_places
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, Registry
+from mmrs_core.languages.xmi.events import XMI, XSI
 
 _MOST_ROUNDS = 5
 """A metamodel that was found may show that another is missing, in what was unknown before."""
@@ -61,22 +62,17 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
     return ForeignModel(model, known, files)
 
 
-def missing_from(model: Model, registry: Registry) -> frozenset[str]:
-    """Return the nsURIs that elements of unknown classes need or may need."""
+def missing_from(model: Model, registry: Registry, certainly: bool = False) -> frozenset[str]:
+    """Return the nsURIs that elements of unknown classes need or may need, or those that they certainly need."""
     unknown = [
         element
         for part in (model, *model.linked)
         for element in part.elements()
         if isinstance(element, Unknown)
     ]
-    named = {uri for element in unknown for uri in _named_by(element)}
-    return frozenset(uri for uri in named if uri and not registry.has(uri))
-
-
-def _named_by(element: Element) -> Iterator[str]:
-    assert isinstance(element, Unknown)
-    yield element._mmrs_type.rpartition("#")[0]
-    yield from element._mmrs_scope.values()
+    named = {element._mmrs_type.rpartition("#")[0] for element in unknown}
+    named |= set() if certainly else {uri for element in unknown for uri in element._mmrs_scope.values()}
+    return frozenset(uri for uri in named if uri and uri not in (XMI, XSI) and not registry.has(uri))
 
 
 def _candidates(model: Path, missing: frozenset[str]) -> Iterator[Path]:

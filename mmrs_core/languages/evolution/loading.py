@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.evolution.migrating import Lost, Migrating
+from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.evolution.migrating import TYPE, Lost, Migrating, class_of, every_node
 from mmrs_core.languages.evolution.old_xmi import OldXmi
 from mmrs_core.languages.json_form.reader import LANGUAGES, ROOTS, JsonReader
 from mmrs_core.languages.json_form.tree import Node, Tree
+from mmrs_core.languages.json_form.unknown import XML, xml_of
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document
@@ -37,7 +40,7 @@ def may_be_old(data: bytes, registry: Registry) -> bool:
 def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:
     """Read an XMI file that mentions an old version; errors as in `Document.parse`."""
     document = Document(data, draft.source.file)
-    old = OldXmi(document, lambda ns_uri: registry.has(ns_uri) or ns_uri in registry.chains)
+    old = OldXmi(document, partial(_is_known, registry))
     document.parse(old)
     for what, line in old.ignored:
         message = f"{what}: not read, and not kept when the model is saved"
@@ -51,14 +54,40 @@ def read_json(data: bytes, draft: Draft, registry: Registry) -> None:
     """Read a JSON file, whatever version it is of; errors as in `Tree`."""
     tree = Tree(data, draft.source.file)
     top = tree.top
-    if not isinstance(top, Node) or not may_be_old(data, registry):
+    kept = f'"{XML}"'.encode() in data
+    if not isinstance(top, Node) or not (kept or may_be_old(data, registry)):
         JsonReader(tree, draft, registry).read()
         return
     listed = top.members.get(ROOTS, [top])
     roots = [each for each in (listed if isinstance(listed, list) else [listed]) if isinstance(each, Node)]
     prefixes = top.members.get(LANGUAGES)
     languages = {k: str(v) for k, v in prefixes.members.items()} if isinstance(prefixes, Node) else {}
+    if kept:
+        _unpack(roots, registry, languages, draft.source.file)
     _read(tree, roots, Migrating(roots, registry, languages), draft, registry)
+
+
+def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, str], file: str) -> None:
+    """Read what was kept as XML of elements whose languages are installed by now."""
+    is_known = partial(_is_known, registry)
+    for node in every_node(roots):
+        if XML not in node.members or not is_known(class_of(node, languages)[0]):
+            continue
+        try:
+            document = Document(xml_of(node).encode(), file)
+        except ValueError as fault:
+            raise UnreadableError(f"{file}:{node.line}: {fault}") from None
+        old = OldXmi(document, is_known)
+        document.parse(old)
+        inside = old.roots[0]
+        kind = node.members[TYPE]
+        for each in every_node([inside]):
+            each.line = node.line
+        node.members = {**inside.members, TYPE: kind}
+
+
+def _is_known(registry: Registry, ns_uri: str) -> bool:
+    return registry.has(ns_uri) or ns_uri in registry.chains
 
 
 def _read(

@@ -49,25 +49,17 @@ class Migrating:
         self._registry = registry
         self._languages = languages
         self._finals: dict[int, Metaclass] = {}
-        used = {self._kind(node)[0] for node in _all(roots)}
+        used = {self._kind(node)[0] for node in every_node(roots)}
         self._renaming = Renaming({ns: registry.chains[ns] for ns in used if ns in registry.chains})
         self.steps = self._renaming.steps
         for index, root in enumerate(roots):
             self._enter(root, f"/{index}" if len(roots) > 1 else "/")
         for step in self.steps:
-            for node in list(_all(roots)):
+            for node in list(every_node(roots)):
                 self._take(step, node)
 
     def _kind(self, node: Node) -> Kind:
-        """Return the class that an object says it is of; two empty texts where it does not."""
-        claimed = node.members.get(TYPE)
-        if not isinstance(claimed, str):
-            return "", ""
-        if "#" in claimed:
-            ns_uri, _, name = claimed.rpartition("#")
-            return ns_uri, name.removeprefix("//")
-        prefix, _, name = claimed.rpartition(":")
-        return self._languages.get(prefix, ""), name
+        return class_of(node, self._languages)
 
     def _enter(self, root: Node, address: str) -> None:
         """Find out of what class every object is and will be, and write down the first of these."""
@@ -126,6 +118,23 @@ class Migrating:
                 self.lost.append(Lost(key, _shown(node.members[key]), node.line, step.to_uri))
 
 
+def class_of(node: Node, languages: Mapping[str, str]) -> Kind:
+    """Return the class that an object says it is of; two empty texts where it does not.
+
+    Args:
+        node: the object.
+        languages: nsURIs, by the prefixes that types may have.
+    """
+    claimed = node.members.get(TYPE)
+    if not isinstance(claimed, str):
+        return "", ""
+    if "#" in claimed:
+        ns_uri, _, name = claimed.rpartition("#")
+        return ns_uri, name.removeprefix("//")
+    prefix, _, name = claimed.rpartition(":")
+    return languages.get(prefix, ""), name
+
+
 def _addressed(value: object, feature: Feature | None, lead: str) -> Iterator[_Held]:
     if isinstance(value, Node):
         yield value, feature, lead
@@ -170,8 +179,8 @@ def _shown(value: object) -> str:
     return str(value)
 
 
-def _all(roots: Sequence[Node]) -> Iterator[Node]:
-    """Yield all objects, outer ones before inner ones, except those inside elements kept as they are."""
+def every_node(roots: Sequence[Node]) -> Iterator[Node]:
+    """Yield all objects, outer ones before inner ones."""
     pending = list(roots)[::-1]
     while pending:
         node = pending.pop()

@@ -185,6 +185,9 @@ class JsonReader:
                 label = label_of(element)
                 message = f"{key}: no feature of {metaclass.name}{label and f' {label!r}'}"
                 self._fault("XMI004", message, node, element, nearest(key, metaclass.by_name), key=key)
+            elif value == [] or (value is None and feature.is_reference):
+                if feature.unsettable:
+                    self._draft.source.blanks.add((element, feature))
             elif not feature.is_reference:
                 self._values(element, feature, node, key, value)
             else:
@@ -224,8 +227,10 @@ class JsonReader:
         if value is None:
             if feature.many or getattr(kind, "primitive", True):
                 self._fault("XMI005", f"{feature.name}: cannot be null", node, element, "", feature, key)
-            elif feature.default is not None or feature.unsettable:
+            elif feature.default is not None:
                 type(element)._mmrs_slots[feature.attribute].__set__(element, None)
+            elif feature.unsettable:
+                self._draft.source.blanks.add((element, feature))
             return
         try:
             found = parsed(kind, value)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
+from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.json_form.tree import Node
+from mmrs_core.languages.xmi.events import Document
+from mmrs_core.languages.xmi.unknowns import needed, text_of
 
-_TYPE, _XML, _SCOPE = "$type", "$xml", "$namespaces"
+_TYPE, _SCOPE = "$type", "$namespaces"
+XML = "$xml"
 DEEPEST_KEPT = 100
 """Levels of objects and lists that are kept inside an element of an unknown class."""
 
@@ -33,16 +37,15 @@ def kept(node: Node, claimed: str, languages: Mapping[str, str]) -> Unknown:
         languages: the prefixes that types in it may use.
 
     Raises:
-        ValueError: if it nests deeper than anything that is kept.
+        ValueError: if it nests deeper than anything that is kept, or what it keeps is no XML.
     """
     element: Unknown
     if _depth(node) > DEEPEST_KEPT:
         raise ValueError(f"{claimed}: nested deeper than {DEEPEST_KEPT} levels")
-    xml, scope = node.members.get(_XML), node.members.get(_SCOPE)
-    if isinstance(xml, str) and xml.startswith("<"):
+    if XML in node.members:
         element = Unknown.__new__(Unknown)
-        element._mmrs_xml = xml
-        element._mmrs_scope = {k: str(v) for k, v in scope.members.items()} if isinstance(scope, Node) else {}
+        element._mmrs_xml, element._mmrs_scope = str(node.members[XML]), _scope_of(node)
+        xml_of(node)
     else:
         element = UnknownObject.__new__(UnknownObject)
         element._mmrs_json = _retyped(node, lambda name: _expanded(name, languages))
@@ -52,12 +55,47 @@ def kept(node: Node, claimed: str, languages: Mapping[str, str]) -> Unknown:
     return element
 
 
+def xml_of(node: Node) -> str:
+    """Return the XML that an object keeps of an element, with all namespaces that it needs.
+
+    Raises:
+        ValueError: if it is no element of XML.
+    """
+    element = Unknown.__new__(Unknown)
+    element._mmrs_xml, element._mmrs_scope = str(node.members[XML]), _scope_of(node)
+    element._mmrs_type = "$xml"
+    text = text_of(element, lambda prefix, ns_uri: False)
+    try:
+        Document(text.encode(errors="replace"), "$xml").parse(_Silence())
+    except UnreadableError as fault:
+        raise ValueError(str(fault)) from None
+    return text
+
+
+class _Silence:
+    """Listens to a document to hear whether it is well-formed."""
+
+    def start(self, tag: str, attributes: list[str]) -> None:
+        """Take nothing."""
+
+    def end(self, tag: str) -> None:
+        """Take nothing."""
+
+    def text(self, text: str) -> None:
+        """Take nothing."""
+
+
+def _scope_of(node: Node) -> Mapping[str, str]:
+    scope = node.members.get(_SCOPE)
+    return {k: str(v) for k, v in scope.members.items()} if isinstance(scope, Node) else {}
+
+
 def stated(element: Unknown, typed: Callable[[str], str]) -> Node:
     """Return the object that says what is known of an element; `typed` shortens ``nsURI#Name``."""
     if isinstance(element, UnknownObject):
         return _retyped(element._mmrs_json, typed)
-    scope = Node(dict(element._mmrs_scope))
-    return Node({_TYPE: typed(element._mmrs_type), _XML: element._mmrs_xml, _SCOPE: scope})
+    scope = Node(dict(needed(element._mmrs_xml, element._mmrs_scope)))
+    return Node({_TYPE: typed(element._mmrs_type), XML: element._mmrs_xml, _SCOPE: scope})
 
 
 def _depth(node: Node) -> int:

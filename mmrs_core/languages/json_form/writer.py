@@ -85,9 +85,12 @@ class JsonWriter:
             members.append(f'"{ID}": {quoted(identifier)}')
         children: list[_Children] = []
         for each in metaclass.features:
-            if not each.stored or each.is_container or not holds(element, each):
+            if not each.stored or (each.is_container and not self._addresses.stands_apart(element)):
                 continue
-            if each.containment:
+            if not holds(element, each):
+                if each.unsettable and self._addresses.is_blank(element, each):
+                    members.append(f"{_key(each)}: {'[]' if each.many else 'null'}")
+            elif each.containment:
                 children.append((each, held(element, each)))
             else:
                 members.append(f"{_key(each)}: {self._plain(element, each, held(element, each))}")

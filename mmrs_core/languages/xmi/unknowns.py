@@ -1,0 +1,47 @@
+"""Elements of languages that are not installed, written back as they were read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from xml.sax.saxutils import quoteattr
+
+from mmrs_core.languages.element import Unknown, path_of
+
+_BEGIN = re.compile(r"<[^\s/>!?]+")
+_PREFIX = re.compile(r"([\w.-]+):")
+_OPENING = re.compile(r"""<[^\s/>]+(?:\s+[^\s=>/]+\s*=\s*(?:"[^"]*"|'[^']*'))*""")
+_DECLARED = re.compile(r"""xmlns(?::([\w.-]+))?\s*=""")
+
+
+def text_of(element: Unknown, declare: Callable[[str, str], bool]) -> str:
+    """Return the text of an element, with the namespaces it needs and that nobody else declares.
+
+    Args:
+        element: as it was read.
+        declare: asked whether a prefix (first) is, or can be, declared for an nsURI at the root of the file.
+
+    Raises:
+        ValueError: if it was not read from XML, so that nobody knows how it is written there.
+    """
+    text = element._mmrs_xml
+    begin = _BEGIN.match(text)
+    if begin is None:
+        message = f"{path_of(element)}: {element._mmrs_type} is not installed, and its form in XML not known"
+        raise ValueError(f"{message}; install what brings it, or keep the model as JSON")
+    own = "".join(
+        f" xmlns{prefix and ':' + prefix}={quoteattr(uri)}"
+        for prefix, uri in needed(text, element._mmrs_scope)
+        if not (prefix and declare(prefix, uri))
+    )
+    return f"{begin.group()}{own}{text[begin.end() :]}"
+
+
+def needed(text: str, scope: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Yield the prefixes that a text uses, or may use, and that it does not declare at its beginning."""
+    opening = _OPENING.match(text)
+    declared = {match[1] or "" for match in _DECLARED.finditer(opening.group() if opening else "")}
+    used = {"", *(match[1] for match in _PREFIX.finditer(text))}
+    for prefix, uri in scope.items():
+        if uri and prefix in used and prefix not in declared and prefix != "xml":
+            yield prefix, uri
