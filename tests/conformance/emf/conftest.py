@@ -114,8 +114,8 @@ def plug_ins():
 @pytest.fixture(scope="session")
 def foreign():
     """Return metamodels that have nothing to do with robots and use what Ecore offers beyond ours."""
-    zoo = PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore"
-    return [zoo, HERE / "metamodels" / "suite.ecore", HERE / "metamodels" / "parts.ecore"]
+    models = PROJECT / "tests" / "fixtures" / "models"
+    return [models / f"{name}.ecore" for name in ("zoo", "suite", "parts")]
 
 
 @pytest.fixture(scope="session")
