@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import asin, cos, dist, inf, isfinite, radians, sin, sqrt
+from math import asin, cos, dist, inf, radians, sin, sqrt
 
 from mmrs_core.analysis.constraints.findings import CONTEXT, MISSION, finding
 from mmrs_core.analysis.constraints.sketch import Sketch, sketch_of
@@ -56,8 +56,6 @@ def _swapped(mission: Element, models: ModelSet) -> Iterator[Finding]:
         if not is_geographic(coordinate) or number(coordinate, "latitude") is None:
             continue
         north, east = _degrees(coordinate)
-        if not isfinite(north + east):
-            continue
         far = great_circle(latitude, longitude, north, east) > FAR
         near = abs(east) <= 90 and great_circle(latitude, longitude, east, north) <= FAR
         if far and near and container_of(coordinate) not in seen:

@@ -7,6 +7,7 @@ None or empty.
 
 from __future__ import annotations
 
+from sys import float_info
 from typing import TypeVar
 
 from mmrs_core.languages.element import Element
@@ -22,9 +23,11 @@ def value(element: Element, name: str) -> object:
 
 
 def number(element: Element, name: str) -> float | None:
-    """Return a number as a float."""
+    """Return a number as a float; None for one without end, which no model may hold (ECO009)."""
     found = value(element, name)
-    return float(found) if isinstance(found, (int, float)) and not isinstance(found, bool) else None
+    if not isinstance(found, (int, float)) or isinstance(found, bool):
+        return None
+    return float(found) if abs(found) <= float_info.max else None
 
 
 def text(element: Element, name: str) -> str:
