@@ -56,6 +56,24 @@ def _strange(found: ForeignModel) -> frozenset[str]:
     return frozenset(ns_uri for ns_uri in missing if stem_of(ns_uri) not in DISTRIBUTIONS)
 
 
+def is_foreign(workshop: Workshop, file: Path) -> bool:
+    """Return whether a file holds a model, and no element at its top is of MMRS's own languages.
+
+    Raises:
+        UnreadableError: if it is missing or no model at all.
+    """
+    from mmrs_core.languages.element import Unknown, metaclass_of
+    from mmrs_core.languages.reading import read_model
+    from mmrs_core.languages.registry import core_registry
+
+    if file.is_dir():
+        return False
+    roots = read_model(file, workshop.contributions.languages).roots
+    own = {package.ns_uri for package in core_registry().packages}
+    known = [metaclass_of(root).ancestry for root in roots if not isinstance(root, Unknown)]
+    return bool(roots) and not any(ns_uri in own for kinds in known for ns_uri, _ in kinds)
+
+
 def is_mistake(fault: Diagnostic) -> bool:
     """Return whether a fault is one of the model, not of a plug-in that is missing here."""
     return fault.severity.value == "error" and fault.code != NOT_INSTALLED

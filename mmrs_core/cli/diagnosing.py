@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.analysis.fixes.repair import Diagnosis
+from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
 from mmrs_core.cli.behaviours import faults_of, is_behaviour, read_behaviour_files
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.diagnostics import Diagnostic, in_order
 from mmrs_core.errors import InvalidModelError
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import check_models, read_models
@@ -18,12 +20,13 @@ from mmrs_core.pipeline import check_models, read_models
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What is examined: a mission with what belongs to it, or a behaviour."""
+    """What is examined: a mission with what belongs to it, a behaviour, or a model of any other language."""
 
     workshop: Workshop
     file: Path
     context: Path | None = None
     robots: tuple[Path, ...] = ()
+    metamodels: tuple[Path, ...] = ()
 
     def examined(self) -> Diagnosis:
         """Return all faults, and let observers know; errors as in `diagnose`."""
@@ -46,7 +49,16 @@ class Subject:
             UnreadableError: if a file is missing or no model at all.
             InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
         """
+        if self.metamodels or is_foreign(self.workshop, self.file):
+            return self._alone()
         return self._behaviour(unsaved) if self._is_behaviour() else self._mission(unsaved)
+
+    def _alone(self) -> Diagnosis:
+        """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
+        found = read_foreign(self.workshop, self.file, self.metamodels)
+        models = (found.model, *found.model.linked)
+        faults = [*faults_in(found), *(f for each in models for f in check_conformance(each, found.registry))]
+        return Diagnosis(True, in_order(faults), models)
 
     def _is_behaviour(self) -> bool:
         return is_behaviour(self.workshop, self.file)

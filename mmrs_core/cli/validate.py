@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mmrs_core.cli.any_model import Metamodels
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
 from mmrs_core.cli.settings import Json, settings_of
@@ -29,6 +30,7 @@ def validate(
     project: Project,
     context: Context = None,
     robots: Robots = None,
+    metamodel: Metamodels = None,
     fix: _Fix = False,
     yes: _Yes = False,
     dry_run: _DryRun = False,
@@ -37,7 +39,8 @@ def validate(
 ) -> int:
     """List everything that is wrong with a mission's models, and mend what can only be meant in one way.
 
-    Robot types and context are checked with the mission. A behaviour is checked by itself.
+    Robot types and context are checked with the mission. A behaviour is checked by itself, and so is a model
+    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only.
 
     Example: mmrs validate field --fix
     """
@@ -51,7 +54,7 @@ def validate(
     if sarif == Path("-") and (json or fix):
         raise typer.BadParameter("--sarif - is the whole of standard output; write SARIF to a file instead")
     workshop = Workshop(settings_of(call))
-    subject = Subject(workshop, project, context, robot_files(robots))
+    subject = Subject(workshop, project, context, robot_files(robots), tuple(metamodel or ()))
     found, changed = subject.examined(), False
     repairer = repairer_for(workshop.contributions, subject.diagnose)
     report(found.faults)

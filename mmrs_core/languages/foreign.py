@@ -63,7 +63,7 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
 
 
 def missing_from(model: Model, registry: Registry, certainly: bool = False) -> frozenset[str]:
-    """Return the nsURIs that elements of unknown classes need or may need, or those that they certainly need."""
+    """Return the nsURIs that elements of unknown classes need, or may need unless `certainly`."""
     unknown = [
         element
         for part in (model, *model.linked)
