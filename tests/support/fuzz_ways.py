@@ -8,6 +8,7 @@ from pathlib import Path
 from fuzzing import Way, sound_texts
 
 from mmrs_core.analysis.constraints import check_behaviour
+from mmrs_core.analysis.fixes.repair import Diagnosis, Repairer
 from mmrs_core.contributions.registry import Contributions
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import PluginError, UnreadableError
@@ -18,10 +19,14 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry
 from mmrs_core.languages.writing import to_json, to_xmi
+from mmrs_core.migration.mapping_file import read_mapping
+from mmrs_core.migration.migrate import migrate
 from mmrs_core.pipeline import check_models, read_models
+from mmrs_core.resources import shipped
 
 PROJECT = Path(__file__).parents[2]
 EXAMPLES = PROJECT / "examples"
+LEGACY = PROJECT / "tests" / "fixtures" / "flyaq"
 UNREADABLE, FAULTS, SOUND = "unreadable", "faults", "no fault"
 
 
@@ -35,12 +40,14 @@ def ways(contributions: Contributions, folder: Path) -> tuple[Way, ...]:
         if b'href="' not in text and b".xmi#" not in text
     )
     metamodels = (*sound_texts(PROJECT / "plugins", "*.ecore"), *sound_texts(PROJECT / "tests", "*.ecore"))
+    legacy = (*sound_texts(LEGACY, "*.xmi"), *sound_texts(LEGACY, "*.json"))
     reading = _Reading(contributions)
     return (
         Way("XMI", reading.text, (*models, *map(_widened, models))),
         Way("JSON", reading.text, documents),
         Way("project", reading.project, tuple(each for each in models if "behaviour" not in each[0])),
         Way("ecore", _Metamodels(folder).read, metamodels),
+        Way("migrate", _Dialects(folder, contributions).read, legacy),
     )
 
 
@@ -90,6 +97,10 @@ class _Reading:
         except UnreadableError:
             return UNREADABLE
         checked = check_models(models, self._contributions) if models is not None else ()
+        if models is not None:
+            found = Diagnosis(True, (*faults, *checked), models.models, models, tuple(models.robots.values()))
+            repairer = Repairer(self._contributions.fixes, self._registry, (), lambda texts: found)
+            sum(1 for _ in repairer.proposals(found, {file.resolve(): text}))
         return _ended((*faults, *checked))
 
 
@@ -109,3 +120,21 @@ class _Metamodels:
         except PluginError:
             return FAULTS
         return SOUND
+
+
+class _Dialects:
+    def __init__(self, folder: Path, contributions: Contributions) -> None:
+        self._folder = folder / "legacy"
+        self._folder.mkdir(exist_ok=True)
+        self._registry = contributions.languages
+        self._mapping = read_mapping(shipped("migrations") / "flyaq-2015.toml", self._registry)
+
+    def read(self, text: bytes, name: str) -> str:
+        """Migrate a model of the dialect of 2015."""
+        file = self._folder / Path(name).name
+        file.write_bytes(text)
+        try:
+            migration = migrate([file], self._mapping, self._registry)
+        except UnreadableError:
+            return UNREADABLE
+        return FAULTS if migration.findings else SOUND
