@@ -86,19 +86,11 @@ class Draft:
             self.found[fragment] = found
         return found
 
-    def nth(self, fragment: str) -> object:
-        """Return the same as `find` for a path into a list, sooner, and None for much else."""
-        head, _, index = fragment.rpartition(".")
-        values = self.lists.get(head)
-        if values is None:
-            values = self._list(head)
-        if len(index) < 10 and index.isdecimal() and index.isascii():
-            at = int(index)
-            return values[at] if at < len(values) else None
-        return None
+    def list_at(self, head: str) -> list[object]:
+        """Return what a path without its last index leads to, such as ``//@robots.3/@moves``; else nothing.
 
-    def _list(self, head: str) -> list[object]:
-        """Return what lies behind a path without its last index, such as ``//@robots.3/@moves``."""
+        What was found once stands in ``lists``.
+        """
         above, _, name = head.rpartition("/@")
         owner = self.find(above) if above.startswith("/") else None
         metaclass = type(owner)._mmrs_metaclass if owner is not None else None

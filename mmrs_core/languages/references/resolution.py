@@ -52,14 +52,22 @@ def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) ->
 
 
 def _quickly(reference: Quick, draft: Draft) -> bool:
-    """Set a reference whose text is one path to an element that it takes; return whether it was so."""
+    """Set a reference whose text is one path into a list, to an element that it takes; return whether it was so.
+
+    This runs for nearly every reference of a large model, hence makes no calls of its own.
+    """
     element, feature, text, _ = reference
+    head, _, index = text.rpartition(".")
+    values = draft.lists.get(head) or draft.list_at(head)
+    if not (index.isdecimal() and index.isascii() and len(index) < 10 and (at := int(index)) < len(values)):
+        return False
+    target = values[at]
+    if not isinstance(target, feature.type.interface):  # type: ignore[union-attr]  # a reference has a class
+        return False
     if feature.many:
-        return False
-    target = draft.nth(text)
-    if target is None or not isinstance(target, feature.type.interface):  # type: ignore[union-attr]  # a class
-        return False
-    setattr(element, feature.attribute, target)
+        getattr(element, feature.attribute).append(target)
+    else:
+        setattr(element, feature.attribute, target)
     return True
 
 

@@ -32,6 +32,9 @@ class QuickReader(XmiReader):
     def __init__(self, document: Document, draft: Draft, registry: Registry) -> None:
         super().__init__(document, draft, registry)
         self._parser = document.parser
+        self._namespaces = document.namespaces
+        self._wait = draft.pending.append
+        self._source = draft.source
         self._changes = 0
         self._shapes: dict[Metaclass, dict[_Key, _Shape]] = defaultdict(dict)
         self._seen: dict[tuple[Metaclass, _Key], int] = {}
@@ -43,7 +46,7 @@ class QuickReader(XmiReader):
         if not frames or self._ignored or frames[-1][2] is not None:
             super().start(tag, attributes)
         else:
-            if self._document.namespaces.changes != self._changes:
+            if self._namespaces.changes != self._changes:
                 self._forget()
             owner, metaclass, _ = frames[-1]
             if attributes and attributes[0] == _TYPE:
@@ -55,21 +58,25 @@ class QuickReader(XmiReader):
                 super().start(tag, attributes)
                 self._notice(metaclass, key)
             else:
-                draft = self._draft
+                make, metaclass = shape
                 try:
-                    element = shape[0](
-                        owner, attributes, self._parser.CurrentLineNumber, draft.source, draft.pending.append
+                    element = make(
+                        owner, attributes, self._parser.CurrentLineNumber, self._source, self._wait
                     )
                 except ValueError:  # the careful way finds out what is wrong
                     super().start(tag, attributes)
                 else:
-                    frames.append((element, shape[1], None))
-        if len(frames) + self._ignored + self._wrapped > DEEPEST_NESTING:
+                    frames.append((element, metaclass, None))
+        if len(frames) + self._ignored >= DEEPEST_NESTING:
+            self._refuse_depth()
+
+    def _refuse_depth(self) -> None:
+        if len(self._open) + self._ignored + self._wrapped > DEEPEST_NESTING:
             self._document.refuse_depth()
 
     def _forget(self) -> None:
         """Forget what types mean: a prefix changed its meaning."""
-        self._changes = self._document.namespaces.changes
+        self._changes = self._namespaces.changes
         self._shapes.clear()
         self._seen.clear()
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.datatypes import DataType, parse_real
 from mmrs_core.languages.links import LinkedList
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.metamodels.classes import bare_name
@@ -52,6 +52,7 @@ def maker(
         "LinkedList": LinkedList,
         "append": list.append,
         "Pending": Pending,
+        "real": parse_real,
     }
     check = [] if feature.many else _vacancy(owner, feature)
     lines = [*check, *_body(metaclass, names, bound), *_attachment(owner, feature, metaclass), "    return e"]
@@ -82,6 +83,9 @@ def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[s
                 lines.append(f"    {slot} = None")
         elif isinstance(feature.type, DataType) and feature.type.parse is str:
             lines.append(f"    {slot} = {text}")
+        elif isinstance(feature.type, DataType) and feature.type.parse is parse_real:
+            quickly = f"float({text}) if {text}.isascii() and {text}[-1:].isdigit() and '_' not in {text}"
+            lines.append(f"    {slot} = {quickly} else real({text})")
         else:
             bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
             lines.append(f"    {slot} = p{index}({text})")
