@@ -40,12 +40,12 @@ def test_half_a_turn_by_shunting_is_a_half_circle_at_half_the_cruise_speed(rover
 
 
 def test_every_arc_of_a_turn_begins_and_ends_at_a_standstill(rover, field):
-    found = kinematics(rover(turningRadius=1.5, acceleration=0.25), field)
+    found = kinematics(rover(turningRadius=1.5, movement={"acceleration": 0.25}), field)
     assert found.shunting == pytest.approx(pi * 1.5 / 0.5 + 3 * 0.5 / 0.25)
 
 
 def test_a_turn_rate_that_is_smaller_than_the_curve_allows_stands(rover, field):
-    assert kinematics(rover(turningRadius=0.1, turn_rate=20.0), field).turn_rate == 20.0
+    assert kinematics(rover(turningRadius=0.1, movement={"turn_rate": 20.0}), field).turn_rate == 20.0
 
 
 def test_a_leg_takes_up_to_half_a_turn_longer_where_the_rover_shunts(rover, field):
