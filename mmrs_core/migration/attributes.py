@@ -11,6 +11,7 @@ from mmrs_core.migration.drafts import Draft
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.mapping import Constant, DeviceLookup, Use
 from mmrs_core.migration.nodes import Node, Text
+from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.robot_types import RobotTypes
 
@@ -27,8 +28,12 @@ class Attributes:
 
     def carry_over(self, node: Node, feature: str, element: Element, use: Use) -> None:
         """Carry over every text that a feature holds."""
-        for value in [value for value in node.values[feature] if isinstance(value, Text)]:
+        values = [value for value in node.values[feature] if isinstance(value, Text)]
+        several = bool(use.to) and reach(element, use.to[0])[1].many
+        for index, value in enumerate(values):
             try:
+                if index and not several:
+                    raise ValueError(f"{use.to[0]} takes one only, the first")
                 self._one(node, feature, value, element, use)
             except ValueError as fault:
                 self._record.value(Category.LOST, str(fault), node, feature, value)

@@ -28,8 +28,8 @@ def without_repeats(node: Node, feature: str, vertices: Sequence[Node], record: 
     return tuple(kept)
 
 
-def _values(vertex: Node) -> dict[str, tuple[str, ...]]:
-    return {feature: vertex.texts(feature) for feature in vertex.values}
+def _values(vertex: Node) -> tuple[str, dict[str, tuple[str, ...]]]:
+    return vertex.kind, {feature: vertex.texts(feature) for feature in vertex.values}
 
 
 def border_around(

@@ -151,9 +151,13 @@ class Builder:
 
     def _hold(self, node: Node, feature: str, element: Element, use: Use, made: Sequence[Element]) -> None:
         """Put new elements where they belong; the first is referred to where they belong elsewhere."""
-        outermost = [element, *self.draft.around(node)][-1] if use.hoist else element
-        owner, target = reach(outermost, use.hoist or use.to[0])
-        fitting = [each for each in made if target.is_reference and target.type.accepts(each)]
+        outermost = [element, *self.draft.around(node)][-1]
+        if use.hoist and use.hoist not in metaclass_of(outermost).by_name:
+            reason = f"{metaclass_of(outermost).name} has no {use.hoist} to hold it"
+            self._record.value(Category.LOST, reason, node, feature)
+            return
+        owner, target = reach(outermost, use.hoist) if use.hoist else reach(element, use.to[0])
+        fitting = [each for each in made if target.containment and target.type.accepts(each)]
         if len(fitting) < len(made):
             self._record.value(Category.LOST, f"{target.name} does not take it", node, feature)
         if target.many:

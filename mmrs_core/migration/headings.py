@@ -28,14 +28,21 @@ def towards(angle_degrees: float, metres: float) -> tuple[float, float]:
 def set_heading(node: Node, feature: str, element: Element, use: Use, draft: Draft, record: Record) -> None:
     """Give a move a heading for the angle that a feature holds; what hinders it is recorded."""
     assert use.bearing is not None  # asked before
-    value = next((value for value in node.values[feature] if isinstance(value, Text)), None)
+    value, *further = node.values[feature]
+    if further:
+        record.value(Category.LOST, "is more than one angle, of which the first counts", node, feature)
     own = use.bearing.base == "self"
     owner = next(draft.around(node), None) if own else element
     robot = next((each for each in draft.around(node) if isinstance(each, bl.Robot)), None)
     base = element if own else robot.home if robot is not None else None
     behaviour = root_of(owner) if owner is not None else None
     target = metaclass_of(owner).by_name.get(use.to[0]) if owner is not None else None
-    if value is None or owner is None or target is None or not isinstance(behaviour, bl.Behaviour):
+    if (
+        not isinstance(value, Text)
+        or owner is None
+        or target is None
+        or not isinstance(behaviour, bl.Behaviour)
+    ):
         record.value(Category.LOST, "stands in no move of a behaviour", node, feature)
         return
     try:

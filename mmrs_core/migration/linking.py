@@ -9,6 +9,7 @@ from mmrs_core.languages.element import (
     containing_feature,
     label_of,
     metaclass_of,
+    root_of,
 )
 from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.registry import Registry
@@ -34,7 +35,10 @@ class Linker:
         for node, feature, element, use in self._draft.later:
             if use.bearing is not None:
                 set_heading(node, feature, element, use, self._draft, self._record)
-            elif use.counterpart is not None:
+                continue
+            if any(not isinstance(value, Link) for value in node.values[feature]):
+                self._record.value(Category.LOST, "holds more than references", node, feature)
+            if use.counterpart is not None:
                 self._counterparts(node, feature, element, use)
             else:
                 self._refer(node, feature, element, use)
@@ -73,8 +77,9 @@ class Linker:
             self._lost(node, feature, link, "leads to nothing in this file")
             return None
         target = self._draft.made.get(link.target)
-        if target is None:
+        if target is None or root_of(target) not in self._draft.roots:
             self._lost(node, feature, link, f"leads to {link.target.called()}, which is not carried over")
+            return None
         return target
 
     def _lost(self, node: Node, feature: str, link: Link, reason: str) -> None:
@@ -106,12 +111,16 @@ class Linker:
         self, node: Node, feature: str, element: Element, owner: Element, other: Counterpart
     ) -> Element | None:
         name = label_of(element)
+        kind = metaclass_of(owner).by_name.get(other.within)
+        if kind is None or not kind.type.accepts(element):
+            reason = f"{type(owner).__name__} has no {type(element).__name__} of its own"
+            self._record.value(Category.LOST, reason, node, feature)
+            return None
         present = children(owner, other.within)
         if element in present:
             return element
         found = next((each for each in present if label_of(each) == name), None)
         if found is None and other.make:
-            kind = metaclass_of(owner).feature(other.within)
             found = self._registry.create(*metaclass_of(element).key, name=name)
             getattr(owner, kind.attribute).append(found)
             reason = f"{label_of(owner)!r} had no {type(found).__name__} of this name, so one is made for it"
@@ -132,21 +141,24 @@ class Linker:
         if not slots or not robots or move is None:
             self._record.element(Category.LOST, "waits for nothing that is carried over", node)
             return
-        within = Counterpart("", _containing(slots[0]), True)
-        own = self._same_name(node, wait.slot, slots[0], robots[0], within)
+        own = [
+            found
+            for slot in slots
+            if (found := self._same_name(node, wait.slot, slot, robots[0], _own(slot))) is not None
+        ]
         waiting = list(_transitions(robots[0], wait.among, wait.at.get(node.feature, ()), move))
         for transition in waiting:
-            self._set(node, wait.slot, transition, (wait.add,), [own] if own is not None else [])
+            self._set(node, wait.slot, transition, (wait.add,), own)
         if waiting:
             self._record.element(Category.CHANGED, rule.changed or f"becomes {wait.add} of transitions", node)
         else:
             self._record.element(Category.LOST, "no transition stands where it could wait", node)
 
 
-def _containing(element: Element) -> str:
-    """Return the name of the feature that contains an element; an empty one for a root."""
+def _own(element: Element) -> Counterpart:
+    """Return how an element of the same name is looked for in the own owner, and made where it is missing."""
     feature = containing_feature(element)
-    return feature.name if feature is not None else ""
+    return Counterpart("", feature.name if feature is not None else "", make=True)
 
 
 def _transitions(robot: Element, among: str, ends: tuple[str, ...], move: Element) -> Iterator[Element]:

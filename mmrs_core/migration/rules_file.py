@@ -39,6 +39,8 @@ def read_rules(
             rule = _rule(f"{package}.{name}", table, languages, registry)
             _check_source(rule, table, structure)
             rules[rule.source] = rule
+    for rule in rules.values():
+        _check_inherited(rule, rules, packages, registry, structure)
     return rules
 
 
@@ -185,6 +187,20 @@ def _ring(table: Table) -> Ring:
     found = Ring(centre, radius, height, clockwise, points)
     table.done()
     return found
+
+
+def _check_inherited(
+    rule: Rule, rules: Mapping[str, Rule], packages: Table, registry: Registry, structure: Structure
+) -> None:
+    """Do nothing if what rules of supertypes say of features suits the class that a rule leads to."""
+    kind = rule.source.partition("/")[0]
+    above = [rules[name] for name in structure.ancestry(kind) if name in rules]
+    metaclass = registry.metaclass(*rule.to) if rule.to is not None else None
+    for other in above:
+        for feature, use in other.uses.items():
+            table = Table(f"{packages.where}: {rule.source}: {feature}, as {other.source} says", {})
+            for path in use.to if feature not in rule.uses and use.bearing is None else ():
+                _check_path(path, table, metaclass)
 
 
 def _check_source(rule: Rule, table: Table, structure: Structure) -> None:
