@@ -7,7 +7,7 @@ from typing import Protocol
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Unknown, label_of
-from mmrs_core.languages.json_form.tree import Node, Words
+from mmrs_core.languages.json_form.tree import Node, Words, is_text
 from mmrs_core.languages.json_form.unknown import kept
 from mmrs_core.languages.json_form.values import parsed
 from mmrs_core.languages.metaclass import Feature, Metaclass
@@ -85,7 +85,7 @@ class JsonReader:
     def _mapping(self, top: Node, key: str) -> Mapping[str, str]:
         found = top.members.get(key, Node({}))
         entries = found.members if isinstance(found, Node) else {"": None}
-        if all(isinstance(value, str) for value in entries.values()):
+        if all(is_text(value) for value in entries.values()):
             return {name: str(value) for name, value in entries.items()}
         self._draft.fault("XMI010", f"{key}: takes an object of texts", self._tree.line_of(top, key))
         return {}
@@ -136,7 +136,7 @@ class JsonReader:
 
     def _claimed(self, node: Node, owner: Element | None) -> tuple[str, str]:
         claimed = node.members.get(TYPE)
-        if not isinstance(claimed, str):
+        if not is_text(claimed):
             code = "XMI015" if TYPE not in node.members else "XMI010"
             message = f"{TYPE}: the name of a class, such as mission:Mission, is needed"
             self._fault(code, message, node, owner)
@@ -199,7 +199,7 @@ class JsonReader:
     ) -> None:
         if key == ID:
             identifier = node.members[ID]
-            if isinstance(identifier, str) and identifier:
+            if is_text(identifier) and identifier:
                 self._identify(element, node, identifier, own=False)
             else:
                 self._fault("XMI010", f"{ID}: takes a text", node, element, key=key)
@@ -256,7 +256,7 @@ class JsonReader:
             uri = each.members[REF] if isinstance(each, Node) and set(each.members) == {REF} else each
             if isinstance(uri, Node) and feature.containment:
                 children.append((uri, element, feature))
-            elif isinstance(uri, str) and (uri is not each or not feature.containment):
+            elif is_text(uri) and (uri is not each or not feature.containment):
                 line = each.line if isinstance(each, Node) else self._tree.line_of(node, key)
                 self._draft.pending.append(Pending(element, feature, uri, line))
             else:

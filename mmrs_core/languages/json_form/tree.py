@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from bisect import bisect_left
-from typing import NoReturn
+from typing import NoReturn, TypeGuard
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.xmi.events import DEEPEST_NESTING
@@ -33,6 +33,11 @@ class Leaf(str):
     """What stands in an XML element that has neither attributes nor elements inside."""
 
     __slots__ = ()
+
+
+def is_text(value: object) -> TypeGuard[str]:
+    """Return whether a value is a text, and not a number, whose figures are kept as text."""
+    return isinstance(value, str) and not isinstance(value, Number)
 
 
 class Node:
