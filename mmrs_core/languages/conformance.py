@@ -74,7 +74,7 @@ class _Check:
         for value in values:
             yield from _value(element, feature, value)
         if feature.many and feature.unique:
-            yield from _repeated(element, feature, values, lambda value: (type(value), value))
+            yield from _repeated(element, feature, values, _as_java)
         if feature.is_id and values[0] is not None:
             other = self._ids.setdefault(values[0], element)
             if other is not element:
@@ -149,6 +149,11 @@ def _answered(element: Element, feature: Feature, value: Element) -> Iterator[Di
             f"{_owner(element)}: {feature.name} refers to {_owner(value)}, whose {opposite.name} does not"
         )
         yield _fault("ECO011", element, f"{message} refer back")
+
+
+def _as_java(value: object) -> object:
+    """Return what equals the same of another value where Java's equals says so: 0.0 is not -0.0."""
+    return type(value), repr(value) if isinstance(value, float) else value
 
 
 def _repeated(

@@ -19,8 +19,9 @@ def registry_of_files(
 ) -> tuple[Registry, tuple[str, ...]]:
     """Return the metamodels of some .ecore files with those that are installed, and the files' nsURIs.
 
-    A file takes the place of an installed metamodel of the same nsURI. The .ecore files that it refers
-    to by relative paths are taken along where they are there.
+    A file takes the place of an installed metamodel of the same nsURI. The .ecore files that it refers to
+    are taken along where they are there; where a path leads nowhere, as in a workspace of Eclipse projects
+    that were moved, a file of that name beside it.
 
     Args:
         files: the .ecore files.
@@ -44,8 +45,10 @@ def _with_neighbours(files: Iterable[Path]) -> list[Path]:
     found = list(dict.fromkeys(files))
     for file in found:  # grows on the way
         for named in _REFERRED.findall(read_bytes(file)):
-            other = (file.parent / unquote(named.decode("utf-8", "replace"))).resolve()
-            if other not in found and other.is_file():
+            path = unquote(named.decode("utf-8", "replace"))
+            places = (file.parent / path, file.parent / path.rpartition("/")[2])
+            other = next((each.resolve() for each in places if each.is_file()), file)
+            if other not in found:
                 found.append(other)
     return found
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import descendants, held, is_kind, metaclass_of
+from mmrs_core.languages.metamodels.files import registry_of_files
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
-from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.testing.instances import instances_of, models_of
 
@@ -26,11 +26,10 @@ KNOTS = "urn:test:knots"
 
 @pytest.fixture(scope="module")
 def registry():
-    """The core, the plug-ins, a foreign metamodel, and one whose references are all hard to fill."""
+    """The core, the plug-ins, foreign metamodels, and one whose references are all hard to fill."""
     files = sorted((PROJECT / "plugins").glob("*/mmrs_*/metamodels/*.ecore"))
-    sources = [MetamodelSource(f"urn:mmrs:{file.stem}:1.0", file, file.stem) for file in files]
-    zoo = MetamodelSource("urn:test:zoo", PROJECT / "tests" / "fixtures" / "models" / "zoo.ecore", "zoo")
-    return registry_with([*sources, zoo, MetamodelSource(KNOTS, HERE / "knots.ecore", "knots")])
+    fixtures = sorted((PROJECT / "tests" / "fixtures" / "models").glob("*.ecore"))
+    return registry_of_files([*files, *fixtures, HERE / "knots.ecore"], ())[0]
 
 
 def whole(root):
