@@ -33,7 +33,7 @@ MODES: Mapping[str, Mapping[str, int]] = {
     "rover": {"stabilize": 0, "auto": 10, "guided": 15, "return": 11, "brake": 4},
 }
 TYPES = {"copter": mavlink.MAV_TYPE_QUADROTOR, "sub": mavlink.MAV_TYPE_SUBMARINE, "rover": 10}
-_DEVICES = {2000, 203, 183, 181, 182, 211, 195, 197, 115, 1000, 2500, 2501}
+_DEVICES = {2000, 2001, 203, 183, 181, 182, 211, 195, 197, 115, 1000, 2500, 2501}
 
 
 @dataclass(frozen=True, slots=True)
