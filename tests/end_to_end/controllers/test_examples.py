@@ -17,7 +17,7 @@ from mmrs_core.scene import AreaUse
 SLACK = 0.6
 """Metres that a vehicle may be off its leg: the radius in which places count as reached, and a little."""
 
-EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool")
+EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool", "solar-park")
 
 
 @pytest.fixture(scope="module")
