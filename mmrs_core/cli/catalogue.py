@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
 
 
+VERDICT_HINT = (
+    "change the mission and plan again, or the behaviour by hand; what cannot be known may be named in "
+    "acceptedUnknowns"
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """What all faults of a code have in common.
@@ -49,4 +55,19 @@ def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
         entries.append(
             Entry(each.code, each.severity, broken, each.expected, each.hint, subject, fix, plugin)
         )
+    entries += [
+        Entry(
+            each.name,
+            Severity.ERROR,
+            f"violated or unknown: {_plainly(each.title)}",
+            _plainly(each.title),
+            VERDICT_HINT,
+            "Behaviour",
+        )
+        for each in contributions.checks
+    ]
     return {entry.code: entry for entry in sorted(entries, key=lambda entry: entry.code)}
+
+
+def _plainly(title: str) -> str:
+    return title[:1].lower() + title[1:].removesuffix(".")

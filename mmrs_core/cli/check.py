@@ -9,6 +9,7 @@ import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
@@ -20,25 +21,33 @@ def check(
     behaviour: Behaviour,
     context: Context = None,
     robots: Robots = None,
+    sarif: Sarif = None,
     json: Json = False,
 ) -> int:
     """Say what is known of the safety of a behaviour.
 
     It may be planned or written by hand.
+
+    Example: mmrs check field/behaviour.xmi --sarif check.sarif
     """
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop, verdicts_of
+    from mmrs_core.cli.sarif import as_faults, refusals_in, write_sarif
     from mmrs_core.cli.verdict_words import verdict_line, verdict_table
     from mmrs_core.pipeline import refusals
 
     workshop = Workshop(settings_of(call))
     file = behaviour_file(behaviour)
-    loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
+    refuse_two_outputs(sarif, json)
+    with refusals_in(sarif, workshop):
+        loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
     verdicts = verdicts_of(workshop, loaded.program, loaded.place)
     against = refusals(verdicts, loaded.program)
+    if sarif is not None:
+        write_sarif(sarif, as_faults(verdicts, against), workshop.contributions)
     if json:
         say_json({"safe": not against, "verdicts": verdicts, "against": against})
-    else:
+    elif sarif != STANDARD_OUTPUT:
         for line in verdict_table(verdicts):
             say(line)
         say(f"{file}: {_in_all(verdicts, against)}")

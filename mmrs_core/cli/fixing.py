@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import typer
@@ -38,13 +38,13 @@ def _lines(change: Change) -> Iterator[str]:
         yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
-def show(repair: Repair, say_line: Callable[..., None] = say) -> None:
+def show(repair: Repair) -> None:
     """Print the diff, what it mends, and what it cannot mend."""
     for line in difference(repair.changes).splitlines():
         heading = line.startswith(("+++", "---"))
-        say_line(line, "1" if heading else _COLOURS.get(line[:1], ""))
+        say(line, "1" if heading else _COLOURS.get(line[:1], ""))
     for proposal in repair.applied:
-        say_line(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
+        say(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
     for proposal in repair.refused:
         tell(f"{_where(proposal)}: not mended: that would bring other errors [{proposal.fault.code}]")
 

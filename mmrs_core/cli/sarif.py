@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from mmrs_core.cli.output import say_json
+from mmrs_core.cli.reports import STANDARD_OUTPUT
 from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Proposal
     from mmrs_core.cli.catalogue import Entry
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.registry import Contributions
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -127,6 +132,38 @@ def _place(data: bytes, offset: int) -> tuple[int, int]:
     return data.count(b"\n", 0, offset) + 1, len(data[start:offset].decode("utf-8", "replace")) + 1
 
 
+def as_faults(verdicts: Iterable[Verdict], against: Container[Verdict]) -> tuple[Diagnostic, ...]:
+    """Return what stands against a behaviour, and what is not known of it, as faults.
+
+    Args:
+        verdicts: all of them.
+        against: those that make the behaviour unsafe.
+    """
+    from mmrs_core.cli.verdict_words import verdict_line
+
+    told = (each for each in verdicts if each in against or each.status.value == "unknown")
+    return tuple(
+        Diagnostic(
+            each.property,
+            Severity.ERROR if each in against else Severity.NOTE,
+            verdict_line(each),
+            each.place,
+        )
+        for each in told
+    )
+
+
+@contextmanager
+def refusals_in(file: Path | None, workshop: Workshop) -> Iterator[None]:
+    """Write the faults of a model that is refused inside into a SARIF file, too."""
+    try:
+        yield
+    except InvalidModelError as error:
+        if file is not None:
+            write_sarif(file, error.diagnostics, workshop.contributions)
+        raise
+
+
 def write_sarif(
     file: Path,
     faults: Sequence[Diagnostic],
@@ -141,7 +178,7 @@ def write_sarif(
     from mmrs_core.cli.catalogue import catalogue_of
 
     log = sarif_of(faults, catalogue_of(contributions), proposals)
-    if file == Path("-"):
+    if file == STANDARD_OUTPUT:
         say_json(log)
     else:
         replace_file(file, (json.dumps(log, ensure_ascii=False, indent=2) + "\n").encode())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -10,16 +11,13 @@ import typer
 from mmrs_core.cli.any_model import Metamodels
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
+from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Diagnosis, Proposal, Repair
     from mmrs_core.diagnostics import Diagnostic
 
-Sarif = Annotated[
-    Path | None,
-    typer.Option("--sarif", metavar="FILE", help="Write the faults in SARIF 2.1.0; - for standard output."),
-]
 _Fix = Annotated[bool, typer.Option("--fix", help="Mend what has one right answer: shown as a diff first.")]
 _Yes = Annotated[bool, typer.Option("--yes", help="With --fix: change the files without asking.")]
 _DryRun = Annotated[bool, typer.Option("--dry-run", help="With --fix: only show what would change.")]
@@ -51,8 +49,7 @@ def validate(
 
     if (yes or dry_run) and not fix:
         raise typer.BadParameter("--yes and --dry-run go with --fix")
-    if sarif == Path("-") and (json or fix):
-        raise typer.BadParameter("--sarif - is the whole of standard output; write SARIF to a file instead")
+    refuse_two_outputs(sarif, json or fix)
     workshop = Workshop(settings_of(call))
     subject = Subject(workshop, project, context, robot_files(robots), tuple(metamodel or ()))
     found, changed = subject.examined(), False
@@ -60,8 +57,9 @@ def validate(
     report(found.faults)
     repair = repairer.repair(found) if fix else None
     if repair is not None:
-        show(repair, tell if json else say)
-        changed = agreed(repair, yes=yes, dry_run=dry_run)
+        if not json:
+            show(repair)
+        changed = agreed(repair, yes=yes, dry_run=dry_run or (json and not yes))
         if changed:
             write(repair)
             found = repair.diagnosis
@@ -70,7 +68,7 @@ def validate(
         write_sarif(sarif, found.faults, workshop.contributions, proposals)
     if json:
         say_json(_as_json(found, proposals, repair, changed))
-    elif sarif != Path("-"):
+    elif sarif != STANDARD_OUTPUT:
         say(_summary(project, found, repair, changed))
         _tell_of(proposals, project, asked=fix)
     return 0 if _is_valid(found) else 1
@@ -99,7 +97,8 @@ def _counts(faults: tuple[Diagnostic, ...]) -> str:
 def _tell_of(proposals: tuple[Proposal, ...], project: Path, *, asked: bool) -> None:
     if proposals and not asked:
         count = len(proposals)
-        tell(f"'mmrs validate {project} --fix' mends {counted(count, 'fault')}, and shows how first")
+        command = f"mmrs validate {quote(str(project))} --fix"
+        tell(f"{command}: mends {counted(count, 'fault')}, and shows how first")
 
 
 def _as_json(

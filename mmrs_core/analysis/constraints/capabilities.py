@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
-from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding, listed
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, finding, guessed, listed
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
@@ -28,8 +28,7 @@ def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(robot, "type")
     if name and name not in models.robots:
         known = f"known are {listed(sorted(models.robots))}"
-        guess = nearest(name, models.robots)
-        yield finding(robot, f"its type {name!r} is not known", f"{known}; {guess}" if guess else known)
+        yield finding(robot, f"its type {name!r} is not known", guessed(known, name, models.robots))
 
 
 def devices_of(robot_type: Element | None) -> Mapping[str, frozenset[str]]:

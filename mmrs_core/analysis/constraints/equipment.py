@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.analysis.constraints.capabilities import devices_of
-from mmrs_core.analysis.constraints.findings import BEHAVIOUR, finding, listed
+from mmrs_core.analysis.constraints.findings import BEHAVIOUR, finding, guessed, listed
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, container_of, descendants, is_kind
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.languages.naming import nearest
 
 
 def _type_of(robot: Element, models: ModelSet) -> Element | None:
@@ -29,9 +28,8 @@ def _type_around(element: Element, models: ModelSet) -> Element | None:
 def _unknown_type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(robot, "typeName")
     if name and models.robots and name not in models.robots:
-        guess = nearest(name, models.robots)
         known = f"known are {listed(sorted(models.robots))}"
-        yield finding(robot, f"its type {name!r} is not known", f"{known}; {guess}" if guess else known)
+        yield finding(robot, f"its type {name!r} is not known", guessed(known, name, models.robots))
 
 
 def _without_device(element: Element, models: ModelSet) -> Iterator[Finding]:
@@ -43,7 +41,7 @@ def _without_device(element: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(
             element,
             f"{text(robot_type, 'name')!r} has no device {device!r}",
-            f"its devices are {listed(sorted(known))}",
+            guessed(f"its devices are {listed(sorted(known))}", device, known),
         )
 
 
@@ -58,7 +56,7 @@ def _unsupported(action: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(
             action,
             f"device {device!r} does not support the action {name!r}",
-            f"it supports {listed(sorted(supported))}",
+            guessed(f"it supports {listed(sorted(supported))}", name, supported),
         )
 
 
@@ -71,7 +69,7 @@ def _unknown_parameter(action: Element, models: ModelSet) -> Iterator[Finding]:
             yield finding(
                 pair,
                 f"the action {text(action, 'actionName')!r} has no parameter {key!r}",
-                f"it has {listed(sorted(known))}",
+                guessed(f"it has {listed(sorted(known))}", key, known),
             )
 
 

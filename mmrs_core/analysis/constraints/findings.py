@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, Unknown, label_of, metaclass_of, path_of
 from mmrs_core.languages.grounding.values import text
+from mmrs_core.languages.naming import nearest
 
 MISSION = "urn:mmrs:mission:1.0"
 CONTEXT = "urn:mmrs:context:1.0"
@@ -31,6 +32,12 @@ def finding(element: Element, message: str, hint: str = "") -> Finding:
 def listed(names: Iterable[str]) -> str:
     """Return names for people: quoted, and ``none`` where there are none."""
     return ", ".join(f"'{name}'" for name in names) or "none"
+
+
+def guessed(known: str, name: str, names: Iterable[str]) -> str:
+    """Return a hint that says what is known, and which of the names a misspelt one is nearest to."""
+    guess = nearest(name, names)
+    return f"{known}; {guess}" if guess else known
 
 
 def repeats(elements: Iterable[Element], key: str, what: str) -> Iterable[Finding]:

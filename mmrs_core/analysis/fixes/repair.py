@@ -65,12 +65,14 @@ class Repair:
 
     Attributes:
         changes: of files, by name.
+        texts: what files are to hold, by real path.
         applied: what was mended, in order.
         refused: what was not, because it would bring other errors.
         diagnosis: what is left.
     """
 
     changes: tuple[Change, ...]
+    texts: Mapping[Path, bytes]
     applied: tuple[Proposal, ...]
     refused: tuple[Proposal, ...]
     diagnosis: Diagnosis
@@ -129,13 +131,14 @@ class Repairer:
         )
         return tuple(dict.fromkeys(fix.edits(wrong)))
 
-    def repair(self, now: Diagnosis) -> Repair:
+    def repair(self, now: Diagnosis, unsaved: Mapping[Path, bytes] | None = None) -> Repair:
         """Return what the project's files are to hold so that they have fewer faults, and no new ones.
 
         Args:
             now: the diagnosis of the files as they are.
+            unsaved: what files hold that are not saved yet, by real path.
         """
-        texts = dict[Path, bytes]()
+        texts = dict(unsaved or {})
         applied: list[Proposal] = []
         refused: dict[tuple[str, str], Proposal] = {}
         for _ in range(_MOST_ROUNDS):
@@ -152,7 +155,8 @@ class Repairer:
                     break
                 if len(batch) == 1:
                     refused[_key(batch[0].fault)] = batch[0]
-        return Repair(tuple(_changes(texts, now)), tuple(applied), tuple(refused.values()), now)
+        changes = tuple(_changes(texts, now))
+        return Repair(changes, texts, tuple(applied), tuple(refused.values()), now)
 
     def _tried(
         self, now: Diagnosis, texts: Mapping[Path, bytes], batch: Sequence[Proposal]
