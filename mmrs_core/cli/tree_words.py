@@ -59,10 +59,13 @@ def line_of(element: Element) -> str:
 
 
 def title_of(element: Element) -> str:
-    """Return class and name of an element, as far as it has one."""
+    """Return class and name of an element, or else the first text that it says."""
     if isinstance(element, Unknown):
         return _unknown(element)
-    label = label_of(element)
+    texts = (
+        get(element, feature.name) for feature in metaclass_of(element).features if not feature.is_reference
+    )
+    label = label_of(element) or next((text for text in texts if isinstance(text, str) and text), "")
     return f"{metaclass_of(element).name}{label and f' {value_words(label)}'}"
 
 
