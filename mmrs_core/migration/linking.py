@@ -112,7 +112,7 @@ class Linker:
     ) -> Element | None:
         name = label_of(element)
         kind = metaclass_of(owner).by_name.get(other.within)
-        if kind is None or not kind.type.accepts(element):
+        if kind is None or not kind.containment or not kind.type.accepts(element):
             reason = f"{type(owner).__name__} has no {type(element).__name__} of its own"
             self._record.value(Category.LOST, reason, node, feature)
             return None
@@ -120,7 +120,7 @@ class Linker:
         if element in present:
             return element
         found = next((each for each in present if label_of(each) == name), None)
-        if found is None and other.make:
+        if found is None and other.make and "name" in metaclass_of(element).by_name:
             found = self._registry.create(*metaclass_of(element).key, name=name)
             getattr(owner, kind.attribute).append(found)
             reason = f"{label_of(owner)!r} had no {type(found).__name__} of this name, so one is made for it"
