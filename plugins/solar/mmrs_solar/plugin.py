@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
@@ -27,6 +28,14 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
     from mmrs_solar.constraints import CONSTRAINTS
 
     return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_fixes() -> tuple[Fix, ...]:
+    """Contribute what mends figures that can only be meant in one way."""
+    from mmrs_solar.fixes import FIXES
+
+    return FIXES
 
 
 @hookimpl
