@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from mmrs_core.languages.element import Element, Source, held, metaclass_of, root_of
-from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.element import Element, Source, held, holds, metaclass_of, root_of
+from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.hrefs import relative_href
 
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
@@ -126,9 +126,9 @@ def _identifier(element: Element) -> str | None:
     if type(element)._mmrs_metaclass is None:
         return None
     for feature in metaclass_of(element).features:
-        if feature.is_id:
+        if feature.is_id and holds(element, feature) and not isinstance(feature.type, Metaclass):
             for value in held(element, feature):
-                return str(value)
+                return feature.type.render(value) if feature.type.accepts(value) else None
     return None
 
 

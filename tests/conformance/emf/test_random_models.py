@@ -19,6 +19,7 @@ from mmrs_core.languages.element import descendants, metaclass_of
 from mmrs_core.languages.metamodels.export import export_metamodels, schema_locations
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
+from mmrs_core.languages.xmi import quick_reader, quick_writer
 from mmrs_core.testing.instances import instances_of
 from mmrs_core.testing.values import WORDS
 
@@ -44,6 +45,13 @@ RANDOM = settings(
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("models")
+
+
+@pytest.fixture(autouse=True)
+def compiled_early(monkeypatch):
+    """Have small models go through the compiled readers and writers of large ones as well."""
+    monkeypatch.setattr(quick_reader, "_OFTEN", 2)
+    monkeypatch.setattr(quick_writer, "_OFTEN", 2)
 
 
 @pytest.fixture(scope="module")

@@ -145,6 +145,14 @@ def test_an_id_that_is_a_word_refers(suite):
     assert b'next="n.1"' in to_xmi([named], suite)
 
 
+def test_an_id_that_is_not_written_does_not_refer(suite):
+    numbered = suite.create("urn:test:suite", "Numbered", number=0)
+    numbered.next = numbered
+    text = to_xmi([numbered], suite)
+    assert b"number" not in text
+    assert b'next="/"' in text
+
+
 @pytest.fixture
 def split(suite, tmp_path):
     """Two files: the first contains the root of the second."""
