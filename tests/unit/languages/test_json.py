@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
+import jsonschema
 import pytest
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages import json_form
 from mmrs_core.languages.element import held, place_of
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.writing import to_json, to_xmi, write_model
@@ -305,3 +308,27 @@ def test_a_deep_model_is_written_and_read(zoo):
         inner = held(inner, inner._mmrs_metaclass.by_name["cubs"])[0]
     text = to_json([root], zoo)
     assert to_json(read_text(text, "a.json", zoo).roots, zoo) == text
+
+
+SCHEMA = json.loads((Path(json_form.__file__).parent / "model.schema.json").read_text(encoding="utf-8"))
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples").rglob("*.xmi"))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: "/".join(path.parts[-3:]))
+def test_every_example_as_json_is_valid_by_the_schema(everything, example):
+    text = to_json(read_model(example, everything).roots, everything, file=example)
+    jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text))
+
+
+def test_several_roots_and_unknown_elements_are_valid_by_the_schema(core, zoo):
+    roots = [zoo.create("urn:test:zoo", "Lion", name="a"), zoo.create("urn:test:zoo", "Zoo", name="b")]
+    unknown = read_text(to_xmi(roots[:1], zoo), "a.xmi", core).roots
+    for text in (to_json(roots, zoo), to_json(unknown, core), to_json([], zoo)):
+        jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text))
+
+
+@pytest.mark.parametrize(
+    "text", ['{"a": 1}', '{"$type": "Lion"}', '{"$type": "z:L", "a": {"$ref": "x", "b": 1}}', "[]"]
+)
+def test_what_is_no_model_is_invalid_by_the_schema(text):
+    assert not jsonschema.Draft202012Validator(SCHEMA).is_valid(json.loads(text))
