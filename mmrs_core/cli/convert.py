@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_mistake
-from mmrs_core.cli.output import counted, report, say, say_json
+from mmrs_core.cli.output import counted, report, say, say_file, say_json
 from mmrs_core.cli.schema_places import SchemaLocation, places_in
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError, UnsupportedError
@@ -61,7 +60,7 @@ def convert(
     text = _text(found, source, target, form, schema_location)
     count = sum(1 for _ in found.model.elements())
     if target is None:
-        sys.stdout.write(text.decode())
+        say_file(text)
         return 0
     from mmrs_core.languages.writing import replace_file
 

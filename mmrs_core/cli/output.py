@@ -68,6 +68,21 @@ def say_json(value: object) -> None:
     _write(sys.stdout, json.dumps(plain(value), ensure_ascii=False, indent=2, allow_nan=False) + "\n")
 
 
+def say_file(text: bytes) -> None:
+    """Print a file, byte for byte.
+
+    Raises:
+        typer.Exit: if nobody reads any more.
+    """
+    sys.stdout.flush()
+    try:
+        sys.stdout.buffer.write(text)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        _close(sys.stdout)
+        raise typer.Exit(OUTPUT_CLOSED) from None
+
+
 def report(diagnostics: Iterable[Diagnostic]) -> None:
     """Print diagnostics to standard error, in colour where a person reads them."""
     for diagnostic in diagnostics:

@@ -17,6 +17,7 @@ from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document
 
+_ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be")
 MIGRATED, LOST = "MIG001", "MIG002"
 
 
@@ -34,7 +35,8 @@ class XmiTree:
 
 def may_be_old(data: bytes, registry: Registry) -> bool:
     """Return whether a file mentions a version of a language from which a migration leads away."""
-    return any(ns_uri.encode() in data for ns_uri in registry.chains)
+    texts = (ns_uri.encode(form) for ns_uri in registry.chains for form in _ENCODINGS)
+    return any(text in data for text in texts)
 
 
 def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:

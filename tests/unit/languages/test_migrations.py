@@ -239,3 +239,9 @@ def test_a_feature_without_its_class_is_a_mistake():
 )
 def test_json_that_only_mentions_an_old_version_is_read_as_ever(fair, text):
     assert "XMI015" in [f.code for f in read_text(text, "a.json", fair(*STEPS)).diagnostics]
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+def test_old_models_in_other_encodings_are_migrated(fair, encoding):
+    text = OLD.decode().replace('<?xml version="1.0" encoding="UTF-8"?>\n', "").encode(encoding)
+    assert read_text(text, "old.xmi", fair(*STEPS)).roots[0].kites[0].label == "a b"
