@@ -12,10 +12,11 @@ from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element, held, metaclass_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.registry import Registry
-from mmrs_core.testing.kinds import Kinds, Step, fits, kinds_below, needed_references
+from mmrs_core.testing.kinds import Kinds, Step, all_kinds, fits, kinds_below, needed_references
 from mmrs_core.testing.values import Values, values_of, writable
 
 _MOST_ROUNDS = 20
+_NO_ELEMENT = "{}#{}: no class that elements can be made of"
 _MAP_ENTRY = (ECORE, "EStringToStringMapEntry")
 
 
@@ -48,6 +49,37 @@ def instances_of(
     return tree()
 
 
+def drafts_of(
+    registry: Registry, ns_uri: str, name: str = "", *, levels: int = 2, values: Values | None = None
+) -> st.SearchStrategy[Element]:
+    """Draw elements of a metaclass that may be half done, as models are while somebody works on them.
+
+    Values are of their types and references lead into the tree, but anything that must be there may be
+    missing.
+
+    Args:
+        registry: the metamodels.
+        ns_uri: of the metamodel whose class is wanted.
+        name: of the class; those of its subclasses are drawn as well. Empty: any class of the metamodel.
+        levels: as for `instances_of`.
+        values: as for `instances_of`.
+
+    Raises:
+        ValueError: if there is no such class, or no element can be of it.
+    """
+    candidates = sorted(_candidates(registry, ns_uri, name), key=lambda each: each.key)
+    if not candidates:
+        raise ValueError(_NO_ELEMENT.format(ns_uri, name))
+    kinds = Kinds(all_kinds(registry))
+
+    @st.composite
+    def tree(draw: st.DrawFn) -> Element:
+        root = draw(st.sampled_from(candidates))
+        return _Growth(draw, kinds, levels, values, whole=False).forest([root])[0]
+
+    return tree()
+
+
 def models_of(
     registry: Registry, *roots: tuple[str, str], levels: int = 2, values: Values | None = None
 ) -> st.SearchStrategy[tuple[Element, ...]]:
@@ -75,15 +107,16 @@ def models_of(
     return forest()
 
 
+def _candidates(registry: Registry, ns_uri: str, name: str) -> list[Metaclass]:
+    if not name:
+        return [kind for kind in registry.package(ns_uri).metaclasses if kind.implementation]
+    wanted = registry.metaclass(ns_uri, name)
+    return [kind for kind in all_kinds(registry) if fits(kind, wanted, ns_uri)]
+
+
 def _roots(registry: Registry, ns_uri: str, name: str) -> dict[Metaclass, Kinds]:
-    if name:
-        wanted = registry.metaclass(ns_uri, name)
-        candidates = [kind for package in registry.packages for kind in package.metaclasses]
-        candidates = [kind for kind in candidates if kind.implementation and fits(kind, wanted, ns_uri)]
-    else:
-        candidates = [kind for kind in registry.package(ns_uri).metaclasses if kind.implementation]
-    found, reason = {}, f"{ns_uri}#{name}: no class that elements can be made of"
-    for kind in candidates:
+    found, reason = {}, _NO_ELEMENT.format(ns_uri, name)
+    for kind in _candidates(registry, ns_uri, name):
         try:
             found[kind] = kinds_below(registry, kind)
         except ValueError as fault:
@@ -96,8 +129,11 @@ def _roots(registry: Registry, ns_uri: str, name: str) -> dict[Metaclass, Kinds]
 class _Growth:
     """Trees while they grow."""
 
-    def __init__(self, draw: st.DrawFn, kinds: Kinds, levels: int, values: Values | None) -> None:
+    def __init__(
+        self, draw: st.DrawFn, kinds: Kinds, levels: int, values: Values | None, *, whole: bool = True
+    ) -> None:
         self._draw = draw
+        self._whole = whole
         self._kinds = kinds
         self._levels = levels
         self._values = values
@@ -106,10 +142,10 @@ class _Growth:
 
     def forest(self, roots: Iterable[Metaclass]) -> tuple[Element, ...]:
         made = tuple(self._grow(root, self._levels) for root in roots)
-        for _ in range(_MOST_ROUNDS):
+        for _ in range(_MOST_ROUNDS if self._whole else 0):
             for element, feature in list(self._unmet()):
                 self._meet(element, feature)
-        if any(self._unmet()):
+        if self._whole and any(self._unmet()):
             reject()
         for element in self._elements:
             for feature in metaclass_of(element).features:
@@ -130,15 +166,15 @@ class _Growth:
     def _fill(self, element: Element, feature: Feature, room: int) -> None:
         assert isinstance(feature.type, Metaclass)  # it is a containment
         choices = self._kinds.growable(feature.type, feature.owner.ns_uri, room - 1)
-        most = feature.lower
+        least = most = feature.lower if self._whole else 0
         if room > 0 and choices and feature.stored:
-            most += 2 if feature.upper < 0 else min(2, feature.upper - feature.lower)
-        for _ in range(self._draw(st.integers(feature.lower, most)) if choices else 0):
+            most += 2 if feature.upper < 0 else min(2, feature.upper - least)
+        for _ in range(self._draw(st.integers(least, most)) if choices else 0):
             _put(element, feature, self._grow(self._draw(st.sampled_from(choices)), max(room - 1, 0)))
 
     def _set(self, element: Element, feature: Feature) -> None:
         is_key = feature.name == "key" and metaclass_of(element).key == _MAP_ENTRY
-        must = is_key or (feature.required and (feature.many or feature.default is None))
+        must = is_key or (self._whole and feature.required and (feature.many or feature.default is None))
         if not must and not self._draw(st.booleans()):
             return
         drawn = values_of(feature, self._values)

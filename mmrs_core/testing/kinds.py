@@ -106,15 +106,18 @@ class Kinds:
         return min((heights[each] for each in self.fitting(feature.type, feature.owner.ns_uri)), default=inf)
 
 
+def all_kinds(registry: Registry) -> list[Metaclass]:
+    """Return every class that elements can be made of."""
+    return [kind for package in registry.everything for kind in package.metaclasses if kind.implementation]
+
+
 def kinds_below(registry: Registry, *roots: Metaclass) -> Kinds:
     """Return the classes that valid models with such roots can hold.
 
     Raises:
         ValueError: if there is no valid model with such roots; says why.
     """
-    concrete = [
-        kind for package in registry.everything for kind in package.metaclasses if kind.implementation
-    ]
+    concrete = all_kinds(registry)
     while True:
         kinds = Kinds(concrete)
         for root in roots:

@@ -13,7 +13,7 @@ from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
 from mmrs_core.testing.conformance.declared import Conformance, declared
-from mmrs_core.testing.instances import instances_of, models_of
+from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 from mmrs_core.testing.models import breaches, findings
 
 Roots = Callable[[Registry], Iterable[Element]]
@@ -68,27 +68,20 @@ class ConstraintConformance(Conformance):
         """What is right is not reported."""
         assert breaches(constraint, self.cases[constraint.code].kept(registry)) == []
 
-    def test_elements_without_any_feature_set_crash_no_constraint(
-        self, constraint: Constraint, registry: Registry
-    ) -> None:
-        """Models are checked while they are half done."""
-        wanted = registry.metaclass(*constraint.metaclass)
-        for package in registry.packages:
-            for metaclass in package.metaclasses:
-                if wanted.key in metaclass.ancestry and metaclass.implementation:
-                    list(findings(constraint, [metaclass.interface()]))
+    def test_half_a_model_crashes_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
+        """Models are checked while somebody works on them."""
+        self._crashes_with_no(
+            constraint, drafts_of(registry, *constraint.metaclass).map(lambda root: (root,))
+        )
 
     def test_random_models_crash_no_constraint(self, constraint: Constraint, registry: Registry) -> None:
-        """Whatever a model holds, a constraint yields findings with places."""
-
-        @RELAXED
-        @given(self._random_models(constraint, registry))
-        def law(roots: Sequence[Element]) -> None:
-            for finding in findings(constraint, roots):
-                assert isinstance(finding.element, Element)
-                assert finding.message
-
-        law()
+        """Whatever a valid model holds; whole projects, where no element of the class can stand alone."""
+        try:
+            alone = instances_of(registry, *constraint.metaclass)
+        except ValueError:
+            self._crashes_with_no(constraint, models_of(registry, *WHOLE))
+        else:
+            self._crashes_with_no(constraint, alone.map(lambda root: (root,)))
 
     def test_the_documentation_tells_what_must_hold_and_how_to_mend_it(self, constraint: Constraint) -> None:
         """The title is a sentence without a full stop; the hint says what to do."""
@@ -96,11 +89,14 @@ class ConstraintConformance(Conformance):
         assert not constraint.title.endswith(".")
         assert constraint.hint
 
-    def _random_models(
-        self, constraint: Constraint, registry: Registry
-    ) -> st.SearchStrategy[Sequence[Element]]:
-        """Draw elements of the constraint's class; whole projects where none can stand alone."""
-        try:
-            return instances_of(registry, *constraint.metaclass).map(lambda root: (root,))
-        except ValueError:
-            return models_of(registry, *WHOLE)
+    def _crashes_with_no(self, constraint: Constraint, models: st.SearchStrategy[Sequence[Element]]) -> None:
+        """Draw models; whatever the constraint finds in them has a place and a message."""
+
+        @RELAXED
+        @given(models)
+        def law(roots: Sequence[Element]) -> None:
+            for finding in findings(constraint, roots):
+                assert isinstance(finding.element, Element)
+                assert finding.message
+
+        law()

@@ -14,7 +14,7 @@ from mmrs_core.languages.metamodels.files import registry_of_files
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.writing import to_xmi
-from mmrs_core.testing.instances import instances_of, models_of
+from mmrs_core.testing.instances import drafts_of, instances_of, models_of
 
 HERE = Path(__file__).parent
 PROJECT = HERE.parents[2]
@@ -140,3 +140,26 @@ def test_elements_that_need_others_are_drawn_beside_them(registry, data):
 def test_models_whose_needs_nothing_meets_are_refused(registry):
     with pytest.raises(ValueError, match="cannot stand inside it"):
         models_of(registry, (KNOTS, "Knot"), (KNOTS, "Strand"))
+
+
+@RELAXED
+@given(data=st.data())
+def test_drafts_lack_values_but_hold_no_wrong_ones(registry, data):
+    package = data.draw(st.sampled_from(registry.packages))
+    root = data.draw(drafts_of(registry, package.ns_uri))
+    codes = {fault.code for fault in check_conformance(Model("m", (root,)), registry)}
+    assert codes <= {"ECO001", "ECO002"}
+
+
+@pytest.mark.parametrize("code", ["ECO001", "ECO002"])
+def test_drafts_lack_whatever_may_be_missing(registry, code):
+    ropes = drafts_of(registry, KNOTS, "Rope")
+    assert found(
+        ropes,
+        lambda rope: code in {fault.code for fault in check_conformance(Model("m", (rope,)), registry)},
+    )
+
+
+def test_even_what_cannot_stand_alone_has_drafts(registry):
+    drafts = drafts_of(registry, "urn:mmrs:mission:1.0", "TaskDependency")
+    assert found(drafts, lambda dependency: dependency.to is None)
