@@ -63,16 +63,14 @@ def _vertices(name: str) -> Callable[[Wrong], Iterator[Edit]]:
 
 
 def _dependency(wrong: Wrong) -> Iterator[Edit]:
-    """Take away dependencies that say again, to the letter, what an earlier one says."""
-    owner = wrong.tag.parent if wrong.tag.name == "taskDependencies" else wrong.tag
-    if owner is None or referred_to("taskDependencies", wrong.markup):
+    """Take away a dependency that says again, to the letter, what an earlier one says."""
+    tag = wrong.tag
+    if tag.parent is None or tag.children or referred_to("taskDependencies", wrong.markup):
         return
-    seen: set[object] = set()
-    for tag in owner.named("taskDependencies"):
-        said = tuple((name, _text(tag, name)) for name in ("from", "to", "condition"))
-        if said in seen and not tag.children and len(tag.attributes) == sum(bool(v) for _, v in said):
-            yield without(tag, wrong.markup)
-        seen.add(said)
+    said = {(each.name, each.value) for each in tag.attributes}
+    before = (each for each in tag.parent.named(tag.name) if each.begin < tag.begin)
+    if any({(each.name, each.value) for each in other.attributes} == said for other in before):
+        yield without(tag, wrong.markup)
 
 
 def _circle(wrong: Wrong) -> Iterator[Edit]:

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong
-from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Unknown, descendants, path_of
+from mmrs_core.languages.element import Element, Unknown
+from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.languages.xmi.markup import Markup
 
-_MOST_ROUNDS = 8
-"""Mending a fault may uncover others; what takes longer is better looked at by a person."""
+_MOST_TRIALS = 100
+"""How often a project is diagnosed anew; what takes longer is better looked at by a person."""
+_STEP = re.compile(r"/([^/\[\]]+)(?:\[([0-9]+)\])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +111,7 @@ class Repairer:
         """
         files = {str(model.file): model for model in diagnosis.models if isinstance(model.file, Path)}
         markups: dict[Path, Markup | None] = {}
+        found: dict[tuple[str, Place], tuple[Edit, ...]] = {}
         for fault in diagnosis.faults:
             fix, model = self._fixes.get(fault.code), files.get(fault.place.file)
             if fix is None or model is None:
@@ -115,9 +119,11 @@ class Repairer:
             file = Path(fault.place.file).resolve()
             if file not in markups:
                 markups[file] = _markup(file, texts or {})
-            edits = self._edits(fix, fault, model, markups[file], diagnosis)
-            if edits:
-                yield Proposal(fault, fix.title, file, edits)
+            about = fault.code, fault.place
+            if about not in found:
+                found[about] = self._edits(fix, fault, model, markups[file], diagnosis)
+            if found[about]:
+                yield Proposal(fault, fix.title, file, found[about])
 
     def _edits(
         self, fix: Fix, fault: Diagnostic, model: Model, markup: Markup | None, diagnosis: Diagnosis
@@ -141,19 +147,25 @@ class Repairer:
         texts = dict(unsaved or {})
         applied: list[Proposal] = []
         refused: dict[tuple[str, str], Proposal] = {}
-        for _ in range(_MOST_ROUNDS):
+        trials = 0
+        while trials < _MOST_TRIALS:
             found = [each for each in self.proposals(now, texts) if _key(each.fault) not in refused]
             # what hides a part of the model comes first: the part may have faults of its own
             wanted = [each for each in found if _is_reading(each.fault)] or found
             if not wanted:
                 break
-            for batch in (wanted, *([each] for each in wanted if len(wanted) > 1)):
+            pending = [wanted]
+            while pending and trials < _MOST_TRIALS:
+                batch, trials = pending.pop(), trials + 1
                 tried = self._tried(now, texts, batch)
                 if tried is not None:
                     now, texts = tried
                     applied += batch
-                    break
-                if len(batch) == 1:
+                    break  # what else was proposed may stand in another place now
+                half = len(batch) // 2
+                if half:
+                    pending += [batch[half:], batch[:half]]
+                else:
                     refused[_key(batch[0].fault)] = batch[0]
         changes = tuple(_changes(texts, now))
         return Repair(changes, texts, tuple(applied), tuple(refused.values()), now)
@@ -198,11 +210,21 @@ def _markup(file: Path, texts: Mapping[Path, bytes]) -> Markup | None:
 
 
 def _element(model: Model, path: str) -> Element | None:
+    """Return the first element with that path."""
     for root in model.roots:
-        for element in (root, *descendants(root)) if path.strip("/") else (root,):
-            if path_of(element) == (path or "/") and not isinstance(element, Unknown):
-                return element
+        element: Element | None = root
+        for step in _STEP.finditer(path):
+            element = _inside(element, step[1], step[2]) if element is not None else None
+        if element is not None and not isinstance(element, Unknown):
+            return element
     return None
+
+
+def _inside(element: Element, name: str, index: str | None) -> Element | None:
+    if index is None:
+        return child(element, name)
+    inside = children(element, name)
+    return inside[int(index)] if int(index) < len(inside) else None
 
 
 def _is_reading(fault: Diagnostic) -> bool:
