@@ -13,9 +13,9 @@ from mmrs_core.languages import robot as robots
 from mmrs_core.languages.modelset import robot_files_in
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import replace_file, to_xmi
-from mmrs_core.migration.mapping_file import read_mapping
 from mmrs_core.migration.migrate import Migration
 from mmrs_core.migration.migrate import migrate as migrated
+from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.resources import shipped
 
 DEFAULT_MAPPING = "flyaq-2015.toml"

@@ -9,19 +9,19 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building import Builder
-from mmrs_core.migration.circling import draw_ring
-from mmrs_core.migration.documents import Opened, open_document
+from mmrs_core.migration.building.builder import Builder
+from mmrs_core.migration.building.circling import draw_ring
+from mmrs_core.migration.building.linking import Linker
+from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Finding
-from mmrs_core.migration.linking import Linker
-from mmrs_core.migration.mapping import DialectMapping
-from mmrs_core.migration.metamodels import metamodels_for, structure_of
-from mmrs_core.migration.nodes import Document
 from mmrs_core.migration.outputs import ROBOT_TYPE, Made, Output, outputs_of
-from mmrs_core.migration.reading import Reader
 from mmrs_core.migration.recording import Record
-from mmrs_core.migration.robot_types import RobotTypes
-from mmrs_core.migration.structure import Structure
+from mmrs_core.migration.rules.mapping import DialectMapping
+from mmrs_core.migration.sources.documents import Opened, open_document
+from mmrs_core.migration.sources.metamodels import metamodels_for, structure_of
+from mmrs_core.migration.sources.nodes import Document
+from mmrs_core.migration.sources.reading import Reader
+from mmrs_core.migration.sources.structure import Structure
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from mmrs_core.languages.grounding.values import text
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.nodes import Node
 from mmrs_core.migration.recording import Record
+from mmrs_core.migration.sources.nodes import Node
 from mmrs_core.migration.subsets import says_no_more
 
 ROBOT_TYPE = ("urn:mmrs:robot:1.0", "Robot")

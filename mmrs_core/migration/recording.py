@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mmrs_core.migration.findings import Category, Finding
-from mmrs_core.migration.nodes import Link, Node, Text
+from mmrs_core.migration.sources.nodes import Link, Node, Text
 
 
 class Record:

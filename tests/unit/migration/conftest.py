@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.languages.element import Element
-from mmrs_core.migration.mapping_file import read_mapping
 from mmrs_core.migration.migrate import migrate
+from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.resources import shipped
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"

@@ -3,7 +3,7 @@
 import pytest
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.migration.documents import open_document
+from mmrs_core.migration.sources.documents import open_document
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import pytest
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.migration.mapping_file import read_mapping
+from mmrs_core.migration.rules.mapping_file import read_mapping
 
 GOOD = """
 [languages]

@@ -4,9 +4,9 @@ import pytest
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.json_form.tree import Tree
-from mmrs_core.migration.from_json import node_of
-from mmrs_core.migration.from_xmi import parse_xmi
-from mmrs_core.migration.nodes import Claim, Link, Text
+from mmrs_core.migration.sources.from_json import node_of
+from mmrs_core.migration.sources.from_xmi import parse_xmi
+from mmrs_core.migration.sources.nodes import Claim, Link, Text
 
 XMI = 'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from mmrs_core.migration.metamodels import Dialect
-from mmrs_core.migration.nodes import Document, Link, Node, Text
-from mmrs_core.migration.structure import Sort, Structure
+from mmrs_core.migration.sources.metamodels import Dialect
+from mmrs_core.migration.sources.nodes import Document, Link, Node, Text
+from mmrs_core.migration.sources.structure import Sort, Structure
 
 _STEP = re.compile(r"@(?P<name>[^.]+)(?:\.(?P<index>\d{1,9}))?", re.ASCII)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
-from mmrs_core.migration.nodes import Claim, Link, Node, Text
-from mmrs_core.migration.nodes import Document as SourceDocument
+from mmrs_core.migration.sources.nodes import Claim, Link, Node, Text
+from mmrs_core.migration.sources.nodes import Document as SourceDocument
 
 DEEPEST_NESTING = 100
 _LOCATION = f"{XSI} schemaLocation"

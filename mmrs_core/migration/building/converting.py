@@ -5,8 +5,8 @@ from __future__ import annotations
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature
-from mmrs_core.migration.mapping import Constant
-from mmrs_core.migration.paths import reach
+from mmrs_core.migration.rules.mapping import Constant
+from mmrs_core.migration.rules.paths import reach
 
 
 def put(element: Element, path: str, value: Constant) -> None:

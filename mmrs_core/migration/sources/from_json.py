@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
-from mmrs_core.migration.nodes import Claim, Link, Node, Text
+from mmrs_core.migration.sources.nodes import Claim, Link, Node, Text
 
 DEEPEST_NESTING = 100
 CLASS = "eClass"

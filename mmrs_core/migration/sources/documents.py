@@ -12,10 +12,26 @@ from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
 from mmrs_core.languages.metamodels.tables import parse_tables
 from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_core.migration.from_json import CLASS, node_of, text_in
-from mmrs_core.migration.from_xmi import parse_xmi
-from mmrs_core.migration.mapping import KnownDocument
-from mmrs_core.migration.nodes import Document
+from mmrs_core.migration.sources.from_json import CLASS, node_of, text_in
+from mmrs_core.migration.sources.from_xmi import parse_xmi
+from mmrs_core.migration.sources.nodes import Document
+
+
+@dataclass(frozen=True, slots=True)
+class KnownDocument:
+    """A file that is recognised by its form.
+
+    Attributes:
+        name: what it is called.
+        under: the key of the root object that tells it, or empty.
+        keys: the keys that every item of the list has.
+        holds: whether models stand in the list.
+    """
+
+    name: str
+    under: str
+    keys: tuple[str, ...]
+    holds: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from typing import cast
 
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.mapping import (
+from mmrs_core.migration.rules.mapping import (
     Also,
     Bearing,
     Constant,
@@ -18,9 +18,9 @@ from mmrs_core.migration.mapping import (
     Use,
     Wait,
 )
-from mmrs_core.migration.paths import feature_at
-from mmrs_core.migration.structure import Structure
-from mmrs_core.migration.toml_tables import Table
+from mmrs_core.migration.rules.paths import feature_at
+from mmrs_core.migration.rules.toml_tables import Table
+from mmrs_core.migration.sources.structure import Structure
 
 ROBOT_TYPE = ("urn:mmrs:robot:1.0", "Robot")
 

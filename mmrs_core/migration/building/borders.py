@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
+from mmrs_core.migration.building.shapes import widened
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.nodes import Node, Text
 from mmrs_core.migration.recording import Record
-from mmrs_core.migration.shapes import widened
+from mmrs_core.migration.sources.nodes import Node, Text
 
 
 def without_repeats(node: Node, feature: str, vertices: Sequence[Node], record: Record) -> tuple[Node, ...]:

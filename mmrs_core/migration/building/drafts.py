@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from mmrs_core.languages.element import Element
-from mmrs_core.migration.mapping import Rule, Use
-from mmrs_core.migration.nodes import Node
+from mmrs_core.migration.rules.mapping import Rule, Use
+from mmrs_core.migration.sources.nodes import Node
 
 
 @dataclass(slots=True, eq=False)

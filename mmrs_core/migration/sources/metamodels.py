@@ -8,8 +8,8 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable, read_tables
-from mmrs_core.migration.nodes import Claim, Document
-from mmrs_core.migration.structure import Sort, SourceClass, SourceFeature, Structure
+from mmrs_core.migration.sources.nodes import Claim, Document
+from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.attributes import Attributes, is_given
-from mmrs_core.migration.borders import border_around, without_repeats
-from mmrs_core.migration.converting import put
-from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.building.attributes import Attributes, is_given
+from mmrs_core.migration.building.borders import border_around, without_repeats
+from mmrs_core.migration.building.converting import put
+from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.mapping import DialectMapping, Rule, Use
-from mmrs_core.migration.nodes import Link, Node
-from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
-from mmrs_core.migration.robot_types import RobotTypes
-from mmrs_core.migration.structure import Sort, Structure
+from mmrs_core.migration.rules.mapping import DialectMapping, Rule, Use
+from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.sources.nodes import Link, Node
+from mmrs_core.migration.sources.structure import Sort, Structure
 
 _ORDER = {Sort.ATTRIBUTE: 0, Sort.REFERENCE: 1, Sort.CONTAINED: 2}
 _NO_RULE = "the mapping has no rule for this class"

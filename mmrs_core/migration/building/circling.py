@@ -9,13 +9,13 @@ from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.converting import number_in
-from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.building.converting import number_in
+from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.headings import towards
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.headings import towards
-from mmrs_core.migration.mapping import Ring, Rule
-from mmrs_core.migration.nodes import Node
 from mmrs_core.migration.recording import Record
+from mmrs_core.migration.rules.mapping import Ring, Rule
+from mmrs_core.migration.sources.nodes import Node
 
 
 def draw_ring(node: Node, rule: Rule, draft: Draft, registry: Registry, record: Record) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mmrs_core.migration.metamodels import Dialect
-from mmrs_core.migration.structure import Structure
+from mmrs_core.migration.sources.documents import KnownDocument
+from mmrs_core.migration.sources.metamodels import Dialect
+from mmrs_core.migration.sources.structure import Structure
 
 Constant = str | float | bool
 
@@ -174,23 +175,6 @@ class Rule:
     ring: Ring | None = None
     device: DeviceLookup | None = None
     robot_type: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class KnownDocument:
-    """A file that is recognised by its form.
-
-    Attributes:
-        name: what it is called.
-        under: the key of the root object that tells it, or empty.
-        keys: the keys that every item of the list has.
-        holds: whether models stand in the list.
-    """
-
-    name: str
-    under: str
-    keys: tuple[str, ...]
-    holds: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,13 +13,13 @@ from mmrs_core.languages.element import (
 )
 from mmrs_core.languages.grounding.values import child, children
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.headings import set_heading
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.headings import set_heading
-from mmrs_core.migration.mapping import Counterpart, Rule, Use
-from mmrs_core.migration.nodes import Link, Node, Text
-from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
+from mmrs_core.migration.rules.mapping import Counterpart, Rule, Use
+from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.sources.nodes import Link, Node, Text
 
 
 class Linker:

@@ -6,12 +6,12 @@ from math import cos, radians, sin
 
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element, metaclass_of, root_of
-from mmrs_core.migration.converting import number_in
-from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.building.converting import number_in
+from mmrs_core.migration.building.drafts import Draft
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.mapping import Use
-from mmrs_core.migration.nodes import Node, Text
 from mmrs_core.migration.recording import Record
+from mmrs_core.migration.rules.mapping import Use
+from mmrs_core.migration.sources.nodes import Node, Text
 
 
 def towards(angle_degrees: float, metres: float) -> tuple[float, float]:

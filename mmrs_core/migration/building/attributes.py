@@ -6,14 +6,14 @@ import re
 
 from mmrs_core.languages.element import Element, label_of
 from mmrs_core.languages.grounding.values import text as text_of
-from mmrs_core.migration.converting import number_in, put, scaled
-from mmrs_core.migration.drafts import Draft
+from mmrs_core.migration.building.converting import number_in, put, scaled
+from mmrs_core.migration.building.drafts import Draft
+from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
-from mmrs_core.migration.mapping import Constant, DeviceLookup, Use
-from mmrs_core.migration.nodes import Node, Text
-from mmrs_core.migration.paths import reach
 from mmrs_core.migration.recording import Record
-from mmrs_core.migration.robot_types import RobotTypes
+from mmrs_core.migration.rules.mapping import Constant, DeviceLookup, Use
+from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.sources.nodes import Node, Text
 
 _WORD = re.compile(r"\{(\w+)\}")
 

@@ -8,12 +8,13 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_core.migration.mapping import DialectMapping, KnownDocument
-from mmrs_core.migration.metamodels import Dialect
-from mmrs_core.migration.notation import declared_structure
-from mmrs_core.migration.rules_file import read_rules
-from mmrs_core.migration.structure import Structure
-from mmrs_core.migration.toml_tables import Table
+from mmrs_core.migration.rules.mapping import DialectMapping
+from mmrs_core.migration.rules.notation import declared_structure
+from mmrs_core.migration.rules.rules_file import read_rules
+from mmrs_core.migration.rules.toml_tables import Table
+from mmrs_core.migration.sources.documents import KnownDocument
+from mmrs_core.migration.sources.metamodels import Dialect
+from mmrs_core.migration.sources.structure import Structure
 
 LARGEST = 4 * 1024 * 1024
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from mmrs_core.migration.structure import Sort, SourceClass, SourceFeature, Structure
+from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 
 ATTRIBUTES = ("text", "number", "truth")
 

@@ -1,0 +1,1 @@
+"""From the elements of a source to elements of our languages."""

@@ -1,0 +1,1 @@
+"""Mapping files: what becomes of each class and feature of a dialect."""
