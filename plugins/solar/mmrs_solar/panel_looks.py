@@ -10,6 +10,7 @@ from mmrs_core.scene.attributes import text
 from mmrs_solar.camera import optics_of
 from mmrs_solar.groups import group_of, whole
 from mmrs_solar.names import PANEL_LOOK_TASK
+from mmrs_solar.nearness import refuse_near
 from mmrs_solar.recording import camera_for, distance_for, recorded
 from mmrs_solar.views import before, view_of
 
@@ -25,13 +26,15 @@ def panel_look_work(task: Task, robot: Robot, scene: Scene) -> Work:
     camera = camera_for(part, robot, action)
     optics = optics_of(camera)
     view = view_of(group.azimuth, group.tilt, optics.lowest, optics.highest)
-    distance = distance_for(part, robot, camera.id, optics, view)
+    distance = distance_for(part, camera.id, optics, view)
     strokes = []
     for row, column, tier in _suspects(part):
         panel = group.panel(row, column, tier)
         place = before(panel, view, distance)
+        what = f"the place before row {row}, column {column}, tier {tier}"
         refuse_heights(robot, (place,))
-        refuse_blocked(robot, scene, (place,), f"the place before row {row}, column {column}, tier {tier}")
+        refuse_blocked(robot, scene, (place,), what)
+        refuse_near(robot, group, place, what)
         strokes.append(Stroke((place,), (recorded(part, camera, action, 0.0),), Look(panel, camera.id)))
     return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False)
 

@@ -15,6 +15,7 @@ from mmrs_core.scene.attributes import number, text
 from mmrs_solar.camera import RECORDING_KEYS, figures, optics_of
 from mmrs_solar.groups import Group, between, group_of, whole
 from mmrs_solar.names import THERMAL_ROW_TASK
+from mmrs_solar.nearness import refuse_near
 from mmrs_solar.recording import camera_for, distance_for, recorded
 from mmrs_solar.views import View, aim_beyond, before, view_of
 
@@ -54,8 +55,10 @@ def row_inspection_work(task: Task, robot: Robot, scene: Scene) -> Work:
     strokes = []
     for index, (row, begin, end) in enumerate(_ways(part, group, how)):
         stroke = _stroke(part, how, *((begin, end) if index % 2 == 0 else (end, begin)))
+        what = f"the way along row {row}"
         refuse_heights(robot, stroke.points)
-        refuse_blocked(robot, scene, stroke.points, f"the way along row {row}")
+        refuse_blocked(robot, scene, stroke.points, what)
+        refuse_near(robot, group, stroke.points[-1], what)
         strokes.append(stroke)
     return Work(tuple(strokes), divisible=True, rule=RULE, ordered=False)
 
@@ -75,7 +78,7 @@ def _pass_of(part: Part, group: Group, robot: Robot) -> Pass:
     camera = camera_for(part, robot, text(part, "startAction"), text(part, "stopAction"))
     optics = optics_of(camera)
     view = view_of(group.azimuth, group.tilt, optics.lowest, optics.highest)
-    distance = distance_for(part, robot, camera.id, optics, view)
+    distance = distance_for(part, camera.id, optics, view)
     exposure, interval = figures(camera, RECORDING_KEYS)
     pixel, seen = distance * optics.pixel * view.stretch, distance * optics.width
     sharp = (number(part, "blur") or 0.0) * pixel / exposure
