@@ -1,6 +1,6 @@
 """Reads a hundred thousand damaged models of every kind, and prints what came of them.
 
-Run: ``python benchmarks/fuzz.py [CASES [SEED]]``; four processes take a quarter each. The figures go to ``benchmarks/results/fuzz.txt``.
+Run: ``python benchmarks/fuzz.py [CASES [SEED]]``; four processes take a quarter each.
 """
 
 from __future__ import annotations
