@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building.shapes import widened
+from mmrs_core.migration.building.shapes import Corner, widened
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.sources.nodes import Node, Text
@@ -32,12 +32,19 @@ def _values(vertex: Node) -> tuple[str, dict[str, tuple[str, ...]]]:
     return vertex.kind, {feature: vertex.texts(feature) for feature in vertex.values}
 
 
+def _place(vertex: Element) -> Corner | None:
+    """Return latitude and longitude in degrees; None where they are missing or not on the Earth."""
+    north, east = number(vertex, "latitude"), number(vertex, "longitude")
+    if north is None or east is None or not (abs(north) <= 90 and abs(east) <= 180):
+        return None
+    return north, east
+
+
 def border_around(
     node: Node, feature: str, vertices: Sequence[Element], metres: float, registry: Registry, record: Record
 ) -> Sequence[Element]:
     """Return the vertices of a border; for one that holds no area, those of a border around it."""
-    places = [(number(each, "latitude"), number(each, "longitude")) for each in vertices]
-    known = tuple((north, east) for north, east in places if north is not None and east is not None)
+    known = tuple(place for each in vertices if (place := _place(each)) is not None)
     ring = widened(known, metres) if known else None
     if ring is None:
         return vertices

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from math import cos, radians
 
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import MultiPoint, Polygon
 
 METRES_PER_DEGREE = 111_320.0
 """Of latitude, on a sphere; good to half a per cent, which a widening does not notice."""
+THINNEST = 0.01
+"""Metres that a border is wide on average, at least, to hold an area."""
 
 Corner = tuple[float, float]
 """Latitude and longitude in degrees."""
@@ -20,17 +22,13 @@ def widened(corners: tuple[Corner, ...], metres: float) -> tuple[Corner, ...] | 
 
     Args:
         corners: at least one.
-        metres: how far to each side.
+        metres: how far from the corners the new border runs.
     """
     south, west = corners[0]
-    shrink = cos(radians(south)) or 1.0
-    flat = [
-        ((east - west) * METRES_PER_DEGREE * shrink, (north - south) * METRES_PER_DEGREE)
-        for north, east in corners
-    ]
-    distinct = tuple(dict.fromkeys(flat))
-    if len(distinct) > 2 and Polygon(distinct).area > metres * metres:
+    scale = METRES_PER_DEGREE * (cos(radians(south)) or 1.0)
+    flat = [((east - west) * scale, (north - south) * METRES_PER_DEGREE) for north, east in corners]
+    hull = MultiPoint(flat).minimum_rotated_rectangle
+    if len(set(flat)) > 2 and Polygon(flat).area > THINNEST * hull.length / 2:
         return None
-    line = Point(distinct[0]) if len(distinct) == 1 else LineString(distinct)
-    ring = line.buffer(metres, cap_style="square", join_style="mitre").exterior.coords[:-1]
-    return tuple((south + y / METRES_PER_DEGREE, west + x / (METRES_PER_DEGREE * shrink)) for x, y in ring)
+    ring = hull.buffer(metres, cap_style="square", join_style="mitre").exterior.coords[:-1]
+    return tuple((south + y / METRES_PER_DEGREE, west + x / scale) for x, y in ring)

@@ -158,3 +158,12 @@ def test_every_finding_knows_its_line(orchard, flyaq):
     lines = {file.name: file.read_text().count("\n") for file in flyaq.iterdir() if file.is_file()}
     for finding in orchard.findings:
         assert 0 < finding.place.line <= lines[finding.place.file.rpartition("/")[2]]
+
+
+@pytest.mark.parametrize("latitude", ["NaN", "1e308", "-Infinity", "4600"])
+def test_vertices_that_are_not_on_the_earth_are_kept_as_they_are(migrated, model, flyaq, written, latitude):
+    text = json.loads((flyaq / "orchard-context.json").read_text())
+    for vertex in text["obstacles"][0]["shell"]:
+        vertex["latitude"] = latitude
+    found = migrated(written("odd.json", json.dumps(text)))
+    assert len(model(found, "context.xmi").obstacles[0].shell) == 1
