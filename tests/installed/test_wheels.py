@@ -67,3 +67,10 @@ def test_an_installed_example_validates_from_another_directory(site, tmp_path):
     example = site / "mmrs_core" / "_shipped" / "examples" / "carbon-dioxide"
     out = run(site, tmp_path, "-m", "mmrs_core", "validate", str(example))
     assert out == f"{example}: valid\n"
+
+
+def test_wheels_carry_the_kit_of_extenders(site, tmp_path):
+    run(site, tmp_path, "-m", "mmrs_core", "plugin", "new", "roof-wash", "-o", "new")
+    assert (tmp_path / "new" / "mmrs_roof_wash" / "roof_wash.pyi").is_file()
+    models = "from mmrs_core.testing.models import sample_tasks; print(sample_tasks().ecore.is_file())"
+    assert run(site, tmp_path, "-c", models) == "True\n"
