@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from code_blocks import Block, Reader, alike, blocks_of, commands_of
+from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -17,6 +18,15 @@ LANGUAGES = {"console", "python", "text", "xml", "toml", "json", "ini"}
 NAMES = sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
 PAGES = [name for name in NAMES if not name.startswith(JUDGED_ELSEWHERE)]
 BLOCKS = {page: blocks_of((DOCS / page).read_text(encoding="utf-8"), page) for page in PAGES}
+
+
+@pytest.fixture(autouse=True)
+def unhurried():
+    """Let properties on the pages take their time where the machine is busy."""
+    settings.register_profile("pages", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    settings.load_profile("pages")
+    yield
+    settings.load_profile("default")
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])
@@ -69,9 +79,15 @@ def test_blocks_in_tabs_lose_their_indent():
     assert (block.text, block.line) == ("$ true\n", 3)
 
 
-def test_dots_stand_for_any_lines():
+def test_a_line_of_dots_stands_for_any_lines_or_none():
     assert alike("first\n...\nlast\n", "first\nsecond\nthird\nlast\n")
+    assert alike("first\n...\nlast\n", "first\nlast\n")
     assert not alike("first\n...\nlast\n", "first\nsecond\n")
+
+
+def test_dots_in_a_line_stand_for_anything_in_it():
+    assert alike("done after ...; safe\n", "done after 10:32; safe\n")
+    assert not alike("done after ...; safe\n", "done after 10:32\n; safe\n")
 
 
 def test_output_belongs_to_the_command_before_it():
