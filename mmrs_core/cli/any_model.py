@@ -57,21 +57,24 @@ def _strange(found: ForeignModel) -> frozenset[str]:
 
 
 def is_foreign(workshop: Workshop, file: Path) -> bool:
-    """Return whether a file holds a model, and no element at its top is of MMRS's own languages.
+    """Return whether a file holds a model, and its first element is of no language of MMRS's own.
 
     Raises:
         UnreadableError: if it is missing or no model at all.
     """
-    from mmrs_core.languages.element import Unknown, metaclass_of
-    from mmrs_core.languages.reading import read_model
+    from mmrs_core.languages.places import first_kind
     from mmrs_core.languages.registry import core_registry
 
     if file.is_dir():
         return False
-    roots = read_model(file, workshop.contributions.languages).roots
+    ns_uri, name = first_kind(file)
+    registry = workshop.contributions.languages
+    if not ns_uri or ns_uri in registry.chains:
+        return False
     own = {package.ns_uri for package in core_registry().packages}
-    known = [metaclass_of(root).ancestry for root in roots if not isinstance(root, Unknown)]
-    return bool(roots) and not any(ns_uri in own for kinds in known for ns_uri, _ in kinds)
+    kinds = registry.package(ns_uri).metaclasses if registry.has(ns_uri) else ()
+    ancestry = next((kind.ancestry for kind in kinds if kind.name == name), ((ns_uri, name),))
+    return not any(above in own for above, _ in ancestry)
 
 
 def is_mistake(fault: Diagnostic) -> bool:

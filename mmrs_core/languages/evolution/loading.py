@@ -79,13 +79,21 @@ def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, s
             document = Document(xml_of(node).encode(), file)
         except ValueError as fault:
             raise UnreadableError(f"{file}:{node.line}: {fault}") from None
-        old = OldXmi(document, is_known)
+        old = OldXmi(document, lambda ns_uri: not ns_uri or is_known(ns_uri))  # its tag is that of a feature
         document.parse(old)
+        _release(document)
         inside = old.roots[0]
         kind = node.members[TYPE]
         for each in every_node([inside]):
             each.line = node.line
         node.members = {**inside.members, TYPE: kind}
+
+
+def _release(document: Document) -> None:
+    """Part a document from its listeners: a collector at rest does not free the circle that they are."""
+    for event in ("StartElement", "EndElement", "CharacterData", "XmlDecl", "StartDoctypeDecl"):
+        setattr(document.parser, f"{event}Handler", None)
+    document.parser.StartNamespaceDeclHandler = document.parser.EndNamespaceDeclHandler = None
 
 
 def _is_known(registry: Registry, ns_uri: str) -> bool:

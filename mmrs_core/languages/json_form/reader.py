@@ -19,6 +19,9 @@ from mmrs_core.languages.registry import Registry
 TYPE, ID, REF, ROOTS, LANGUAGES, PLACES = "$type", "$id", "$ref", "$roots", "$languages", "$schemaLocation"
 _HEAD = frozenset((LANGUAGES, PLACES, ROOTS, "$schema"))
 
+_HELPED_FAULTS = 200
+"""Beyond this many faults nobody reads which name was probably meant, and looking for it takes time."""
+
 _Job = tuple[Node, Element | None, Feature | None]
 
 
@@ -184,7 +187,9 @@ class JsonReader:
             elif feature is None:
                 label = label_of(element)
                 message = f"{key}: no feature of {metaclass.name}{label and f' {label!r}'}"
-                self._fault("XMI004", message, node, element, nearest(key, metaclass.by_name), key=key)
+                helps = len(self._draft.diagnostics) < _HELPED_FAULTS
+                hint = nearest(key, metaclass.by_name) if helps else ""
+                self._fault("XMI004", message, node, element, hint, key=key)
             elif value == [] or (value is None and feature.is_reference):
                 if feature.unsettable:
                     self._draft.source.blanks.add((element, feature))

@@ -13,6 +13,8 @@ from mmrs_core.languages.xmi.events import DEEPEST_NESTING
 _STRING = r'"[^"\\]*+(?:\\.[^"\\]*+)*+"'
 _TOKEN = re.compile(rf"{_STRING}|[{{}}\[\]]", re.DOTALL)
 _MEMBER = re.compile(rf"({_STRING})\s*:|{_STRING}|[{{}}\[\]]", re.DOTALL)
+_MANY = 10_000
+_SHORTEST_OBJECT = len('{"x":1},')
 _DEEPEST = 2 * DEEPEST_NESTING
 """An element inside another stands in an object and, mostly, in a list."""
 
@@ -78,6 +80,7 @@ class Tree:
             UnreadableError: if it is no JSON, says a key twice in one object, or nests too deeply.
         """
         self.file = file
+        _refuse_crowds(data, file)
         self._text = _decoded(data, file)
         self._lines = [match.start() for match in re.finditer("\n", self._text)]
         self._keys: dict[int, dict[str, int]] = {}
@@ -142,6 +145,13 @@ class Tree:
                     node.offset, node.line = begin, self._line(begin)
 
 
+def _refuse_crowds(data: bytes, file: str) -> None:
+    """Refuse what is nearly nothing but brackets: in memory it would take a hundred times its size."""
+    count = data.count(b"{") + data.count(b"[")
+    if count > _MANY and count * _SHORTEST_OBJECT > len(data):
+        raise UnreadableError(f"{file}: {count} objects and lists with next to nothing in them")
+
+
 def _decoded(data: bytes, file: str) -> str:
     try:
         return data.decode(json.detect_encoding(data))
@@ -158,7 +168,7 @@ def _keys_of(text: str, begin: int) -> dict[str, int]:
         token = match.group()
         if match[1] is not None:
             if depth == 1:
-                found[json.loads(match[1], strict=False)] = match.start()
+                found[json.loads(match[1])] = match.start()
         elif token in ("{", "["):
             depth += 1
         elif token in ("}", "]"):

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from xml.parsers import expat
 
-from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.json_form.tree import Node
-from mmrs_core.languages.xmi.events import Document
 from mmrs_core.languages.xmi.unknowns import needed, text_of
 
 _TYPE, _SCOPE = "$type", "$namespaces"
@@ -65,24 +64,18 @@ def xml_of(node: Node) -> str:
     element._mmrs_xml, element._mmrs_scope = str(node.members[XML]), _scope_of(node)
     element._mmrs_type = "$xml"
     text = text_of(element, lambda prefix, ns_uri: False)
+    parser = expat.ParserCreate(None, " ")
+    parser.StartDoctypeDeclHandler = _no_doctype
     try:
-        Document(text.encode(errors="replace"), "$xml").parse(_Silence())
-    except UnreadableError as fault:
-        raise ValueError(str(fault)) from None
+        parser.Parse(text.encode(errors="replace"), True)
+    except expat.ExpatError as fault:
+        reason = expat.errors.messages[fault.code]
+        raise ValueError(f"{XML}: not well-formed XML: {reason}") from None
     return text
 
 
-class _Silence:
-    """Listens to a document to hear whether it is well-formed."""
-
-    def start(self, tag: str, attributes: list[str]) -> None:
-        """Take nothing."""
-
-    def end(self, tag: str) -> None:
-        """Take nothing."""
-
-    def text(self, text: str) -> None:
-        """Take nothing."""
+def _no_doctype(*_: object) -> None:
+    raise ValueError(f"{XML}: DOCTYPE is not accepted in a model")
 
 
 def _scope_of(node: Node) -> Mapping[str, str]:

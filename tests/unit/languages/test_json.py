@@ -332,3 +332,10 @@ def test_several_roots_and_unknown_elements_are_valid_by_the_schema(core, zoo):
 )
 def test_what_is_no_model_is_invalid_by_the_schema(text):
     assert not jsonschema.Draft202012Validator(SCHEMA).is_valid(json.loads(text))
+
+
+def test_what_is_nearly_nothing_but_brackets_is_refused(zoo):
+    with pytest.raises(
+        UnreadableError, match=r"^a\.json: 20001 objects and lists with next to nothing in them"
+    ):
+        read_text(b"[" + b"{}," * 19_999 + b"{}]", "a.json", zoo)

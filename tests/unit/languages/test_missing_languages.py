@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from mmrs_core.errors import UnreadableError
@@ -115,7 +117,23 @@ def test_a_version_at_the_end_of_an_ns_uri_is_no_part_of_its_stem(ns_uri, stem):
     assert stem_of(ns_uri) == stem
 
 
-def test_what_was_kept_as_xml_is_read_once_its_language_is_installed(zoo, core):
+def test_an_element_kept_as_xml_is_read_once_its_language_is_installed(zoo):
+    text = XMI.replace(b'"solar:Panel"', b'"zoo:Otter"').replace(b"rows = '3'", b'depth="4.5"')
+    text = text.replace(b"<shell", b"<cubs").replace(b'"zoo:Keeper"   badge', b'"zoo:Lion" teeth="3" name')
+    whole = to_json(read_text(text.replace(b"</shell", b"</cubs"), "a.xmi", zoo).roots, zoo)
+    otter = text[text.index(b"<animals") : text.index(b"</animals>") + 10].decode()
+    kept = json.loads(whole)
+    kept["animals"][0] = {
+        "$type": "zoo:Otter",
+        "$xml": otter,
+        "$namespaces": {"zoo": "urn:test:zoo", "xsi": "http://www.w3.org/2001/XMLSchema-instance"},
+    }
+    model = read_text(json.dumps(kept).encode(), "b.json", zoo)
+    assert model.diagnostics == ()
+    assert to_json(model.roots, zoo) == whole
+
+
+def test_a_model_kept_as_xml_is_read_once_its_language_is_installed(zoo, core):
     whole = XMI.replace(b'xsi:type="solar:Panel"', b'xsi:type="zoo:Otter"').replace(
         b"rows = '3'", b'depth="4.5"'
     )
