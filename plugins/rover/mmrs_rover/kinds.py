@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi
 
-from mmrs_core.contributions.rules import MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.scene import Kinematics, Robot, RobotType, Scene
 from mmrs_core.scene.attributes import number, text
-from mmrs_core.transformation.kinds import kinematics_for, straight_travel
+from mmrs_core.transformation.kinds import PLAIN_ROBOT, kinematics_for
 from mmrs_rover.names import ROVER
 from mmrs_rover.terrain import barrier
 
@@ -54,28 +53,5 @@ def turning_radius(robot_type: RobotType) -> float:
     return stated or 0.0
 
 
-def _no_launch(height: float) -> tuple[MoveSpec, ...]:
-    return ()
-
-
-def _no_recovery() -> tuple[MoveSpec, ...]:
-    return ()
-
-
-ROVER_KIND = RobotKind(
-    name="rover",
-    metaclass=ROVER,
-    kinematics=kinematics,
-    launch=_no_launch,
-    recover=_no_recovery,
-    travel=straight_travel,
-    policies={
-        # Standing still is safe for a ground vehicle; what others wait for is still worth finishing.
-        "LINK_LOST": "HOLD",
-        "PEER_LOST": "HOLD",
-        "BATTERY_LOW": "RETURN",
-        "WAIT_TOO_LONG": "HOLD",
-        "DEVICE_SILENT": "CONTINUE",
-    },
-    barrier=barrier,
-)
+ROVER_KIND = replace(PLAIN_ROBOT, name="rover", metaclass=ROVER, kinematics=kinematics, barrier=barrier)
+"""Like any robot that stays on its level it neither launches nor recovers, and it answers faults as that does."""
