@@ -176,6 +176,9 @@ class Assembly:
 
     def _no_type(self, key: _Key, entry: Located, where: str) -> str:
         ns_uri, name = key
+        if name in ("EFeatureMapEntry", "EFeatureMap"):
+            message = "a feature map, which models here cannot hold; use a reference to a common supertype"
+            return f"{entry.provider}: {entry.table.ns_uri}: {where}: {message}"
         hint = nearest(name, [known for uri, known in (*self._metaclasses, *self._types) if uri == ns_uri])
         message = f"{entry.provider}: {entry.table.ns_uri}: {where}: no type {name} in {ns_uri}"
         return f"{message}; {hint}" if hint else message

@@ -6,11 +6,15 @@ import re
 from pathlib import Path
 from urllib.parse import unquote
 
+_WORKSPACE = re.compile(r"platform:/(?:resource|plugin)/([^/]+)/(.+)", re.DOTALL)
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 
 
 def linked_file(document: str, base: Path, root: Path) -> Path:
     """Return the real path of a document that a file in the folder ``base`` refers to.
+
+    Eclipse may have written ``platform:/resource/NAME/...``: then NAME is the folder ``root``, or one that
+    lies in it, or above ``base``.
 
     Args:
         document: the part of the href before the hash, percent escapes allowed.
@@ -21,6 +25,9 @@ def linked_file(document: str, base: Path, root: Path) -> Path:
         ValueError: if it is absolute, has a scheme such as ``file:`` or ``http:``, or leaves the root.
     """
     path = unquote(document)
+    project = _WORKSPACE.fullmatch(path)
+    if project is not None:
+        base, path = _project_folder(project[1], base, root), project[2]
     if _SCHEME.match(path) or path.startswith(("/", "\\")):
         raise ValueError(f"{document}: not a relative path; only files of the project are opened")
     if not path or "\0" in path or "\\" in path:
@@ -32,6 +39,15 @@ def linked_file(document: str, base: Path, root: Path) -> Path:
     if not real.is_relative_to(root):
         raise ValueError(f"{document}: outside the project folder {root.name}")
     return real
+
+
+def _project_folder(name: str, base: Path, root: Path) -> Path:
+    """Return the folder of an Eclipse project: its name is what Eclipse calls it, wherever it lies."""
+    above = [folder for folder in (base, *base.parents) if folder == root or folder.is_relative_to(root)]
+    for folder in (*above, *(each / name for each in above)):
+        if folder.name == name and folder.is_dir():
+            return folder
+    raise ValueError(f"platform:/resource/{name}: no folder {name} in the project folder {root.name}")
 
 
 def relative_href(target: Path, base: Path) -> str:

@@ -130,3 +130,21 @@ def registry(foreign):
     return registry_with(
         [*sources, *(MetamodelSource(f"urn:test:{file.stem}", file, file.stem) for file in foreign)]
     )
+
+
+COUNTS = pytest.StashKey[list[str]]()
+
+
+def pytest_configure(config):
+    config.stash[COUNTS] = []
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    for line in config.stash[COUNTS]:
+        terminalreporter.write_line(line)
+
+
+@pytest.fixture
+def tell(pytestconfig):
+    """Return a function that has a line printed once all tests are done."""
+    return pytestconfig.stash[COUNTS].append

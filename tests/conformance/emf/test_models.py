@@ -112,6 +112,22 @@ def test_emf_writes_references_to_other_files_as_we_do(rewritten, registry, tmp_
     assert rewritten(tmp_path / "ours.xmi") == ([], (tmp_path / "ours.xmi").read_bytes())
 
 
+def test_paths_of_a_workspace_mean_to_emf_what_they_mean_to_us(referee, registry, tmp_path):
+    project = tmp_path / "project"
+    (project / "sub").mkdir(parents=True)
+    (project / "far.xmi").write_text(f'{HEAD} name="far"><animals xsi:type="zoo:Lion" name="l"/></zoo:Zoo>')
+    near = project / "sub" / "near.xmi"
+    near.write_text(
+        f'{HEAD} name="near"><star xsi:type="zoo:Lion" '
+        'href="platform:/resource/project/far.xmi#//@animals.0"/></zoo:Zoo>'
+    )
+    referee.ask("workspace", "project", project)
+    model = read_model(near, registry, root=project)
+    write_model(model.roots, project / "sub" / "ours.xmi", registry)
+    answer = referee.ask("equal", near, project / "sub" / "ours.xmi")
+    assert (answer.faults, "EQUAL" in answer.lines) == ([], True)
+
+
 def test_emf_writes_several_roots_as_we_do(rewritten, registry, tmp_path):
     lions = [registry.create(ZOO, "Lion", name=name) for name in "ab"]
     lions[0].mate = lions[1]

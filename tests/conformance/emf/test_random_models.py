@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections import Counter
 from functools import cache
-from pathlib import Path
 
 import pytest
 from emf_description import model_lines
@@ -59,20 +57,6 @@ def exported_folder(registry, tmp_path_factory):
     folder = tmp_path_factory.mktemp("metamodels")
     export_metamodels(registry, folder)
     return folder
-
-
-@pytest.fixture(scope="module")
-def tell(pytestconfig):
-    """Return a function that prints counts past the capture of output, and into a file if one is named."""
-    reporter = pytestconfig.pluginmanager.get_plugin("terminalreporter")
-
-    def tell(line):
-        reporter.write_line(line)
-        if "MMRS_EMF_COUNTS" in os.environ:
-            with Path(os.environ["MMRS_EMF_COUNTS"]).open("a") as file:
-                print(line, file=file)
-
-    return tell
 
 
 @pytest.mark.parametrize("count", COUNTS)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from mmrs_core.errors import PluginError
 from mmrs_core.languages.metamodels.export import schema_locations
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, registry_with
@@ -194,3 +195,50 @@ def test_exported_metamodels_are_found_from_the_folder_of_the_file(suite, tmp_pa
     assert places["urn:test:suite"] == "../all%20models/suite.ecore"
     assert places["urn:test:suite:inner"] == "../all%20models/suite.ecore#//inner"
     assert places["urn:test:suite:deeper"] == "../all%20models/suite.ecore#//inner/deeper"
+
+
+@pytest.mark.parametrize(
+    "place", ["platform:/resource/models/far.xmi", "platform:/resource/fields/far.xmi", "../fields/far.xmi"]
+)
+def test_paths_of_an_eclipse_workspace_lead_into_the_project(suite, tmp_path, place):
+    folder = tmp_path / "models"
+    (folder / "sub").mkdir(parents=True)
+    (folder / "fields").mkdir()
+    for far in (folder / "far.xmi", folder / "fields" / "far.xmi"):
+        far.write_text(f'<suite:Scalars {NAMESPACES} name="far"/>')
+    near = folder / "sub" / "near.xmi"
+    near.write_text(
+        f'<suite:Linked {NAMESPACES}><one xsi:type="suite:Scalars" href="{place}#/"/></suite:Linked>'
+    )
+    model = read_model(near, suite, root=folder)
+    assert model.diagnostics == ()
+    assert model.roots[0].one.name == "far"
+
+
+@pytest.mark.parametrize(
+    "place",
+    ["platform:/resource/other/far.xmi", "platform:/resource/models/../far.xmi", "platform:/meta/models/x"],
+)
+def test_paths_of_an_eclipse_workspace_never_leave_the_project(suite, tmp_path, place):
+    folder = tmp_path / "models"
+    folder.mkdir()
+    for far in (tmp_path / "far.xmi", tmp_path / "other" / "far.xmi"):
+        far.parent.mkdir(exist_ok=True)
+        far.write_text(f"<suite:Scalars {NAMESPACES}/>")
+    near = folder / "near.xmi"
+    near.write_text(f'<suite:Linked {NAMESPACES}><one href="{place}#/"/></suite:Linked>')
+    assert [fault.code for fault in read_model(near, suite).diagnostics] == ["XMI007"]
+
+
+def test_a_feature_map_is_refused_by_its_name(tmp_path):
+    text = (MODELS / "parts.ecore").read_text()
+    weight = 'name="weight" eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EDouble"'
+    assert weight in text
+    mixed = text.replace(weight, weight.replace("EDouble", "EFeatureMapEntry"))
+    (tmp_path / "parts.ecore").write_text(mixed)
+    sources = [
+        MetamodelSource("urn:test:suite", MODELS / "suite.ecore"),
+        MetamodelSource("urn:test:parts", tmp_path / "parts.ecore"),
+    ]
+    with pytest.raises(PluginError, match=r"Part\.weight: a feature map, which models here cannot hold"):
+        registry_with(sources)
