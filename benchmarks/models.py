@@ -1,10 +1,10 @@
 """Measures how models are read and written, against EMF, stock pyecore and bare lxml, all in one run.
 
-Behaviour models of several sizes are made with a seed. "cold" is a whole process that starts, reads, writes
-and exits; "warm" is one reading or one writing in a process that has done the same before. Wall time depends on
-what else the machine does, CPU time less so: ratios are of CPU times, medians of several runs. EMF's CPU time is
-that of its working thread when it is warm, without the compiler and the collector that run beside it ("all" is
-with them), and of the whole process when it is cold.
+Behaviour models of several sizes are made with a seed. "cold" is a whole process that starts, reads,
+writes and exits; "warm" is one reading or one writing in a process that has done the same before. Wall
+time depends on what else the machine does, CPU time less so: ratios are of CPU times, medians of several
+runs. EMF's CPU time is that of its working thread when it is warm, without the compiler and the collector
+that run beside it ("all" is with them), and of the whole process when it is cold.
 
     python benchmarks/models.py --seed 1 > benchmarks/results/models.txt
 """
@@ -191,9 +191,8 @@ def print_goals(table: dict[int, dict[str, Figures]]) -> None:
             goal("warm write", ours.cpu["write"] / row["pyecore"].cpu["write"], "pyecore", 1 / 15)
         if size >= 100_000 and ours.memory:
             per_element = ours.memory / size
-            print(
-                f"  {'holds' if per_element <= 512 else 'MISSED':7} memory, {size}: {per_element:.0f} bytes <= 512"
-            )
+            holds = "holds" if per_element <= 512 else "MISSED"
+            print(f"  {holds:7} memory, {size}: {per_element:.0f} bytes an element <= 512")
 
 
 def goal(what: str, ratio: float, peer: str, most: float) -> None:

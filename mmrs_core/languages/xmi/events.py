@@ -20,6 +20,7 @@ _ATTRIBUTE = re.compile(rb"""\s+[^\s<>/="']+\s*=\s*(?:"[^"<]*"|'[^'<]*')""")
 _Start = Callable[[str, list[str]], None]
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
+XSI_TYPE = f"{XSI} type"
 
 
 class Listener(Protocol):
@@ -84,7 +85,7 @@ class Document:
         self.encoding = override or "UTF-8"
         self._depth = 0
         self._begun = False
-        self.parser = expat.ParserCreate(override, " ", {})
+        self.parser = expat.ParserCreate(override, " ", {XSI_TYPE: XSI_TYPE})
         self.parser.buffer_text = True
         self.parser.ordered_attributes = True
         self.parser.XmlDeclHandler = self._declaration

@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from mmrs_core.languages.metaclass import Metaclass
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
-from mmrs_core.languages.xmi.events import DEEPEST_NESTING, XMI, XSI, Document
+from mmrs_core.languages.xmi.events import DEEPEST_NESTING, XMI, XSI_TYPE, Document
 from mmrs_core.languages.xmi.reader import HARMLESS, XmiReader
 from mmrs_core.languages.xmi.shapes import maker
 
 if TYPE_CHECKING:
     from mmrs_core.languages.xmi.shapes import Maker
 
-_TYPE = f"{XSI} type"
 _OFTEN = 16
 """Compiling costs as much as reading so many elements the careful way."""
 _MOST_SHAPES = 2000
-_MEANINGLESS = HARMLESS - {_TYPE, f"{XMI} type"}
+_MEANINGLESS = HARMLESS - {XSI_TYPE, f"{XMI} type"}
 
 _Shape = tuple["Maker", Metaclass]
-_Key = tuple[str | None, ...]
-"""The value of ``xsi:type`` where that comes first, as all write it, the tag, and the attributes' names."""
+_Key = tuple[Metaclass | str | None, ...]
+"""The owner, ``xsi:type``'s value where that comes first, as all write it, the tag, the attributes' names."""
 
 
 class QuickReader(XmiReader):
@@ -36,41 +34,37 @@ class QuickReader(XmiReader):
         self._wait = draft.pending.append
         self._source = draft.source
         self._changes = 0
-        self._shapes: dict[Metaclass, dict[_Key, _Shape]] = defaultdict(dict)
-        self._seen: dict[tuple[Metaclass, _Key], int] = {}
+        self._shapes: dict[_Key, _Shape] = {}
+        self._seen: dict[_Key, int] = {}
 
     def start(self, tag: str, attributes: list[str]) -> None:
         """Take the start of an XML element."""
         # This runs once for each element, and takes a good part of the time of reading: hence no calls.
         frames = self._open
-        if not frames or self._ignored or frames[-1][2] is not None:
+        if self._ignored or not frames or frames[-1][2] is not None:
             super().start(tag, attributes)
+            self._bound_depth()
+            return
+        if self._namespaces.changes != self._changes:
+            self._forget()
+        owner, metaclass, _ = frames[-1]
+        kind = attributes[1] if attributes and attributes[0] == XSI_TYPE else None
+        key = (metaclass, kind, tag, *attributes[::2])
+        shape = self._shapes.get(key)
+        if shape is None:
+            super().start(tag, attributes)
+            self._notice(key)
         else:
-            if self._namespaces.changes != self._changes:
-                self._forget()
-            owner, metaclass, _ = frames[-1]
-            if attributes and attributes[0] == _TYPE:
-                key: _Key = (attributes[1], tag, *attributes[::2])
-            else:
-                key = (None, tag, *attributes[::2])
-            shape = self._shapes[metaclass].get(key)
-            if shape is None:
+            make, metaclass = shape
+            try:
+                element = make(owner, attributes, self._parser.CurrentLineNumber, self._source, self._wait)
+                frames.append((element, metaclass, None))
+            except ValueError:  # the careful way finds out what is wrong
                 super().start(tag, attributes)
-                self._notice(metaclass, key)
-            else:
-                make, metaclass = shape
-                try:
-                    element = make(
-                        owner, attributes, self._parser.CurrentLineNumber, self._source, self._wait
-                    )
-                except ValueError:  # the careful way finds out what is wrong
-                    super().start(tag, attributes)
-                else:
-                    frames.append((element, metaclass, None))
-        if len(frames) + self._ignored >= DEEPEST_NESTING:
-            self._refuse_depth()
+        if len(frames) >= DEEPEST_NESTING:
+            self._bound_depth()
 
-    def _refuse_depth(self) -> None:
+    def _bound_depth(self) -> None:
         if len(self._open) + self._ignored + self._wrapped > DEEPEST_NESTING:
             self._document.refuse_depth()
 
@@ -80,20 +74,20 @@ class QuickReader(XmiReader):
         self._shapes.clear()
         self._seen.clear()
 
-    def _notice(self, owner: Metaclass, key: _Key) -> None:
+    def _notice(self, key: _Key) -> None:
         """Count an element that was read the careful way; compile its shape once it is worth it."""
-        count = self._seen.get((owner, key), 0) + 1
+        count = self._seen.get(key, 0) + 1
         if count > 1 or len(self._seen) < _MOST_SHAPES:
-            self._seen[owner, key] = count
+            self._seen[key] = count
         if count == _OFTEN:
-            shape = self._compiled(owner, key)
+            owner, kind, tag, *names = key
+            shape = self._compiled(owner, kind, tag, names)  # type: ignore[arg-type]  # as the key was made
             if shape is not None:
-                self._shapes[owner][key] = shape
+                self._shapes[key] = shape
 
-    def _compiled(self, owner: Metaclass, key: _Key) -> _Shape | None:
+    def _compiled(self, owner: Metaclass, kind: str | None, tag: str, names: list[str]) -> _Shape | None:
         """Return what the key means, or None where the careful way has to ask more."""
-        kind, tag, *names = key
-        feature = owner.by_name.get(tag or "")
+        feature = owner.by_name.get(tag)
         if feature is None or not feature.containment or not isinstance(feature.type, Metaclass):
             return None
         metaclass = feature.type if kind is None else self._known(kind)
@@ -105,7 +99,7 @@ class QuickReader(XmiReader):
             or "href" in given
         ):
             return None
-        features = (metaclass.by_name.get(name or "") for name in names)
+        features = (metaclass.by_name.get(name) for name in names)
         make = maker(owner, feature, metaclass, tuple(features))
         return None if make is None else (make, metaclass)
 

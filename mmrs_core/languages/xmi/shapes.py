@@ -84,8 +84,9 @@ def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[s
         elif isinstance(feature.type, DataType) and feature.type.parse is str:
             lines.append(f"    {slot} = {text}")
         elif isinstance(feature.type, DataType) and feature.type.parse is parse_real:
-            quickly = f"float({text}) if {text}.isascii() and {text}[-1:].isdigit() and '_' not in {text}"
-            lines.append(f"    {slot} = {quickly} else real({text})")
+            # as `parse_real` asks, without the call
+            usual = f"{text}.isascii() and {text}[-1:].isdigit() and '_' not in {text}"
+            lines.append(f"    {slot} = float({text}) if {usual} else real({text})")
         else:
             bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
             lines.append(f"    {slot} = p{index}({text})")
