@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from mmrs_core.languages.element import (
     Element,
+    container_of,
     containing_feature,
     label_of,
     metaclass_of,
@@ -116,10 +117,9 @@ class Linker:
             reason = f"{type(owner).__name__} has no {type(element).__name__} of its own"
             self._record.value(Category.LOST, reason, node, feature)
             return None
-        present = children(owner, other.within)
-        if element in present:
+        if container_of(element) is owner and containing_feature(element) is kind:
             return element
-        found = next((each for each in present if label_of(each) == name), None)
+        found = next((each for each in children(owner, other.within) if label_of(each) == name), None)
         if found is None and other.make and "name" in metaclass_of(element).by_name:
             found = self._registry.create(*metaclass_of(element).key, name=name)
             getattr(owner, kind.attribute).append(found)

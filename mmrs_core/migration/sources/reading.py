@@ -79,7 +79,8 @@ def _target(text: str, document: Document, root: Node) -> Node | None:
         match = _STEP.fullmatch(step)
         if match is None or node is None:
             return None
-        inner = node.nodes(match["name"])
+        inner = node.values.get(match["name"], [])
         index = int(match["index"] or 0)
-        node = inner[index] if index < len(inner) else None
+        found = inner[index] if index < len(inner) else None
+        node = found if isinstance(found, Node) else None
     return node
