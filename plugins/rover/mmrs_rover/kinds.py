@@ -54,4 +54,4 @@ def turning_radius(robot_type: RobotType) -> float:
 
 
 ROVER_KIND = replace(PLAIN_ROBOT, name="rover", metaclass=ROVER, kinematics=kinematics, barrier=barrier)
-"""Like any robot that stays on its level it neither launches nor recovers, and it answers faults as that does."""
+"""Like any robot that stays on its level it neither launches nor recovers; it answers faults alike."""
