@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from html import unescape
 
+from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import (
     Element,
     Unknown,
@@ -62,11 +63,10 @@ def title_of(element: Element) -> str:
     """Return class and name of an element, or else the first text that it says."""
     if isinstance(element, Unknown):
         return _unknown(element)
-    texts = (
-        get(element, feature.name) for feature in metaclass_of(element).features if not feature.is_reference
-    )
+    metaclass = metaclass_of(element)
+    texts = [get(element, each.name) for each in metaclass.features if isinstance(each.type, DataType)]
     label = label_of(element) or next((text for text in texts if isinstance(text, str) and text), "")
-    return f"{metaclass_of(element).name}{label and f' {value_words(label)}'}"
+    return f"{metaclass.name}{label and f' {value_words(label)}'}"
 
 
 def value_words(value: object) -> str:
