@@ -9,11 +9,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import mmrs_core.languages
+from mmrs_core.errors import MmrsError
 from mmrs_core.generation.stubs.module import referred, stub_text
 from mmrs_core.generation.stubs.names import module_name
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.registry import CORE_LANGUAGES, Registry, core_registry
 from mmrs_core.languages.writing import replace_file
+
+MARK = 'made by "mmrs metamodel stubs"'
+"""What the first line of every stub says."""
 
 _CORE = {f"urn:mmrs:{name}:1.0": f"{mmrs_core.languages.__name__}.{name}" for name in CORE_LANGUAGES}
 
@@ -35,6 +39,9 @@ def write_stubs(registry: Registry, ns_uris: Iterable[str], folder: Path) -> tup
 
     Returns:
         The files, in the order of the names given, then what these refer to.
+
+    Raises:
+        MmrsError: if a file of somebody else's would be replaced; nothing is written.
     """
     packages = _with_referred(registry, ns_uris)
     folder.mkdir(parents=True, exist_ok=True)
@@ -78,9 +85,17 @@ def _written(packages: Iterable[Package], modules: Mapping[str, str], folder: Pa
         folder / f"{modules[package.ns_uri].rpartition('.')[2]}.pyi": stub_text(package, modules)
         for package in packages
     }
+    foreign = [str(path) for path in texts if path.exists() and not _is_ours(path)]
+    if foreign:
+        raise MmrsError(f"{', '.join(foreign)}: not made by this command; nothing was written")
     for path, text in texts.items():
         replace_file(path, text.encode())
     return tuple(texts)
+
+
+def _is_ours(path: Path) -> bool:
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return MARK in file.readline()
 
 
 if __name__ == "__main__":

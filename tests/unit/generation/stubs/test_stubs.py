@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import MmrsError, PluginError
 from mmrs_core.generation.stubs.module import docstring
 from mmrs_core.generation.stubs.write import write_stubs
 from mmrs_core.languages.metamodels.files import registry_of_files
@@ -130,6 +130,18 @@ def test_a_stub_in_a_package_imports_its_neighbours_from_there(tmp_path):
     registry, ns_uris = registry_of_files([ZOO], ())
     write_stubs(registry, ns_uris, package)
     assert "from animals.models import zoo as _zoo" in (package / "wing.pyi").read_text()
+
+
+def test_stubs_are_replaced_but_nothing_that_somebody_else_wrote(tmp_path):
+    registry, ns_uris = registry_of_files([ZOO], ())
+    first = write_stubs(registry, ns_uris, tmp_path)
+    assert write_stubs(registry, ns_uris, tmp_path) == first
+    (tmp_path / "wing.pyi").write_text("mine: int\n")
+    (tmp_path / "zoo.pyi").unlink()
+    with pytest.raises(MmrsError, match=r"wing\.pyi: not made by this command"):
+        write_stubs(registry, ns_uris, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["wing.pyi"]
+    assert (tmp_path / "wing.pyi").read_text() == "mine: int\n"
 
 
 def test_metamodels_that_one_refers_to_get_their_stubs_as_well(tmp_path):
