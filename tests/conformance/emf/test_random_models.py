@@ -12,13 +12,14 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import XML_TYPES
 from mmrs_core.languages.element import descendants, metaclass_of
 from mmrs_core.languages.metamodels.export import export_metamodels, schema_locations
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import write_model
 from mmrs_core.languages.xmi import quick_reader, quick_writer
-from mmrs_core.testing.instances import instances_of
+from mmrs_core.testing.instances import drafts_of, instances_of
 from mmrs_core.testing.values import WORDS
 
 pytestmark = pytest.mark.peer
@@ -32,6 +33,8 @@ VALUES = {  # of types that we keep as texts, and EMF takes apart
     ("urn:test:suite", "Foreign"): WORDS,
     ("urn:test:zoo", "Colour"): WORDS,
 }
+UNCHECKED = ("urn:test:suite", "urn:test:parts")
+"""Of these, EMF checks the keys of map entries as well."""
 RANDOM = settings(
     deadline=None,
     database=None,
@@ -123,6 +126,32 @@ def test_what_we_write_emf_reads_without_a_word_and_finds_equal(
     )
 
 
+@pytest.mark.parametrize("count", COUNTS)
+def test_emf_and_we_miss_values_in_the_same_models(referee, registry, folder, tell, count):
+    verdicts = Counter()
+    languages = [each.ns_uri for each in registry.packages if not each.ns_uri.startswith(UNCHECKED)]
+
+    @seed(SEED)
+    @settings(RANDOM, max_examples=count)
+    @given(data=st.data())
+    def check(data):
+        ns_uri = data.draw(st.sampled_from(languages))
+        drawn = drafts(registry, ns_uri) if data.draw(st.booleans()) else instances(registry, ns_uri)
+        write_model([data.draw(drawn)], folder / "draft.xmi", registry)
+        model = read_model(folder / "draft.xmi", registry)
+        ours = (*model.diagnostics, *check_conformance(model, registry))
+        theirs = referee.ask("check", folder / "draft.xmi").faults
+        assert bool(ours) == bool(theirs), (ours, theirs)
+        verdicts["refused" if ours else "accepted"] += 1
+
+    check()
+    assert min(verdicts.values()) > count // 10
+    tell(
+        f"both: {verdicts['accepted']} models accepted and {verdicts['refused']} refused by EMF's "
+        f"Diagnostician and by us alike (seed {SEED})"
+    )
+
+
 def described(referee, file, *how):
     """Return what EMF finds in a file, which must be without fault."""
     judged, *lines = referee.ask(*how, "dump", file).lines
@@ -133,6 +162,11 @@ def described(referee, file, *how):
 @st.composite
 def instance(draw, registry):
     return draw(instances(registry, draw(st.sampled_from([each.ns_uri for each in registry.packages]))))
+
+
+@cache
+def drafts(registry, ns_uri):
+    return drafts_of(registry, ns_uri, values=VALUES)
 
 
 @cache
