@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.timeout(600)
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial"
 PAGES = sorted(TUTORIAL.glob("[0-9]-*.md"))
 BLOCK = re.compile(
@@ -100,18 +101,35 @@ def environment(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def reader(tmp_path_factory, environment):
-    return Reader(tmp_path_factory.mktemp("tutorial"), environment)
-
-
-def test_following_the_pages_leads_to_what_they_show(reader, update_golden):
+def followed(tmp_path_factory, environment):
+    """The folder in which a reader is who has done what all pages say, and seen what they show."""
+    reader = Reader(tmp_path_factory.mktemp("tutorial"), environment)
     for page in PAGES:
         reader.follow(page)
+    return reader.folder
+
+
+def test_readers_see_the_pictures_of_the_pages(followed, update_golden):
+    for page in PAGES:
         for picture in PICTURE.finditer(page.read_text(encoding="utf-8")):
-            made, shown = reader.folder / picture["made"], page.parent / picture["shown"]
+            made, shown = followed / picture["made"], page.parent / picture["shown"]
             if update_golden:
                 shown.write_bytes(made.read_bytes())
             assert made.read_bytes() == shown.read_bytes(), f"{page.name}: {shown.name}"
+
+
+@pytest.mark.parametrize(
+    "tool",
+    [
+        ("ruff", "check", "--no-cache", "mmrs_panels", "tests"),
+        ("ruff", "format", "--no-cache", "--check", "mmrs_panels", "tests"),
+        ("mypy", "mmrs_panels"),
+    ],
+)
+def test_what_readers_have_written_is_as_clean_as_the_core(followed, environment, tool):
+    command = [sys.executable, "-m", *tool]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=followed, env=environment, timeout=240)
+    assert done.returncode == 0, f"{done.stdout}{done.stderr}"
 
 
 def test_pages_are_linked_in_their_order():
@@ -126,14 +144,3 @@ def test_what_pages_link_to_exists():
     for page in (*PAGES, TUTORIAL / "index.md"):
         links = re.findall(r"\]\(([^)#]+?)\)", page.read_text(encoding="utf-8"))
         assert [link for link in links if not (page.parent / link).exists()] == []
-
-
-def test_the_python_of_the_pages_is_formatted_like_that_of_the_core(tmp_path):
-    for page in PAGES:
-        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-            if block["sort"] == "python":
-                file = tmp_path / block["file"].replace("/", "_")
-                file.write_text(block["text"], encoding="utf-8")
-    command = [sys.executable, "-m", "ruff", "format", "--check", "--line-length", "110", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
