@@ -13,9 +13,12 @@ from mmrs_core.contributions.rules import most_specific
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.earth import metres
 from mmrs_core.generation.escaping import Call
+from mmrs_core.generation.vehicles import ROVER
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
+
+NO_TURNING = "no ground vehicle turns to a heading on command; give the device a mavlink.gimbal"
 
 LEGS = {"DIRECT": "direct", "HORIZONTAL_FIRST": "level first", "VERTICAL_FIRST": "climb first"}
 
@@ -35,9 +38,20 @@ def losses_of(move: Move, context: RobotContext) -> tuple[str, ...]:
     losses = []
     if move.metaclasses[0][1] == "GoTo" and context.speed(move) is None:
         losses.append(f"{context.label(move)}: its speed is not known, because its robot type is not given")
+    if move.heading is not None and not turns_to(move.heading, context):
+        losses.append(f"{context.label(move)}: {NO_TURNING}")
     if move.metaclasses[0] == (MULTICOPTER, "TakeOff") and _number(move, "altitude") <= 0:
         losses.append(f"{context.label(move)}: takes off to {_number(move, 'altitude'):g} m above the ground")
     return tuple(losses)
+
+
+def turns_to(heading: Heading, context: RobotContext) -> bool:
+    """Return whether the vehicle, or the device on it, can be told to turn to a heading.
+
+    ArduPilot's Rover takes no heading: it ignores the yaw of position targets in GUIDED, and
+    skips CONDITION_YAW in AUTO.
+    """
+    return context.vehicle is not ROVER or "mavlink.gimbal" in _properties(heading, context)
 
 
 def place_of(position: Position, context: RobotContext) -> Call:
@@ -97,14 +111,14 @@ def _recharge(move: Move, context: RobotContext) -> Call:
 
 def _turn(move: Move, context: RobotContext) -> Call:
     look = _look(move.heading, context)
-    return Call("Turn", (look,)) if look else Call("Skip", ("it has no heading",))
+    why = NO_TURNING if move.heading is not None else "it has no heading"
+    return Call("Turn", (look,)) if look else Call("Skip", (why,))
 
 
 def _look(heading: Heading | None, context: RobotContext) -> Call | None:
-    if heading is None:
+    if heading is None or not turns_to(heading, context):
         return None
-    device = context.type.devices.get(heading.device) if context.type else None
-    properties = device.properties if device else {}
+    properties = _properties(heading, context)
     named: list[tuple[str, object]] = []
     if heading.angle_degrees:
         named.append(("angle", metres(heading.angle_degrees)))
@@ -113,6 +127,12 @@ def _look(heading: Heading | None, context: RobotContext) -> Call | None:
     if "mavlink.gimbal" in properties:
         named.append(("gimbal", True))
     return Call("Look", (_target(heading.target, context),), tuple(named))
+
+
+def _properties(heading: Heading, context: RobotContext) -> Mapping[str, str]:
+    """Return how the device is wired that a heading is of; nothing for the front of the robot."""
+    device = context.type.devices.get(heading.device) if context.type else None
+    return device.properties if device else {}
 
 
 def _target(target: Target, context: RobotContext) -> Call:

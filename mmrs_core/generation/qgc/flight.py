@@ -8,8 +8,10 @@ from math import atan2, degrees, dist
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
+from mmrs_core.generation.mavlink.movements import turns_to
 from mmrs_core.generation.qgc import items as qgc
 from mmrs_core.generation.qgc.items import Item
+from mmrs_core.generation.vehicles import ROVER
 from mmrs_core.generation.wiring import Wired, wiring_of
 from mmrs_core.scene import Name, Position
 
@@ -116,8 +118,10 @@ class Flight:
             self._add(qgc.LOITER_TIME, move, _number(move, "duration"), here=True)
 
     def head_to(self, move: Move, fluid: bool) -> None:
-        """Turn to something, if its place is known."""
-        if move.heading is not None and move.heading.target.position is not None:
+        """Turn to something, if its place is known; a ground vehicle can only have its gimbal do so."""
+        if self._context.vehicle is ROVER:
+            self._look(move)
+        elif move.heading is not None and move.heading.target.position is not None:
             angle = _bearing(self._position, move.heading.target.position) - move.heading.angle_degrees
             self._add(qgc.CONDITION_YAW, move, round(angle % 360.0, 1))
 
@@ -128,7 +132,8 @@ class Flight:
             self._add(qgc.CHANGE_SPEED, move, 1.0, speed, -1.0)
 
     def _look(self, move: Move) -> None:
-        position = move.heading.target.position if move.heading else None
+        heading = move.heading if move.heading and turns_to(move.heading, self._context) else None
+        position = heading.target.position if heading else None
         if position is not None:
             self._items.append(Item(qgc.ROI_LOCATION, move, (), position))
         elif self._looking:

@@ -262,6 +262,38 @@ def test_a_device_on_the_robots_side_turns_the_robot():
     assert "angle=90.0, mount=270.0" in source
 
 
+def crawler(**properties):
+    """Return a ground vehicle with a camera."""
+    camera = Device("camera", {"takePhoto": DeviceAction("takePhoto", 1.0)}, properties)
+    robot = (("urn:mmrs:robot:1.0", "Robot"),)
+    return replace(quad(), metaclasses=robot, devices={"camera": camera})
+
+
+LOOK = Heading(Target((5.0, 5.0, 0.0)), "camera")
+DRIVE = go_to("a", (0.0, 9.0, 0.0), heading=LOOK)
+TURN = replace(move("b", "HeadTo"), heading=LOOK)
+
+
+def test_a_ground_vehicle_that_is_to_turn_to_a_heading_is_refused():
+    faults = refused(DRIVE, TURN, types=[crawler()])
+    assert [fault.split(": ")[1] for fault in faults] == [
+        "no ground vehicle turns to a heading on command; give the device a mavlink.gimbal"
+    ] * 2
+
+
+def test_a_turn_of_a_ground_vehicle_that_is_lost_is_a_step_without_effect():
+    made = program(robot_program("alpha", [DRIVE, TURN]))
+    source = generated(made, types=[crawler()], allow_lossy=True)["robot_alpha.py"].decode()
+    assert "Skip(" in source
+    assert "Look(" not in source
+
+
+def test_a_gimbal_on_a_ground_vehicle_looks_where_it_is_to_look():
+    made = program(robot_program("alpha", [DRIVE, TURN]))
+    source = generated(made, types=[crawler(**{"mavlink.gimbal": "1"})])["robot_alpha.py"].decode()
+    assert source.count("gimbal=True") == 2
+
+
 def test_a_local_behaviour_has_local_places_relative_to_home():
     robot = robot_program(
         "a", [take_off("up", 5.0), go_to("b", (13.0, 24.0, 6.0)), LAND], home=(10.0, 20.0, 1.0)

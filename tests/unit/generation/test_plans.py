@@ -10,7 +10,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.qgc.target import QGC_PLAN
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.scene import Frame
+from mmrs_core.scene import Device, Frame
 from mmrs_core.testing.programs import (
     L_AQUILA,
     MULTICOPTER,
@@ -18,6 +18,7 @@ from mmrs_core.testing.programs import (
     move,
     photo,
     program,
+    quad,
     robot_program,
     take_off,
     target_input,
@@ -101,6 +102,26 @@ def test_a_heading_is_a_region_of_interest_until_it_ends():
     looks = go_to("a", (0.0, 30.0, 20.0), heading=Heading(Target((5.0, 5.0, 0.0)), "camera"))
     plan = plans(take_off("up", 20.0), looks, go_to("b", (0.0, 0.0, 20.0)), LAND)["alpha.plan"]
     assert [command for command, _ in items(plan)] == [22, 178, 195, 16, 197, 16, 21]
+
+
+@pytest.mark.parametrize(("properties", "looks"), [({"mavlink.gimbal": "1"}, [195, 195]), ({}, [])])
+def test_a_ground_vehicle_looks_by_its_gimbal_or_not_at_all(properties, looks):
+    heading = Heading(Target((5.0, 5.0, 0.0)), "camera")
+    moves = [
+        go_to("a", (0.0, 30.0, 0.0), heading=heading),
+        replace(move("b", "HeadTo"), heading=heading),
+    ]
+    camera = Device("camera", {}, properties)
+    crawler = replace(quad(), metaclasses=(("urn:mmrs:robot:1.0", "Robot"),), devices={"camera": camera})
+    given = target_input(program(robot_program("alpha", moves)), [crawler])
+    (plan,) = [
+        json.loads(file.content)
+        for file in render(QGC_PLAN, given, allow_lossy=True)
+        if file.path == "alpha.plan"
+    ]
+    commands = [command for command, _ in items(plan)]
+    assert 115 not in commands
+    assert [command for command in commands if command == 195] == looks
 
 
 def test_the_speed_of_the_travel_mode_stands_where_the_move_gives_none():
