@@ -107,6 +107,11 @@ def render_real(value: object) -> str:
     return f"{'-' if sign else ''}{figures[0]}.{fraction}E{power}"
 
 
+def _parse_schema_boolean(text: str) -> bool:
+    """Read a truth value as XML Schema part 2 has it, section 3.2.2."""
+    return parse_boolean({"1": "true", "0": "false"}.get(text, text))
+
+
 def _parse_schema_real(text: str) -> float:
     """Read a number as XML Schema part 2 has it, section 3.2.5, or in Java's notation."""
     return parse_real(text.replace("INF", "Infinity") if text in ("INF", "-INF") else text)
@@ -315,6 +320,8 @@ def builtin_type(ns_uri: str, name: str) -> DataType | None:
         found = declared_type(ns_uri, name, _XML_JAVA.get(name, "java.lang.String"))
         if found.python is float:
             return replace(found, parse=_parse_schema_real, render=_render_schema_real)
+        if found.python is bool:
+            return replace(found, parse=_parse_schema_boolean)
         if found.python is Decimal:
             return replace(found, render=lambda value: format(value, "f"))
         if name == "Base64Binary":

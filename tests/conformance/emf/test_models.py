@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from emf_description import model_lines
 
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.metamodels.export import export_metamodels, schema_locations
@@ -194,3 +195,62 @@ def test_emf_and_we_refuse_and_accept_the_same(referee, registry, tmp_path, titl
     ours = [fault for fault in found if fault.severity.value == "error" and fault.code != "ECO009"]
     theirs = referee.ask("check", file).faults
     assert (bool(ours), bool(theirs)) == (title in WRONG, title in WRONG)
+
+
+@pytest.mark.parametrize("title", RIGHT)
+def test_emf_and_we_read_the_same_values(referee, registry, tmp_path, title):
+    file = tmp_path / "case.xmi"
+    file.write_text(f"{HEAD}{RIGHT[title]}</zoo:Zoo>")
+    said = referee.ask("dump", file).lines[1:]
+    assert list(model_lines(read_model(file, registry).roots, "case.xmi")) == list(said)
+
+
+FORMS = {
+    "nil reference": 'Scalars{}><perhaps xsi:nil="true"/></suite:Scalars>',
+    "nil value": 'Unsettable{}><string xsi:nil="true"/></suite:Unsettable>',
+    "empty list": 'Unsettable{} unsetTexts="" leaves=""/>',
+    "set to the default": 'Unsettable{} int="0" boolean="false" double="0.0" mood="is-calm"/>',
+    "keys": 'Keyed{} chosen="//@keys[key=\'a%20b\']"><keys key="a b"/></suite:Keyed>',
+    "schema numbers": 'XmlTypes{} double="-INF" float="NaN" boolean="1" decimal="0.10" base64Binary="Cv8="/>',
+    "java numbers": 'Scalars{} double="1.5d" float="2.5f" doubleObject="-Infinity" bigDecimal="1.50E+3"/>',
+    "all bits": 'Scalars{} double="0.30000000000000004" doubleObject="4.9E-324" long="9223372036854775807"/>',
+    "a date with a zone": 'Scalars{} date="2024-05-01T10:11:12.123+0200" char="x" characterObject="228"/>',
+    "bytes": 'Scalars{} byteArray="0aFF" byte="-128" bigInteger="-123456789012345678901234567890"/>',
+    "values as elements": "Scalars{}><double>1.5</double><string> a </string></suite:Scalars>",
+    "many values as an attribute": 'Many{} ints="1 2 2" moods="is-calm ANGRY" strings="a b"/>',
+    "awkward names": 'Awkward{} from="a" class="b" __init__="c" eClass="d" notify="e" self="f" None="g"/>',
+    "awkward classes": 'None{} import="a"><nodes xsi:type="suite:class" import="b"/></suite:None>',
+    "umlauts": 'Größe{} größe="1.5"/>',
+    "own href": "Awkward{}><href>b</href><import><href>a#b</href></import></suite:Awkward>",
+    "paired with itself": 'Linked{}><mate href="#/"/></suite:Linked>',
+    "other prefix": 'Scalars{} xmlns:o="urn:test:suite:deeper"><nodes xsi:type="o:Deep"/></suite:Scalars>',
+    "xmi type": 'Scalars{}><nodes xmi:type="suite:Many"/></suite:Scalars>',
+    "identifiers": 'Linked{} xmi:id="_1" one="_2"><nodes xsi:type="suite:Many" xmi:id="_2"/></suite:Linked>',
+    "map entries": 'Scalars{}><entries key="k"><value xsi:type="suite:Many"/></entries></suite:Scalars>',
+}
+ROOT = (
+    ' xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:suite="urn:test:suite" '
+    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+)
+
+
+@pytest.mark.parametrize("title", FORMS)
+def test_emf_and_we_read_the_same_from_every_form(referee, registry, tmp_path, title):
+    file, back = tmp_path / "case.xmi", tmp_path / "back.xmi"
+    file.write_text(f"<suite:{FORMS[title].replace('{}', ROOT)}")
+    model = read_model(file, registry)
+    assert model.diagnostics == ()
+    assert ["JUDGED case.xmi", *model_lines(model.roots, "case.xmi")] == list(referee.ask("dump", file).lines)
+    write_model(model.roots, back, registry)
+    assert "EQUAL" in referee.ask("equal", file, back).lines
+
+
+@pytest.mark.parametrize("encoding", ["UTF-8", "UTF-8-SIG", "UTF-16", "ISO-8859-1", "ASCII"])
+def test_emf_and_we_read_the_same_from_every_encoding(referee, registry, tmp_path, encoding):
+    file = tmp_path / "case.xmi"
+    header = f'<?xml version="1.0" encoding="{encoding.removesuffix("-SIG")}"?>'
+    text = f'{header}<suite:Scalars{ROOT} string="ä&#x20AC;"/>'
+    file.write_bytes(text.encode(encoding, "xmlcharrefreplace"))
+    model = read_model(file, registry)
+    assert model.roots[0].string == "ä€"
+    assert ["JUDGED case.xmi", *model_lines(model.roots, "case.xmi")] == list(referee.ask("dump", file).lines)

@@ -110,6 +110,12 @@ def test_wrong_values_of_the_types_of_xml_schema_are_faults(suite, feature, text
     assert [fault.code for fault in found.diagnostics] == ["XMI005"]
 
 
+@pytest.mark.parametrize(("text", "value"), [("1", True), ("0", False), ("true", True)])
+def test_truth_values_of_xml_schema_may_be_figures(again, text, value):
+    node, _ = again("XmlTypes", f'boolean="{text}"')
+    assert node.boolean is value
+
+
 def test_anything_may_stand_where_any_object_may(again):
     node, _ = again("Scalars", content='<anything xsi:type="suite:Many"/>')
     assert type(node.anything).__name__ == "Many"
