@@ -17,7 +17,7 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 from mmrs_core.scene import Name
 
@@ -82,7 +82,9 @@ class Contributions:
     @cached_property
     def migrations(self) -> tuple[Migration, ...]:
         """Return the steps from older versions of languages."""
-        return tuple(self._by("migrations", lambda migration: migration.from_uri).values())
+        found = tuple(self._by("migrations", lambda migration: migration.from_uri).values())
+        chains(found, ())  # they must not lead in a circle
+        return found
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

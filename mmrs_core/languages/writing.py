@@ -46,7 +46,8 @@ def to_json(
     file: Path | None = None,
 ) -> bytes:
     """Return the text of a model in our JSON form, in UTF-8; arguments and errors as in `to_xmi`."""
-    return JsonWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
+    with collector_at_rest():
+        return JsonWriter(tuple(roots), registry, file).document(schema_location or {}).encode()
 
 
 def write_model(

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.comparison.features import address_of, features_of, paths_of, raw_text, said_by
 from mmrs_core.languages.comparison.matching import Matching, every
 from mmrs_core.languages.element import Element, containing_feature, held
@@ -53,7 +54,8 @@ def changes_between(before: Sequence[Element], after: Sequence[Element]) -> tupl
     told by its outermost element; an element in another container or at another place among its like was
     moved, unless it only made way.
     """
-    return tuple(_Comparison(before, after).changes())
+    with collector_at_rest():
+        return tuple(_Comparison(before, after).changes())
 
 
 class _Comparison:
@@ -87,12 +89,13 @@ class _Comparison:
         if raw_text(one) != raw_text(other):
             yield Change(Sort.CHANGED, other, before, after, "content", (raw_text(one),), (raw_text(other),))
         ours, theirs = features_of(one), features_of(other)
+        same = self._matching.says_the_same(one, other)
         for name in dict.fromkeys((*ours, *theirs)):
             feature = theirs.get(name) or ours[name]
             if feature.containment:
                 known = (held(e, f[name]) if name in f else () for e, f in ((one, ours), (other, theirs)))
                 yield from self._moved_among(*map(_elements, known))
-            elif feature.stored and not feature.is_container:
+            elif feature.stored and not feature.is_container and (feature.is_reference or not same):
                 old, new = self._said(one, ours.get(name)), self._said(other, theirs.get(name))
                 if old != new:
                     sort = Sort.MOVED if old and new and Counter(old) == Counter(new) else Sort.CHANGED

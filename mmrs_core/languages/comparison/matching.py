@@ -37,12 +37,16 @@ class Matching:
         self.first: dict[int, Element] = {}
         self._prints: dict[int, int] = {}
         for root in (*before, *after):
-            self._prints |= fingerprints(root)
+            self._prints.update(fingerprints(root))
         self._pending: deque[tuple[Element, Element]] = deque()
         self._match_lists(before, after)
         self._match_contents()
         self._match_moved(before, after)
         self._match_contents()
+
+    def says_the_same(self, one: Element, other: Element) -> bool:
+        """Return whether two elements, with all inside them, are equal but for references."""
+        return self._prints[id(one)] == self._prints[id(other)]
 
     def _pair(self, one: Element, other: Element) -> None:
         self.second[id(one)] = other

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from decimal import Decimal
+from json.encoder import encode_basestring
 
 from mmrs_core.languages.datatypes import DataType, shown
 from mmrs_core.languages.json_form.tree import Node, Number
@@ -19,7 +19,7 @@ _LONE = re.compile("[\ud800-\udfff]")
 
 def quoted(text: str) -> str:
     """Return a text as JSON writes it; halves of surrogate pairs as escapes, since no UTF-8 holds them."""
-    written = json.dumps(text, ensure_ascii=False)
+    written = encode_basestring(text)
     return _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)
 
 

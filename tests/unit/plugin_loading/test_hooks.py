@@ -147,6 +147,20 @@ def test_two_rules_for_one_metaclass_name_both_plug_ins():
         _ = loaded.contributions.rules
 
 
+def test_two_migrations_from_one_version_name_both_plug_ins():
+    one = plugin_with("mmrs_migrations", lambda: [Migration(KITE[0], "urn:test:kite:1.1")])
+    two = plugin_with("mmrs_migrations", lambda: [Migration(KITE[0], "urn:test:kite:2.0")])
+    loaded = load_plugins(only_core=True, extra={"first": one, "second": two})
+    with pytest.raises(PluginError, match=r"migration 'urn:test:kite:1\.0'.*'first' and 'second'"):
+        _ = loaded.contributions.migrations
+
+
+def test_migrations_that_lead_in_a_circle_are_refused():
+    circle = (Migration(KITE[0], "urn:test:kite:1.1"), Migration("urn:test:kite:1.1", KITE[0]))
+    with pytest.raises(PluginError, match="its migrations lead in a circle"):
+        _ = contributions_with("mmrs_migrations", *circle).languages
+
+
 def test_a_misspelt_hook_is_an_error_that_names_the_plug_in():
     plugin = plugin_with("mmrs_ruels", lambda: [])
     with pytest.raises(PluginError, match=r"'kites'.*mmrs_ruels"):
