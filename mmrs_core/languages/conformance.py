@@ -13,7 +13,10 @@ from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.soundness import Sound, soundness
 
+_OFTEN = 16
+"""Compiling costs as much as asking all rules of so many elements."""
 _FINITE = "give a number; leave the attribute out where the value is not known"
 
 
@@ -24,7 +27,8 @@ def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...
     An element whose metamodel is not installed is passed over: reading reported it.
     """
     check = _Check(model, registry)
-    return tuple(fault for element in model.elements() for fault in check.element(element))
+    doubtful = (element for element in model.elements() if not check.is_sound(element))
+    return tuple(fault for element in doubtful for fault in check.element(element))
 
 
 class _Check:
@@ -33,6 +37,21 @@ class _Check:
         self._broken = model.broken
         self._roots = {id(root) for root in model.roots}
         self._ids: dict[object, Element] = {}
+        self._sound: dict[type, Sound] = {}
+        self._seen: dict[type, int] = {}
+        self._standing: set[Element] = set()
+
+    def is_sound(self, element: Element) -> bool:
+        """Return whether an element is beyond doubt; only asked once a class occurs often."""
+        kind = type(element)
+        sound = self._sound.get(kind)
+        if sound is not None:
+            return sound(element, self._stands)
+        count = self._seen[kind] = self._seen.get(kind, 0) + 1
+        metaclass = kind._mmrs_metaclass
+        if count == _OFTEN and metaclass is not None and self._installed(metaclass):
+            self._sound[kind] = soundness(metaclass)
+        return False
 
     def element(self, element: Element) -> Iterator[Diagnostic]:
         if isinstance(element, Unknown):
@@ -104,9 +123,15 @@ class _Check:
             yield from _repeated(element, feature, values, id)
 
     def _stands(self, element: Element) -> bool:
+        container = element._mmrs_container
+        if container in self._standing:
+            return True
         root = root_of(element)
         source = root._mmrs_source
-        return id(root) in self._roots or (source is not None and root in source.roots)
+        stands = id(root) in self._roots or (source is not None and root in source.roots)
+        if stands and container is not None:
+            self._standing.add(container)
+        return stands
 
 
 def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagnostic]:

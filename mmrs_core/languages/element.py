@@ -85,6 +85,8 @@ class Element(metaclass=ElementType):
 
     An empty slot means that the feature was never set, and so does None unless the feature is nullable.
     """
+    _mmrs_inside: ClassVar[tuple[Callable[[Element], object], ...]] = ()
+    """What reads the bare slot of each feature that contains elements."""
     _mmrs_missing: ClassVar[Mapping[str, Callable[[Element], object]]] = {}
     """What each feature holds while its slot is empty, by attribute."""
 
@@ -177,10 +179,15 @@ def held(element: Element, feature: Feature) -> tuple[object, ...]:
 
 def contents(element: Element) -> Iterator[Element]:
     """Yield the elements directly inside it, in the order of features and lists."""
-    metaclass = type(element)._mmrs_metaclass
-    for feature in metaclass.features if metaclass else ():
-        if feature.containment:
-            yield from (value for value in held(element, feature) if isinstance(value, Element))
+    for read in type(element)._mmrs_inside:
+        try:
+            value = read(element)
+        except AttributeError:
+            continue
+        if isinstance(value, list):
+            yield from [each for each in value if isinstance(each, Element)]
+        elif isinstance(value, Element):
+            yield value
 
 
 def descendants(element: Element) -> Iterator[Element]:
@@ -189,7 +196,8 @@ def descendants(element: Element) -> Iterator[Element]:
     while pending:
         current = pending.pop()
         yield current
-        pending.extend(list(contents(current))[::-1])
+        if type(current)._mmrs_inside:
+            pending.extend(list(contents(current))[::-1])
 
 
 def get(element: Element, name: str) -> object:

@@ -39,6 +39,9 @@ def implementation_class(metaclass: Metaclass, interface: type[Element]) -> type
     for index, slot in enumerate(slots.values()):
         setattr(made, bare_name(index), slot)
     made._mmrs_slots = slots
+    made._mmrs_inside = tuple(
+        slots[feature.attribute].__get__ for feature in metaclass.features if feature.containment
+    )
     made._mmrs_missing = {feature.attribute: _missing(feature) for feature in metaclass.features}
     return made
 

@@ -10,7 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages import conformance
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element, Unknown, held, metaclass_of, path_of
+from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.languages.xmi import quick_reader, quick_writer
@@ -53,12 +56,15 @@ WORDS = (
 
 @contextmanager
 def compiled_after(count):
-    before = quick_reader._OFTEN, quick_writer._OFTEN
-    quick_reader._OFTEN = quick_writer._OFTEN = count
+    modules = quick_reader, quick_writer, conformance
+    before = [module._OFTEN for module in modules]
+    for module in modules:
+        module._OFTEN = count
     try:
         yield
     finally:
-        quick_reader._OFTEN, quick_writer._OFTEN = before
+        for module, often in zip(modules, before, strict=True):
+            module._OFTEN = often
 
 
 def read(text, registry, often):
@@ -182,6 +188,20 @@ def compiled_writers_agree(registry, data):
     assert quickly == written(XmiWriter(roots, registry, None))
 
 
+def compiled_rules_agree(registry, data):
+    model = Model("a.xmi", data.draw(forests(registry)))
+    with compiled_after(1):
+        quickly = check_conformance(model, registry)
+    with compiled_after(NEVER):
+        assert quickly == check_conformance(model, registry)
+
+
+@RELAXED
+@given(data=st.data())
+def test_compiled_rules_find_what_the_careful_ones_find(registry, data):
+    compiled_rules_agree(registry, data)
+
+
 @RELAXED
 @given(data=st.data())
 def test_compiled_readers_read_what_the_careful_one_reads(registry, data):
@@ -206,3 +226,10 @@ def test_compiled_readers_read_what_the_careful_one_reads_of_many_texts(registry
 @given(data=st.data())
 def test_compiled_writers_write_what_the_careful_one_writes_of_many_models(registry, data):
     compiled_writers_agree(registry, data)
+
+
+@pytest.mark.thorough
+@settings(RELAXED, max_examples=3000)
+@given(data=st.data())
+def test_compiled_rules_find_what_the_careful_ones_find_in_many_models(registry, data):
+    compiled_rules_agree(registry, data)
