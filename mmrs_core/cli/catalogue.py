@@ -23,7 +23,7 @@ class Entry:
     """What all faults of a code have in common.
 
     Attributes:
-        meaning: what is wrong, or the property that a verdict is about.
+        meaning: what is wrong; for constraints and properties of behaviours, what must hold.
         subject: the class of elements it is about; empty where it is about files.
         fix: what its quick fix does; empty if it has none.
         plugin: the distribution of the plug-in that brings it; empty for the core.
@@ -49,17 +49,17 @@ def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
         for code, about in CODES.items()
     ]
     for each in contributions.constraints:
-        broken, brought = f"broken: {each.expected}", contributions.distribution_of("constraints", each)
+        brought = contributions.distribution_of("constraints", each)
         plugin = "" if brought == "mmrs-core" else brought
         fix, subject = fixes.get(each.code, ""), each.metaclass[1]
         entries.append(
-            Entry(each.code, each.severity, broken, each.expected, each.hint, subject, fix, plugin)
+            Entry(each.code, each.severity, each.expected, each.expected, each.hint, subject, fix, plugin)
         )
     entries += [
         Entry(
             each.name,
             Severity.ERROR,
-            f"violated or unknown: {_plainly(each.title)}",
+            _plainly(each.title),
             _plainly(each.title),
             VERDICT_HINT,
             "Behaviour",

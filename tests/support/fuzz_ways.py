@@ -19,8 +19,8 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry
 from mmrs_core.languages.writing import to_json, to_xmi
-from mmrs_core.migration.mapping_file import read_mapping
 from mmrs_core.migration.migrate import migrate
+from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.pipeline import check_models, read_models
 from mmrs_core.resources import shipped
 

@@ -1,0 +1,236 @@
+"""True examples of faults: models that fail and pass, and the parts in which they differ."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from difflib import SequenceMatcher
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+from mmrs_core.behaviour.log import read_log
+from mmrs_core.cli.pages.diagnostics_page import Example
+from mmrs_core.diagnostics import Diagnostic
+from mmrs_core.errors import InvalidModelError
+from mmrs_core.languages import mission, robot
+from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.grounding.scenes import ground
+from mmrs_core.languages.model import Model
+from mmrs_core.languages.modelset import read_project
+from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
+from mmrs_core.languages.writing import to_xmi
+from mmrs_core.testing.conformance import ConstraintConformance
+from mmrs_core.testing.models import breaches
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "tests" / "fixtures" / "constraints"
+Finder = Callable[..., Sequence[Diagnostic]]
+LONGEST = 6
+"""Lines of an example; what is cut off is counted."""
+_TAG = re.compile(r"<[\w:.-]+")
+_ATTRIBUTE = re.compile(r'\s[\w:.-]+="[^"]*"')
+_KEPT = (" name=", " id=", " xsi:type=")
+
+
+def contrast(failing: bytes, passing: bytes) -> tuple[str, str]:
+    """Return what each of two XMI texts has that the other has not, element by element."""
+    one, other = (text.decode().splitlines() for text in (failing, passing))
+    left: list[str] = []
+    right: list[str] = []
+    for kind, a, b, c, d in SequenceMatcher(None, one, other, autojunk=False).get_opcodes():
+        if kind == "equal":
+            continue
+        same = kind == "replace" and b - a == d - c
+        for i, line in enumerate(one[a:b]):
+            left.append(_trimmed(line, other[c + i]) if same else line.strip())
+        for i, line in enumerate(other[c:d]):
+            right.append(_trimmed(line, one[a + i]) if same else line.strip())
+    return _cut(left), _cut(right)
+
+
+def _trimmed(line: str, other: str) -> str:
+    """Return a tag with the attributes in which it differs, and with what it is called."""
+    tag = _TAG.search(line)
+    if tag is None or (match := _TAG.search(other)) is None or match[0] != tag[0]:
+        return line.strip()
+    theirs = set(_ATTRIBUTE.findall(other))
+    own = _ATTRIBUTE.findall(line)
+    told = [each for each in own if each not in theirs or each.startswith(_KEPT)]
+    left_out = " …" if len(told) < len(own) else ""
+    return f"{tag[0]}{''.join(told)}{left_out}{'/>' if line.rstrip().endswith('/>') else '>'}"
+
+
+def _cut(lines: Sequence[str]) -> str:
+    more = len(lines) - LONGEST
+    shown = [line if len(line) <= 160 else f"{line[:158]} …" for line in lines[:LONGEST]]
+    return "\n".join((*shown, *([f"… and {more} more lines"] if more > 1 else lines[LONGEST:])))
+
+
+def _texts(failing: Iterable[Element], passing: Iterable[Element], registry: Registry) -> tuple[str, str]:
+    try:
+        return contrast(to_xmi(tuple(failing), registry), to_xmi(tuple(passing), registry))
+    except ValueError:  # a fault that no file can hold
+        return "", ""
+
+
+def core_examples(fresh_models: Callable[[], object]) -> dict[str, Example]:
+    """Return an example of each constraint of the core."""
+    found = {}
+    for file in sorted(CASES.glob("*_cases.py")):
+        for code, (breach, near, *_) in runpy.run_path(str(file))["CASES"].items():
+            failing, passing = fresh_models(), fresh_models()
+            breach(failing)
+            near(passing)
+            message = next(fault.message for fault in failing.faults() if fault.code == code)
+            roots = [(m.mission, m.context, m.quad, m.behaviour) for m in (failing, passing)]
+            found[code] = Example(message, *_texts(*roots, failing.registry))
+    return found
+
+
+def plugin_examples() -> dict[str, Example]:
+    """Return an example of each constraint of the plug-ins in this checkout."""
+    found = {}
+    for file in sorted((ROOT / "plugins").glob("*/tests/test_con*.py")):
+        for kit in runpy.run_path(str(file)).values():
+            if isinstance(kit, type) and issubclass(kit, ConstraintConformance) and hasattr(kit, "cases"):
+                registry = registry_with((*kit.plugin.mmrs_metamodels(), *kit.more_metamodels))
+                for constraint in kit.plugin.mmrs_constraints():
+                    case = kit.cases[constraint.code]
+                    failing, passing = tuple(case.broken(registry)), tuple(case.kept(registry))
+                    (message,) = breaches(constraint, failing)
+                    found[constraint.code] = Example(message, *_texts(failing, passing, registry))
+    return found
+
+
+_HEAD = (
+    '<mission:Mission xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+    ' xmlns:mission="urn:mmrs:mission:1.0">\n'
+)
+_WHOLE = re.compile(r"<\w+:|<[A-Z]")
+READING = ROOT / "tests" / "fixtures" / "diagnostics" / "reading_cases.py"
+
+
+def reading_cases(
+    folder: Path, fresh_models: Callable[[], object]
+) -> dict[str, tuple[Finder, object, object]]:
+    """Return, by code, what finds the faults of a case, and the two cases."""
+    found = {}
+    tables = runpy.run_path(str(READING))
+    finders = {
+        "TEXTS": _of_text,
+        "FILES": lambda files: _of_files(files, folder),
+        "PROGRAMS": _of_program,
+        "GROUNDED": lambda edit: _of_ground(edit, fresh_models()),
+        "LINES": lambda line: _of_log(line, folder),
+    }
+    for table, finder in finders.items():
+        found |= {code: (finder, *case) for code, case in tables[table].items()}
+    return found
+
+
+def reading_examples(folder: Path, fresh_models: Callable[[], object]) -> dict[str, Example]:
+    """Return an example of each fault of reading, metamodels and projects."""
+    found = {}
+    for code, (finder, failing, passing) in reading_cases(folder, fresh_models).items():
+        message = next(fault.message for fault in finder(failing) if fault.code == code)
+        language = "python" if "root = " in str(failing) or "m." in str(failing)[:2] else "xml"
+        found[code] = Example(
+            message.replace(str(folder), "."), _written(failing), _written(passing), language
+        )
+    return found
+
+
+def _written(case: object) -> str:
+    if isinstance(case, dict):
+        return "\n".join(f"<!-- {name} -->\n{text}" for name, text in case.items())
+    return str(case)
+
+
+def _wrapped(text: str) -> str:
+    return (
+        text if _WHOLE.match(text) and not text.startswith("<xmi:") else f"{_HEAD}{text}\n</mission:Mission>"
+    )
+
+
+@cache
+def _zoo() -> Registry:
+    return _fresh_zoo()
+
+
+def _fresh_zoo() -> Registry:
+    ecore = ROOT / "tests" / "fixtures" / "models" / "zoo.ecore"
+    return registry_with([MetamodelSource("urn:test:zoo", ecore, "zoo")])
+
+
+def _of_text(text: str) -> list[Diagnostic]:
+    model = read_text(_wrapped(text).encode(), "mission.xmi", _zoo())
+    return [*model.diagnostics, *check_conformance(model, _zoo())]
+
+
+def _of_files(files: dict[str, str], folder: Path) -> tuple[Diagnostic, ...]:
+    place = Path(mkdtemp(dir=folder))
+    (place / "robots").mkdir()
+    for name, text in files.items():
+        (place / name).write_text(_wrapped(text), encoding="utf-8")
+    found = read_project(place, registry=core_registry())[1]
+    return tuple(replace(each, message=each.message.replace(f"{place}/", "")) for each in found)
+
+
+def _of_program(program: str) -> tuple[Diagnostic, ...]:
+    home = mission.GeoCoordinate(latitude=42.0, longitude=13.0)
+    names = {"mission": mission, "robot": robot, "zoo": _zoo(), "elsewhere": _fresh_zoo(), "home": home}
+    exec(program, names)  # noqa: S102  our own fixtures
+    root = names["root"]
+    return check_conformance(Model("model", (root,)), _zoo())
+
+
+def _of_ground(edit: str, models: object) -> tuple[Diagnostic, ...]:
+    exec(edit, {"m": models})  # noqa: S102  our own fixtures
+    try:
+        ground(models.as_set)
+    except InvalidModelError as error:
+        return error.diagnostics
+    return ()
+
+
+def _of_log(line: str, folder: Path) -> tuple[Diagnostic, ...]:
+    file = Path(mkdtemp(dir=folder)) / "run.jsonl"
+    file.write_text(f"{line}\n", encoding="utf-8")
+    try:
+        read_log(file)
+    except InvalidModelError as error:
+        return error.diagnostics
+    return ()
+
+
+_VERDICTS = ROOT / "tests" / "golden" / "analysis" / "expected"
+
+
+def verdict_examples() -> dict[str, Example]:
+    """Return, by property, what is said of a behaviour that is not safe and of one that is."""
+    broken, sound = (_told(_VERDICTS / name) for name in ("broken.txt", "sound.txt"))
+    found = {}
+    for name in broken:
+        bad = [each for each in broken[name] if not _SAFE.match(each)]
+        good = [each for each in (*sound.get(name, ()), *broken[name]) if _SAFE.match(each)]
+        if bad and good:
+            found[name] = Example("", bad[0], good[0], "text")
+    return found
+
+
+_SAFE = re.compile(r"\w+: safe")
+
+
+def _told(file: Path) -> dict[str, list[str]]:
+    """Return verdicts by property, each with the line that explains it."""
+    found: dict[str, list[str]] = {}
+    lines = file.read_text(encoding="utf-8").splitlines()
+    for line, following in zip(lines, (*lines[1:], ""), strict=True):
+        if not line.startswith(" "):
+            found.setdefault(line.partition(":")[0], []).append(f"{line}\n{following}")
+    return found
