@@ -1,4 +1,9 @@
-"""Values of attributes: how EMF writes each data type as text, and how it reads it back."""
+"""Values of attributes: how EMF writes each data type as text, and how it reads it back.
+
+A real number keeps all its bits, whatever its type: one of EFloat is the double that its text means, and is
+written with the fewest digits that give that double again. EMF rounds it to 32 bits when it reads it; what
+EMF wrote comes back to it unchanged.
+"""
 
 from __future__ import annotations
 
