@@ -18,26 +18,30 @@ ECORE = """<?xml version="1.0" encoding="UTF-8"?>
     xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
     xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="fair" nsURI="urn:test:fair:1.2" nsPrefix="fair">
   <eClassifiers xsi:type="ecore:EClass" name="Fair">
-    <eStructuralFeatures xsi:type="ecore:EReference" name="kites" upperBound="-1" eType="#//Kite" containment="true"/>
+    <eStructuralFeatures xsi:type="ecore:EReference" name="kites" upperBound="-1"
+        eType="#//Kite" containment="true"/>
     <eStructuralFeatures xsi:type="ecore:EReference" name="winner" eType="#//Kite"/>
     <eStructuralFeatures xsi:type="ecore:EReference" name="ranking" upperBound="-1" eType="#//Kite"/>
   </eClassifiers>
   <eClassifiers xsi:type="ecore:EClass" name="Kite">
-    <eStructuralFeatures xsi:type="ecore:EAttribute" name="label" eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EString"/>
-    <eStructuralFeatures xsi:type="ecore:EAttribute" name="metres" eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EDouble"/>
+    <eStructuralFeatures xsi:type="ecore:EAttribute" name="label" eType="E#//EString"/>
+    <eStructuralFeatures xsi:type="ecore:EAttribute" name="metres" eType="E#//EDouble"/>
     <eStructuralFeatures xsi:type="ecore:EAttribute" name="colour" eType="#//Colour"/>
-    <eStructuralFeatures xsi:type="ecore:EAttribute" name="notes" upperBound="-1" eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EString"/>
+    <eStructuralFeatures xsi:type="ecore:EAttribute" name="notes" upperBound="-1" eType="E#//EString"/>
     <eStructuralFeatures xsi:type="ecore:EReference" name="tail" eType="#//Tail" containment="true"/>
   </eClassifiers>
   <eClassifiers xsi:type="ecore:EClass" name="Tail">
-    <eStructuralFeatures xsi:type="ecore:EAttribute" name="bows" eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EInt"/>
+    <eStructuralFeatures xsi:type="ecore:EAttribute" name="bows" eType="E#//EInt"/>
   </eClassifiers>
-  <eClassifiers xsi:type="ecore:EEnum" name="Colour"><eLiterals name="RED"/><eLiterals name="BLUE" value="1"/></eClassifiers>
+  <eClassifiers xsi:type="ecore:EEnum" name="Colour">
+    <eLiterals name="RED"/><eLiterals name="BLUE" value="1"/>
+  </eClassifiers>
 </ecore:EPackage>
-"""
+""".replace("E#//", "ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//")
 STAND_ECORE = """<ecore:EPackage xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
     xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
-    xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="stand" nsURI="urn:test:stand:1.0" nsPrefix="stand">
+    xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="stand"
+    nsURI="urn:test:stand:1.0" nsPrefix="stand">
   <eClassifiers xsi:type="ecore:EClass" name="BoxKite" eSuperTypes="urn:test:fair:1.2#//Kite"/>
 </ecore:EPackage>
 """
@@ -65,7 +69,8 @@ OLD_JSON = b"""{
   "ranking": ["//@dragons.2", "//@dragons.0"],
   "dragons": [
     {"name": "a b", "feet": 10, "colour": "ROUGE", "serial": 77},
-    {"$type": "stand:BoxKite", "name": "c", "feet": 100, "colour": "BLUE", "notes": ["one"], "end": {"knots": 3}},
+    {"$type": "stand:BoxKite", "name": "c", "feet": 100, "colour": "BLUE",
+     "notes": ["one"], "end": {"knots": 3}},
     {"notes": [" two words "], "end": {}}
   ]
 }
