@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import report, say, say_json
+from mmrs_core.cli.output import report, say, say_json, tell
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
@@ -62,6 +62,9 @@ def migrate(
     written = write_outputs(workshop, migration, files, output, force=force)
     faults = faults_in(written, workshop.contributions)
     valid = bool(written) and not has_errors(faults)
+    for source in migration.sources:
+        if source.fault:
+            tell(f"mmrs: {source.fault}")
     if json:
         told = {"sources": migration.sources, "findings": migration.findings, "files": written}
         report(faults)

@@ -21,7 +21,7 @@ def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
     """Yield the report of a migration; every finding is in it."""
     for source in migration.sources:
         found = ", ".join(str(file) for file in source.metamodels.values())
-        yield source.fault or f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
+        yield f"{source.file}: {source.what}" + (f" (by {found})" if found else "")
     groups = grouped(migration.findings)
     for category in Category:
         own = [group for group in groups if group.category is category]

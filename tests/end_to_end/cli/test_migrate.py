@@ -58,9 +58,10 @@ def test_what_holds_nothing_to_migrate_is_named_and_nothing_is_written(mmrs, pro
 def test_a_file_that_cannot_be_read_is_told_and_the_others_are_migrated(mmrs, project, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text("{")
-    code, out, _ = mmrs("migrate", broken, FLYAQ / "Heron.xmi", "-o", project)
+    code, out, err = mmrs("migrate", broken, FLYAQ / "Heron.xmi", "-o", project)
     assert code == 3
-    assert f"{broken}:1: not well-formed JSON" in out
+    assert f"mmrs: {broken}:1: not well-formed JSON" in err
+    assert f"{broken}: not readable" in out
     assert (project / "robots" / "Heron.xmi").is_file()
 
 
