@@ -185,10 +185,11 @@ def render(
     """
     from mmrs_core.contributions.targets import TargetInput
     from mmrs_core.generation.render import render as rendered
+    from mmrs_core.languages.naming import nearest
 
     if target not in contributions.targets:
-        known = ", ".join(sorted(contributions.targets))
-        raise UnsupportedError(f"target '{target}': not known; there are {known}")
+        known, guess = ", ".join(sorted(contributions.targets)), nearest(target, contributions.targets)
+        raise UnsupportedError(f"target '{target}': not known; there are {known}{guess and '; ' + guess}")
     given = TargetInput(
         program=program,
         types=place.types,
