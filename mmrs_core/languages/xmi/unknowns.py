@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from xml.sax.saxutils import quoteattr
 
 from mmrs_core.languages.element import Unknown, path_of
+from mmrs_core.languages.xmi.escapes import in_attribute
 
 _BEGIN = re.compile(r"<[^\s/>!?]+")
 _PREFIX = re.compile(r"([\w.-]+):")
@@ -30,7 +30,7 @@ def text_of(element: Unknown, declare: Callable[[str, str], bool]) -> str:
         message = f"{path_of(element)}: {element._mmrs_type} is not installed, and its form in XML not known"
         raise ValueError(f"{message}; install what brings it, or keep the model as JSON")
     own = "".join(
-        f" xmlns{prefix and ':' + prefix}={quoteattr(uri)}"
+        f' xmlns{prefix and ":" + prefix}="{in_attribute(uri)}"'
         for prefix, uri in needed(text, element._mmrs_scope)
         if not (prefix and declare(prefix, uri))
     )
