@@ -104,7 +104,9 @@ def measured(
     for name, command in commands.items():
         if name == "pyecore" and size > PYECORE_LIMIT:
             continue
-        cold = [whole_process(command(1, model, out)) for _ in range(2 if size > 100_000 else runs)]
+        cold = [
+            whole_process(command(1, model, out)) for _ in range(min(runs, 2) if size > 100_000 else runs)
+        ]
         figures[name].wall["cold"], figures[name].cpu["cold"] = map(median, zip(*cold, strict=True))
         warm(figures[name], command(warm_runs(name, size, runs), model, out))
     return figures
@@ -115,7 +117,7 @@ def warm_runs(name: str, size: int, runs: int) -> int:
     if name == "pyecore":
         return 2 if size >= PYECORE_LIMIT else runs
     if size > 100_000:
-        return 4
+        return min(2 * runs, 4)
     return max(4 * runs, 200_000 // size) if name == "EMF" else 2 * runs
 
 
