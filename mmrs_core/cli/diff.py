@@ -12,7 +12,7 @@ import typer
 from mmrs_core.cli.any_model import Metamodels, is_mistake
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
@@ -35,7 +35,7 @@ def diff(
     """Say what differs between two models: what was added, removed, moved or changed.
 
     Formatting, comments and defaults are no differences, and neither is XMI or JSON.
-    Exit codes: 0 where the models say the same, 1 where they differ.
+    Exit codes: 0 where the models say the same, 1 where they differ, 3 where one cannot be read wholly.
 
     Example: mmrs diff mission.xmi mission-of-yesterday.xmi
     """
@@ -103,8 +103,7 @@ def _roots(workshop: Workshop, file: Path | None, metamodels: Sequence[Path] | N
     if file is None:
         return ()
     model = read_foreign(workshop, file, metamodels).model
-    if any(map(is_mistake, model.diagnostics)):
-        message = f"{file}: not compared, since something of it cannot be read"
-        raise InvalidModelError(message, model.diagnostics)
     report(model.diagnostics)
+    if any(map(is_mistake, model.diagnostics)):
+        raise UnreadableError(f"{file}: not compared, since something of it cannot be read")
     return model.roots

@@ -193,6 +193,12 @@ def test_diff_compares_projects_model_by_model(tmp_path, capsys):
     assert models >= {"context", "mission", "robots/pool-auv", "robots/crawler"}
 
 
+def test_a_model_that_cannot_be_read_wholly_is_not_compared(town, capsys):
+    (town / "bad.xmi").write_text(POINTING.replace("title=", "titel="))
+    assert run(["diff", "pointing.xmi", "bad.xmi"]) == 3
+    assert "bad.xmi: not compared, since something of it cannot be read" in capsys.readouterr().err
+
+
 def test_diff_takes_no_folder_with_a_file(town, capsys):
     assert run(["diff", str(town), "town.xmi"]) == 3
     assert "a folder, which is not compared with the file town.xmi" in capsys.readouterr().err
