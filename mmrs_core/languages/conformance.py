@@ -9,7 +9,7 @@ from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, held, label_of, place_of, root_of
 from mmrs_core.languages.links import raw
-from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.registry import Registry
@@ -136,7 +136,7 @@ class _Check:
 
 def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagnostic]:
     kind = feature.type
-    if isinstance(kind, Metaclass) or (value is None and not feature.many):
+    if isinstance(kind, Metaclass) or (value is None and not feature.many) or is_null(feature, value):
         return
     where = f"{_owner(element)}: {feature.name}"
     if isinstance(kind, Enumeration):

@@ -124,6 +124,13 @@ class Feature:
         return f"<feature {self.owner.name}.{self.name}>"
 
 
+def is_null(feature: Feature, value: object) -> bool:
+    """Return whether a value among many is nothing, where Java's type of it can be null: files say nil."""
+    return (
+        value is None and feature.many and isinstance(feature.type, DataType) and not feature.type.primitive
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Metaclass:
     """A class of a metamodel, with the Python classes made of it.

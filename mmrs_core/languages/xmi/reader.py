@@ -272,6 +272,8 @@ class XmiReader:
         self._text.clear()
         if not self._nil:
             self._value(element, feature, text)
+        elif feature.many and not getattr(feature.type, "primitive", True):
+            getattr(element, feature.attribute).append(None)
         elif feature.many or getattr(feature.type, "primitive", True):
             self._fault("XMI005", f"{feature.name}: cannot be nil", element, broken=feature)
         elif feature.default is not None:

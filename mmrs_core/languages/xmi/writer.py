@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
-from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_text
@@ -16,6 +16,7 @@ from mmrs_core.languages.xmi.unknowns import text_of
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 _Attributes = list[tuple[str, str]]
+
 
 class Row(NamedTuple):
     """What is left to be written of the elements in a containment feature."""
@@ -180,8 +181,7 @@ class XmiWriter:
         if feature.many:
             attributes.append((feature.name, ""))
         else:
-            self._typed = True
-            children.append(f'{"  " * depth}<{feature.name} xsi:nil="true"/>\n')
+            children.append(self._inner(feature, None, depth))
 
     def _values(
         self,
@@ -192,15 +192,21 @@ class XmiWriter:
         attributes: _Attributes,
         children: list[Job],
     ) -> None:
-        indent = "  " * depth
-        texts = [self._rendered(element, feature, value) for value in values]
+        texts = [
+            None if is_null(feature, value) else self._rendered(element, feature, value) for value in values
+        ]
         if not texts:
-            self._typed = True
-            children.append(f'{indent}<{feature.name} xsi:nil="true"/>\n')
+            children.append(self._inner(feature, None, depth))
         elif feature.many or feature.name == "href":  # as an attribute, EMF would take that for a link
-            children.extend(f"{indent}<{feature.name}>{in_text(text)}</{feature.name}>\n" for text in texts)
+            children.extend(self._inner(feature, text, depth) for text in texts)
         else:
-            attributes.append((feature.name, in_attribute(texts[0])))
+            attributes.append((feature.name, in_attribute(texts[0] or "")))
+
+    def _inner(self, feature: Feature, text: str | None, depth: int) -> str:
+        """Return a value as an element; None is nil."""
+        self._typed |= text is None
+        value = ' xsi:nil="true"/>' if text is None else f">{in_text(text)}</{feature.name}>"
+        return f"{'  ' * depth}<{feature.name}{value}\n"
 
     def _rendered(self, element: Element, feature: Feature, value: object) -> str:
         kind = feature.type

@@ -208,6 +208,7 @@ def test_emf_and_we_read_the_same_values(referee, registry, tmp_path, title):
 FORMS = {
     "nil reference": 'Scalars{}><perhaps xsi:nil="true"/></suite:Scalars>',
     "nil value": 'Unsettable{}><string xsi:nil="true"/></suite:Unsettable>',
+    "nil among many": 'Many{}><strings>a</strings><strings xsi:nil="true"/></suite:Many>',
     "empty list": 'Unsettable{} unsetTexts="" leaves=""/>',
     "set to the default": 'Unsettable{} int="0" boolean="false" double="0.0" mood="is-calm"/>',
     "keys": 'Keyed{} chosen="//@keys[key=\'a%20b\']"><keys key="a b"/></suite:Keyed>',

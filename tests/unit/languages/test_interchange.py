@@ -67,6 +67,17 @@ def test_what_was_said_to_be_empty_may_be_filled(again, suite):
     assert 'unsetTexts=""' not in text
 
 
+def test_a_value_among_many_may_be_nil(again):
+    node, text = again("Many", content='<strings>a</strings><strings xsi:nil="true"/>')
+    assert node.strings == ["a", None]
+    assert '<strings>a</strings>\n  <strings xsi:nil="true"/>' in text
+
+
+def test_a_number_among_many_may_not_be_nil(suite):
+    text = f'<suite:Many {NAMESPACES}><ints xsi:nil="true"/></suite:Many>'
+    assert [fault.code for fault in read_text(text.encode(), "m", suite).diagnostics] == ["XMI005"]
+
+
 def test_nothing_is_said_of_a_feature_that_cannot_be_unset(again):
     _, text = again("Scalars", content='<single xsi:nil="true"/>')
     assert "single" not in text
