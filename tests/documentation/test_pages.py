@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-JUDGED_ELSEWHERE = ("hooks.md", "tutorial/")
+JUDGED_ELSEWHERE = ("diagnostics.md", "hooks.md", "tutorial/")
 """Pages and folders whose code a test of their own runs, with what that code needs."""
 
 LANGUAGES = {"console", "python", "text", "xml", "toml", "json", "ini"}
