@@ -10,7 +10,7 @@ from mmrs_core.languages.element import Element, Unknown, label_of
 from mmrs_core.languages.json_form.tree import Node, Words, is_text
 from mmrs_core.languages.json_form.unknown import kept
 from mmrs_core.languages.json_form.values import parsed
-from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
@@ -229,6 +229,9 @@ class JsonReader:
     def _value(self, element: Element, feature: Feature, node: Node, key: str, value: object) -> None:
         kind = feature.type
         assert not isinstance(kind, Metaclass)  # it is an attribute
+        if is_null(feature, value):
+            getattr(element, feature.attribute).append(None)
+            return
         if value is None:
             if feature.many or getattr(kind, "primitive", True):
                 self._fault("XMI005", f"{feature.name}: cannot be null", node, element, "", feature, key)

@@ -10,7 +10,7 @@ from mmrs_core.languages.json_form.layout import formatted, laid_out
 from mmrs_core.languages.json_form.reader import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.json_form.values import quoted, written
-from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
 
@@ -129,10 +129,10 @@ class JsonWriter:
             parts = [quoted(text) for text in texts]
         else:
             for value in values:
-                if not kind.accepts(value):
+                if not kind.accepts(value) and not is_null(feature, value):
                     where = f"{path_of(element)}: {feature.name}"
                     raise ValueError(f"{where}: {value!r} is not of the type {kind.name}")
-            parts = [written(kind, value) for value in values]
+            parts = ["null" if value is None else written(kind, value) for value in values]
         if feature.many:
             return f"[{', '.join(parts)}]"
         return parts[0] if parts else "null"

@@ -119,7 +119,7 @@ class XmiReader:
             self._ignored = 1
 
     def _owns_href(self, feature: Feature, attributes: list[str]) -> bool:
-        """Return whether ``href``, which is no link, is a feature of the element itself; EMF would not ask."""
+        """Return whether ``href``, which is no link, is a feature of the element; EMF would not ask."""
         assert isinstance(feature.type, Metaclass)  # it is a reference
         if not feature.containment:
             return False

@@ -11,7 +11,7 @@ from mmrs_core.errors import PluginError
 from mmrs_core.languages.metamodels.export import schema_locations
 from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, registry_with
-from mmrs_core.languages.writing import to_xmi, write_model
+from mmrs_core.languages.writing import to_json, to_xmi, write_model
 
 MODELS = Path(__file__).parents[2] / "fixtures" / "models"
 NAMESPACES = (
@@ -71,6 +71,13 @@ def test_a_value_among_many_may_be_nil(again):
     node, text = again("Many", content='<strings>a</strings><strings xsi:nil="true"/>')
     assert node.strings == ["a", None]
     assert '<strings>a</strings>\n  <strings xsi:nil="true"/>' in text
+
+
+def test_nil_among_many_survives_as_json(again, suite):
+    node, _ = again("Many", content='<strings>a</strings><strings xsi:nil="true"/>')
+    text = to_json([node], suite)
+    assert b'"strings": ["a", null]' in text
+    assert read_text(text, "many.json", suite).roots[0].strings == ["a", None]
 
 
 def test_a_number_among_many_may_not_be_nil(suite):
