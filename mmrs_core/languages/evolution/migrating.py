@@ -158,7 +158,7 @@ def _plain(value: object, feature: Feature | None) -> object:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, Leaf) and feature is not None and feature.containment and not value.strip():
-        return Node({})
+        return Node({}, value.line)
     return value
 
 

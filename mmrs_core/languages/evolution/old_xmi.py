@@ -62,7 +62,8 @@ class OldXmi:
         if name and self._open and not node.members:
             values = self._open[-1][1].members[name]
             assert isinstance(values, list)  # made when the element began
-            values[-1] = Leaf("".join(self._text))
+            values[-1] = leaf = Leaf("".join(self._text))
+            leaf.line = node.line
         self._text.clear()
 
     def text(self, text: str) -> None:
@@ -81,7 +82,7 @@ class OldXmi:
         known = not kind or self._is_known(kind.rpartition("#")[0])
         if known and "href" in named and not is_root:
             node.members = {"$ref": named["href"]}
-        elif known and named.get(f"{XSI} nil") in ("true", "1"):
+        elif known and named.get(f"{XSI} nil") in ("true", "1") and not is_root:
             value = None
         elif known:
             node.members |= _said(named)

@@ -32,9 +32,13 @@ class Words(str):
 
 
 class Leaf(str):
-    """What stands in an XML element that has neither attributes nor elements inside."""
+    """What stands in an XML element that has neither attributes nor elements inside.
 
-    __slots__ = ()
+    Attributes:
+        line: where the element begins.
+    """
+
+    line: int = 0
 
 
 def is_text(value: object) -> TypeGuard[str]:

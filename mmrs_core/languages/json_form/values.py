@@ -8,7 +8,7 @@ from decimal import Decimal
 from json.encoder import encode_basestring
 
 from mmrs_core.languages.datatypes import DataType, shown
-from mmrs_core.languages.json_form.tree import Node, Number
+from mmrs_core.languages.json_form.tree import Leaf, Node, Number, Words
 from mmrs_core.languages.metaclass import Enumeration
 
 _EXACT = 2**53
@@ -53,8 +53,9 @@ def parsed(kind: DataType | Enumeration, value: object) -> object:
     if not isinstance(value, str):
         what = "an object" if isinstance(value, Node) else "a list" if isinstance(value, list) else "null"
         raise ValueError(f"{what}: not a value of the type {kind.name}")
-    if isinstance(kind, DataType) and kind.java_class in _CHARACTERS and len(value) == 1:
-        return value
+    is_character = isinstance(kind, DataType) and kind.java_class in _CHARACTERS
+    if is_character and len(value) == 1 and not isinstance(value, Words | Leaf):
+        return value  # in XML it would be the number of a character
     return kind.parse(value)
 
 
