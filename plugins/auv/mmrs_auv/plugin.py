@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mmrs_auv.names import AUV, AUV_MOVEMENT
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import RobotKind
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
@@ -26,6 +27,14 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
     from mmrs_auv.constraints import CONSTRAINTS
 
     return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_fixes() -> tuple[Fix, ...]:
+    """Contribute what mends thrusters whose figures are exchanged."""
+    from mmrs_auv.fixes import FIXES
+
+    return FIXES
 
 
 @hookimpl

@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from mmrs_core.contributions.constraints import Constraint
+from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
@@ -26,6 +27,14 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
     from mmrs_survey.constraints import CONSTRAINTS
 
     return CONSTRAINTS
+
+
+@hookimpl
+def mmrs_fixes() -> tuple[Fix, ...]:
+    """Contribute what mends overlaps in per cent."""
+    from mmrs_survey.fixes import FIXES
+
+    return FIXES
 
 
 @hookimpl
