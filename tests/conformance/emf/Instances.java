@@ -12,6 +12,7 @@ import java.util.function.Supplier;
 import org.eclipse.emf.common.util.URI;
 import org.eclipse.emf.ecore.EAttribute;
 import org.eclipse.emf.ecore.EClass;
+import org.eclipse.emf.ecore.EEnum;
 import org.eclipse.emf.ecore.EObject;
 import org.eclipse.emf.ecore.EPackage;
 import org.eclipse.emf.ecore.EReference;
@@ -127,17 +128,24 @@ final class Instances {
         chosen.add(values.of(attribute.getEAttributeType(), false));
       }
       chosen.remove(null);
-      element.eSet(attribute, new ArrayList<>(chosen));
+      List<Object> all = new ArrayList<>(chosen);
+      if (nullable(attribute) && random.nextInt(4) == 0) {
+        all.add(null);
+      }
+      element.eSet(attribute, all);
       return;
     }
     Object value = values.of(attribute.getEAttributeType(), key || attribute.isID());
-    Class<?> kind = attribute.getEAttributeType().getInstanceClass();
-    boolean nullable = kind != null && !kind.isPrimitive() && attribute.isUnsettable();
-    if (nullable && random.nextInt(6) == 0) {
+    if (nullable(attribute) && attribute.isUnsettable() && random.nextInt(6) == 0) {
       element.eSet(attribute, null);
     } else if (value != null) {
       element.eSet(attribute, value);
     }
+  }
+
+  private static boolean nullable(EAttribute attribute) {
+    Class<?> kind = attribute.getEAttributeType().getInstanceClass();
+    return kind != null && !kind.isPrimitive() && !(attribute.getEAttributeType() instanceof EEnum);
   }
 
   private void grow(EObject element, EReference feature, int depth) {
