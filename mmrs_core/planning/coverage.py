@@ -23,6 +23,9 @@ from mmrs_core.planning.lines import Swath
 from mmrs_core.planning.swaths import swaths
 from mmrs_core.scene import ActionAt, Area, Coverage, Look, Point, Ring, Robot, Scene, Stroke, Work
 
+MOST = 200_000
+"""Actions at most that one area may take: more, nobody means, and nobody waits for their planning."""
+
 _SMALLEST = 1e-6
 """Square metres under which a part of a target is rounding."""
 
@@ -84,7 +87,7 @@ def work_over(
 
     Raises:
         ValueError: a width or length is not positive where it must be, or a ring is unsound.
-        InfeasibleError: clearance leaves nothing of the polygon.
+        InfeasibleError: clearance leaves nothing of the polygon, or it takes more than `MOST` actions.
     """
     if action is not None and not length > 0:
         raise ValueError(f"action {action!r} needs a length to cover along the stroke, {length} is none")
@@ -95,6 +98,11 @@ def work_over(
     area = sum(piece.area for piece in target)
     if not target:
         raise InfeasibleError(f"polygon of {asked:.1f} m² lies within the clearance of areas as a whole")
+    if length > 0 and width > 0 and area > MOST * length * width:
+        wanted = area / length / width
+        raise InfeasibleError(
+            f"takes about {wanted:,.0f} photos or samples, of which {MOST:,} can be planned"
+        )
     closed = _closed(scene, robot, altitude)
     worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
     along = length if action is not None else 0.0

@@ -13,6 +13,7 @@ from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.grounding.coordinates import ground_of
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.planning.coverage import MOST
 from mmrs_core.planning.devices import figure
 from mmrs_core.scene import Position
 from mmrs_survey import names
@@ -21,8 +22,6 @@ from mmrs_survey.device_checks import devices_for
 
 MANY = 20_000
 """Photos that take a drone most of a day."""
-TOO_MANY = 200_000
-"""Photos that nobody means, and that take longer to plan than anybody waits."""
 
 _Positions = Mapping[Element, Position]
 _Check = Callable[[Element, ModelSet], Iterator[Finding]]
@@ -55,7 +54,7 @@ def _amount(task: Element, models: ModelSet, positions: _Positions) -> float:
     if is_kind(task, *names.ROAD_TASK):
         distance, strip = number(task, "photoDistance") or 0.0, number(task, "footprintWidth") or 0.0
         asked = (number(task, "width") or 0.0) / strip if strip > 0.0 else 1.0
-        sides = max(1, ceil(asked)) if asked < TOO_MANY else asked
+        sides = max(1, ceil(asked)) if asked < MOST else asked
         return sides * _length(task, positions) / distance if distance > 0.0 else 0.0
     return 0.0
 

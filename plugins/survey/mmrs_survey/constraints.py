@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.diagnostics import Severity
+from mmrs_core.planning.coverage import MOST
 from mmrs_survey import names
-from mmrs_survey.amounts import MANY, TOO_MANY, amount_over
+from mmrs_survey.amounts import MANY, amount_over
 from mmrs_survey.device_checks import action_undone, camera_unreadable, device_unclear, parameter_unknown
 from mmrs_survey.grid_checks import (
     footprint_twice,
@@ -157,7 +158,7 @@ CONSTRAINTS = (
         "SUR018",
         "No survey task takes more photos or samples than a day has time for",
         MISSION,
-        amount_over(MANY, TOO_MANY),
+        amount_over(MANY, MOST),
         "check that gridResolution, footprint, spacing and overlaps are as meant: lengths are in metres",
         Severity.WARNING,
     ),
@@ -165,7 +166,8 @@ CONSTRAINTS = (
         "SUR019",
         "No survey task takes more photos or samples than can be planned",
         MISSION,
-        amount_over(TOO_MANY),
+        amount_over(MOST),
         "correct gridResolution, footprint, spacing or overlaps: lengths are in metres; or divide the area",
+        Severity.WARNING,
     ),
 )

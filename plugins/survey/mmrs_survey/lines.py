@@ -9,10 +9,14 @@ from math import ceil, dist, floor
 import shapely
 
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.coverage import MOST
 from mmrs_core.scene import Position
 
 LONGEST_SHARE = 50.0
 """Metres after which a line without actions may be split."""
+
+MOST_PASSES = 1_000
+"""Passes at most beside each other."""
 
 LEFT_OUT = 1e-3
 """Share of a corridor that passes may leave out."""
@@ -36,9 +40,17 @@ def length_of(points: Sequence[Position]) -> float:
 def even_distances(length: float, spacing: float) -> tuple[float, ...]:
     """Return arc lengths from 0 to the end, `spacing` apart; only the last two may be nearer.
 
+    Raises:
+        InfeasibleError: these are too many to be planned.
+
     >>> even_distances(25.0, 10.0)
     (0.0, 10.0, 20.0, 25.0)
     """
+    if length > MOST * spacing:
+        wanted = length / spacing
+        raise InfeasibleError(
+            f"takes about {wanted:,.0f} photos or samples, of which {MOST:,} can be planned"
+        )
     whole = floor(length / spacing + 1e-9)
     at = [index * spacing for index in range(whole + 1)]
     return (*at, length) if length - at[-1] > 1e-6 else (*at[:-1], length)
@@ -68,8 +80,12 @@ def passes(points: Sequence[Position], width: float, strip: float) -> tuple[tupl
         width: of the corridor, metres. strip: what is seen across a pass, metres.
 
     Raises:
-        InfeasibleError: the line bends too sharply for so wide a corridor.
+        InfeasibleError: the line bends too sharply for so wide a corridor, or takes too many passes.
     """
+    if width > MOST_PASSES * strip:
+        raise InfeasibleError(
+            f"takes about {width / strip:,.0f} passes, of which {MOST_PASSES:,} can be planned"
+        )
     count = max(1, ceil(width / strip - 1e-9))
     middle = shapely.LineString(points)
     offsets = [(index + 0.5) * width / count - width / 2 for index in range(count)]

@@ -123,3 +123,8 @@ def test_a_hole_is_left_out_of_the_target(robot, scene, task):
     work = photo_grid_work(grid(task, gridResolution=5.0, holes=(hole,)), robot(), scene())
     area = sum(shapely.Polygon(shell, holes).area for shell, holes in work.coverage.target)
     assert area == pytest.approx(shapely.Polygon([p[:2] for p in SHELL]).area - 100.0)
+
+
+def test_more_photos_than_can_be_planned_are_refused_at_once(robot, scene, task):
+    with pytest.raises(InfeasibleError, match=r"takes about 40,500,000 photos or samples, of which 200,000"):
+        photo_grid_work(grid(task, gridResolution=0.01), robot(), scene())

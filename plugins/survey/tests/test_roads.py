@@ -113,3 +113,15 @@ def test_passes_cover_all_of_a_corridor(steps, width, strip):
     lines = passes(points, width, strip)
     seen = shapely.union_all([shapely.LineString([p[:2] for p in line]).buffer(strip / 2) for line in lines])
     assert corridor.difference(seen).area <= 1e-3 * corridor.area
+
+
+@pytest.mark.parametrize(
+    ("features", "reason"),
+    [
+        ({"photoDistance": 1e-5}, "photos or samples, of which 200,000"),
+        ({"width": 20.0, "footprintWidth": 1e-3}, "takes about 20,000 passes, of which 1,000"),
+    ],
+)
+def test_more_than_can_be_planned_is_refused_at_once(robot, scene, task, features, reason):
+    with pytest.raises(InfeasibleError, match=reason):
+        road_work(road(task, **features), robot(), scene())

@@ -27,6 +27,7 @@ def project(tmp_path):
         ("behaviour-example.json",),
         ("behaviour-old-multidrone.json",),
         ("context-demo.json",),
+        ("mission-demo.json", PARROT.name),
         ("drone-parrot-sample.xmi",),
         ("drones-list-demo.json",),
     ],
@@ -38,12 +39,12 @@ def test_a_model_of_2015_migrates_to_a_valid_one(mmrs, project, files):
     assert out.endswith(": valid\n")
 
 
-def test_the_mission_of_2015_migrates_but_asks_for_more_photos_than_anybody_can_plan(mmrs, project):
-    code, _, err = mmrs("migrate", FOLDER / "mission-demo.json", PARROT, "-o", project)
-    errors = [line for line in err.splitlines() if ": error: " in line]
-    assert code == 1
-    assert len(errors) == 1
-    assert "[SUR019]" in errors[0]
+def test_the_mission_of_2015_is_refused_by_the_planner_for_its_millions_of_photos(mmrs, project):
+    _, _, err = mmrs("migrate", FOLDER / "mission-demo.json", PARROT, "-o", project)
+    assert "warning: task 'photoGridTask1' takes about 58,539,226 photos [SUR019]" in err
+    code, _, err = mmrs("plan", project)
+    assert code == 4
+    assert "photos or samples, of which 200,000 can be planned" in err
 
 
 def test_all_files_of_2015_are_called_what_they_are(mmrs, project):
