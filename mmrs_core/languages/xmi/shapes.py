@@ -76,13 +76,18 @@ def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[s
     if names:
         lines.append(f"    {', '.join(f'_, v{at}' for at in range(len(names)))} = attributes")
     lines.append("    e = new(cls)")
+    shared: list[str] = []
     for index, feature in enumerate(metaclass.features):
         text, slot = given.get(feature), f"e.{bare_name(index)}"
         if text is None or feature.is_reference:
             if not feature.nullable:
                 lines.append(f"    {slot} = None")
         elif isinstance(feature.type, DataType) and feature.type.parse is str:
+            # one element's text is often that of the one before: then they share it
+            bound[f"s{index}"] = ""
+            lines += [f"    s = s{index}", f"    if {text} == s: {text} = s", f"    else: s{index} = {text}"]
             lines.append(f"    {slot} = {text}")
+            shared.append(f"s{index}")
         elif isinstance(feature.type, DataType) and feature.type.parse is parse_real:
             # as `parse_real` asks, without the call
             usual = f"{text}.isascii() and {text}[-1:].isdigit() and '_' not in {text}"
@@ -90,6 +95,8 @@ def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[s
         else:
             bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
             lines.append(f"    {slot} = p{index}({text})")
+    if shared:
+        lines.insert(0, f"    global {', '.join(shared)}")
     base = {"container": "owner", "feature": "feature", "line": "line", "source": "source"}
     lines += [f"    e._mmrs_{name} = {value}" for name, value in base.items()]
     for feature, text in given.items():
