@@ -41,3 +41,18 @@ def test_any_paths_have_an_order(paths):
 def test_figures_are_told_by_their_value(one, other):
     found = in_order([fault(f"/tasks[{one}]"), fault(f"/tasks[{other}]")])
     assert found[0].place.path == f"/tasks[{min(one, other)}]"
+
+
+def test_a_fault_is_told_with_its_path_what_was_expected_and_a_hint():
+    place = Place("m.xmi", 3, "/tasks[1]")
+    told = str(Diagnostic("MML001", Severity.ERROR, "it is odd", place, "mend it", "it is even"))
+    assert told.splitlines() == [
+        "m.xmi:3: error: it is odd [MML001]",
+        "    at: /tasks[1]",
+        "    expected: it is even",
+        "    hint: mend it",
+    ]
+
+
+def test_a_root_is_told_without_a_path():
+    assert str(Diagnostic("MML001", Severity.NOTE, "odd", Place("m", 1, "/"))) == "m:1: note: odd [MML001]"

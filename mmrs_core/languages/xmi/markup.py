@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
-from xml.sax.saxutils import unescape
 
 from mmrs_core.errors import UnreadableError
 
 _STEP = re.compile(r"([^/\[\]]+)(?:\[([0-9]+)\])?")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s<>/="']+)\s*=\s*("[^"<]*"|'[^'<]*')""")
-_QUOTES = {"&quot;": '"', "&apos;": "'"}
 _WRAPPER = "xmi:XMI"
 
 
@@ -133,7 +131,7 @@ class Markup:
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         begin = self._parser.CurrentByteIndex
-        found = tuple(_attributes(self.data, begin, name))
+        found = tuple(_attributes(self.data, begin, name, attributes))
         inside = self.data.index(b">", found[-1].value_end if found else begin) + 1
         parent = self._open[-1] if self._open else None
         tag = Tag(name, self._parser.CurrentLineNumber, begin, inside, parent, found)
@@ -152,12 +150,12 @@ class Markup:
             tag.end = self.data.index(b">", tag.closing) + 1
 
 
-def _attributes(data: bytes, begin: int, name: str) -> Iterator[Attribute]:
-    place = begin + 1 + len(name.encode())
+def _attributes(data: bytes, begin: int, tag: str, values: Mapping[str, str]) -> Iterator[Attribute]:
+    place = begin + 1 + len(tag.encode())
     while (match := _ATTRIBUTE.match(data, place)) is not None:
-        value = unescape(match[2][1:-1].decode(), _QUOTES)
+        name = match[1].decode()
         yield Attribute(
-            match[1].decode(), value, match.start(1), match.end(1), match.start(2) + 1, match.end(2) - 1
+            name, values[name], match.start(1), match.end(1), match.start(2) + 1, match.end(2) - 1
         )
         place = match.end()
 
