@@ -46,13 +46,13 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pendi
 
 
 def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) -> None:
-    """Make the other ends of a file's references know of them; a contradiction becomes a fault of that file."""
+    """Make the other ends of a file's references know of them; a contradiction becomes a fault of it."""
     for reference, target in doubled:
         _tell_other_end(reference, target, draft)
 
 
 def _quickly(reference: Quick, draft: Draft) -> bool:
-    """Set a reference whose text is one path into a list, to an element that it takes; return whether it was so.
+    """Set a reference whose text is one path into a list, to an element that it takes; return whether it is.
 
     This runs for nearly every reference of a large model, hence makes no calls of its own.
     """
