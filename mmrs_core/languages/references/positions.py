@@ -48,8 +48,12 @@ class Positions(dict[Element, str]):
         begin = f"{self[container]}/@{feature.name}"
         value = raw(container, feature)
         if isinstance(value, list):
+            fragments = map(f"{begin}.".__add__, map(str, range(len(value))))
             plain = self._plain
-            self.update((each, f"{begin}.{at}") for at, each in enumerate(value) if plain(each))
+            if all(map(plain, value)):
+                self.update(zip(value, fragments, strict=True))
+            else:
+                self.update(pair for pair in zip(value, fragments, strict=True) if plain(pair[0]))
         elif value is element and self._plain(element):
             self[element] = begin
         if element not in self:

@@ -78,8 +78,8 @@ def _factory(metaclass: Metaclass) -> Callable[[str, str, Surroundings], Emitter
     children: list[tuple[int, Feature]] = []
     body = [
         "s = e._mmrs_source",
-        "if s is not None and s is not home or depth > deepest: raise Unusual",
-        "t = pads[depth] + head",
+        "if s is not home and s is not None or depth > deepest: raise Unusual",
+        "t = heads[depth]",
     ]
     for index, feature in features:
         bound[f"f{index}"] = feature
@@ -98,6 +98,7 @@ def _factory(metaclass: Metaclass) -> Callable[[str, str, Surroundings], Emitter
             "def factory(head, tail, surroundings):",
             "    add, home, places = surroundings.add, surroundings.home, surroundings.places",
             "    slowly = surroundings.slowly",
+            "    heads = [pad + head for pad in pads]",
             *(f"    t{index} = surroundings.tables[f{index}]" for index, _ in children),
             "    def emit(e, depth):",
             *(f"        {line}" for line in body),

@@ -42,10 +42,10 @@ class QuickWriter(XmiWriter):
 
     def _row(self, row: Row, jobs: list[Job]) -> None:
         """Write elements until one needs the careful way; leave what follows it as jobs."""
-        table = self._tables[row.feature]
+        table, depth = self._tables[row.feature], row.depth
         for child in row.values:
             try:
-                table[child.__class__](child, row.depth)  # type: ignore[arg-type]  # no class but of elements is there
+                table[child.__class__](child, depth)  # type: ignore[arg-type]  # no class but of elements is there
             except (
                 UnusualError,
                 TypeError,
