@@ -76,7 +76,7 @@ class JsonReader:
             if key not in _HEAD:
                 self._draft.fault("XMI004", f"{key}: not beside {ROOTS}", self._tree.line_of(top, key))
         if listed is None:
-            hint = f"say which class it is of by {TYPE}, such as mission:Mission"
+            hint = f"say which class it is of by {TYPE}; 'mmrs migrate' reads the JSON of another platform"
             self._draft.fault("XMI015", f"the root: no model: it has no {TYPE}", top.line, hint=hint)
         for node in listed if isinstance(listed, list) else (listed,):
             if isinstance(node, Node):
