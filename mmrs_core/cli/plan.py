@@ -68,6 +68,7 @@ def plan(
     from mmrs_core.cli.journey import Journey, Workshop
     from mmrs_core.cli.plan_words import plan_lines, plan_summary
     from mmrs_core.cli.planned import require_sound, require_writable
+    from mmrs_core.languages.modelset import model_in
     from mmrs_core.pipeline import save
 
     workshop = Workshop(settings_of(call))
@@ -75,7 +76,8 @@ def plan(
     if stop_after is not None:
         say_json({"stage": stop_after.value, "value": _VALUES[stop_after](journey)})
         return 0
-    file = output if output is not None else folder_of(project) / "behaviour.xmi"
+    folder = folder_of(project)
+    file = output or model_in(folder, "behaviour") or folder / "behaviour.xmi"
     require_writable(journey, file, "" if force else "--force replaces it")
     places = places_in(schema_location, workshop.contributions.languages, file)
     require_sound(journey, str(project))

@@ -13,7 +13,7 @@ from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
 
-EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool")
+EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool", "solar-park")
 
 
 @pytest.fixture
@@ -102,6 +102,13 @@ def test_every_stage_can_be_looked_at(mmrs, pool, stage):
     assert code == 0
     assert json.loads(out)["stage"] == stage.value
     assert not (pool / "behaviour.xmi").exists()
+
+
+def test_planning_again_replaces_the_behaviour_in_its_own_form(mmrs, pool):
+    assert mmrs("plan", pool, "-o", pool / "behaviour.json")[0] == 0
+    assert mmrs("plan", pool)[0] == 0
+    assert [path.name for path in pool.glob("behaviour.*")] == ["behaviour.json"]
+    assert mmrs("check", pool)[0] == 0
 
 
 def test_plan_as_json_is_one_object(mmrs, pool):
