@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from os.path import isfile
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -136,7 +137,7 @@ def _file_at(place: str, folder: Path) -> Path | None:
     if ":" in path or path.startswith(("/", "\\")) or "\0" in path or not path.endswith(".ecore"):
         return None
     file = folder / path
-    return file if file.is_file() else None
+    return file if isfile(file) else None  # noqa: PTH113  Path.is_file raises for a name that is too long
 
 
 def _beside(folder: Path) -> Iterator[tuple[Path, tuple[PackageTable, ...]]]:

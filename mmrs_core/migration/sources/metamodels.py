@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from os.path import isfile
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
@@ -52,8 +53,9 @@ def candidates(given: Sequence[Path], document: Document) -> Iterator[Path]:
         yield from sorted(path.glob("*.ecore")) if path.is_dir() else (path,)
     folder = Path(document.file).parent
     for _, location in document.locations:
-        if "://" not in location and (folder / location.partition("#")[0]).is_file():
-            yield folder / location.partition("#")[0]
+        file = folder / location.partition("#")[0]
+        if "://" not in location and isfile(file):  # noqa: PTH113  is_file raises for a name that is too long
+            yield file
     if folder.is_dir():
         yield from sorted(folder.glob("*.ecore"))
 
