@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from xml.sax.saxutils import escape
 
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag
 
 
@@ -67,14 +67,9 @@ class Fix:
     edits: Callable[[Wrong], Iterable[Edit]]
 
 
-def written(value: str) -> str:
-    """Return a value as it stands between the quotes of an attribute."""
-    return escape(value, {'"': "&quot;", "\n": "&#xA;", "\t": "&#x9;", "\r": "&#xD;"})
-
-
 def with_value(attribute: Attribute, value: str) -> Edit:
     """Return what gives an attribute another value."""
-    return Edit(attribute.value_begin, attribute.value_end, written(value))
+    return Edit(attribute.value_begin, attribute.value_end, in_attribute(value))
 
 
 def with_name(attribute: Attribute, name: str) -> Edit:
@@ -85,7 +80,7 @@ def with_name(attribute: Attribute, name: str) -> Edit:
 def with_attribute(tag: Tag, name: str, value: str) -> Edit:
     """Return what adds an attribute to a tag, before those that it has."""
     place = tag.begin + 1 + len(tag.name.encode())
-    return Edit(place, place, f' {name}="{written(value)}"')
+    return Edit(place, place, f' {name}="{in_attribute(value)}"')
 
 
 def without(tag: Tag, markup: Markup) -> Edit:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from xml.sax.saxutils import quoteattr
 
 from mmrs_core.languages.datatypes import ECORE, DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.metamodels.tables import GENMODEL
+from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
 
 Address = Callable[[str], str]
@@ -106,11 +106,7 @@ def _documentation(text: str) -> list[str]:
 
 
 def _element(tag: str, attributes: Iterable[tuple[str, str]], body: list[str]) -> list[str]:
-    head = "".join(f" {name}={_quoted(value)}" for name, value in attributes)
+    head = "".join(f' {name}="{in_attribute(value)}"' for name, value in attributes)
     if not body:
         return [f"<{tag}{head}/>"]
     return [f"<{tag}{head}>", *(f"  {line}" for line in body), f"</{tag}>"]
-
-
-def _quoted(value: str) -> str:
-    return quoteattr(value, {"\n": "&#xA;", "\t": "&#x9;", "\r": "&#xD;"})
