@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from enum import StrEnum
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -80,6 +81,7 @@ def new_plugin(
     known = settings_of(call).plugins().contributions
     taken = {each.plugin for each in known.catalogue()}
     taken |= {part for source in known.metamodels for part in source.ns_uri.split(":")}
+    taken |= {rule.name for rule in known.rules.values()}
     try:
         names = plugin_names(name, taken, [each.code for each in known.constraints])
     except ValueError as fault:
@@ -91,7 +93,7 @@ def new_plugin(
         return 0
     say(f"{names.distribution}: {counted(len(written), 'file')} written to {folder}")
     say("Next:")
-    for command in (f"cd {folder}", 'pip install -e ".[test]"', "pytest", "mmrs plan example"):
+    for command in (f"cd {quote(str(folder))}", 'pip install -e ".[test]"', "pytest", "mmrs plan example"):
         say(f"  {command}")
     return 0
 

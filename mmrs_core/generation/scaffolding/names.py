@@ -59,7 +59,7 @@ def plugin_names(name: str, taken: Collection[str] = (), codes: Collection[str] 
 
     Args:
         name: in small ASCII letters, digits and hyphens.
-        taken: names of plug-ins and metamodels that are there already.
+        taken: names of plug-ins, metamodels and rules that are there already.
         codes: of constraints that are there already.
 
     Raises:
@@ -99,7 +99,7 @@ def _refuse(name: str, taken: Collection[str]) -> None:
     if name in RESERVED:
         raise ValueError(f"{name!r}: is a name of the core's own")
     if name in taken or name.replace("-", "_") in taken:
-        raise ValueError(f"{name!r}: a plug-in or a language of that name is installed")
+        raise ValueError(f"{name!r}: a plug-in, a language or a rule of that name is installed")
     if len(_letters(name)) < 2:
         raise ValueError(f"{name!r}: needs two letters or more, its constraints are numbered by them")
 

@@ -149,7 +149,7 @@ def test_a_folder_with_something_in_it_stays_as_it_was(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["Roof Wash", "../roof", "core", "survey", "1st", "ab\n", "", "-x", "a" * 40]
+    "name", ["Roof Wash", "../roof", "core", "survey", "photo-grid", "1st", "ab\n", "", "-x", "a" * 40]
 )
 def test_a_name_that_will_not_do_is_refused_before_anything_is_written(name, tmp_path):
     mmrs("plugin", "new", "-o", "made", "--", name, cwd=tmp_path, code=2)
@@ -161,3 +161,8 @@ def test_a_new_plugin_goes_into_an_empty_folder_and_into_new_ones(tmp_path):
     for folder in ("empty", "deep/er/still"):
         mmrs("plugin", "new", "roof-wash", "-o", folder, cwd=tmp_path)
         assert (tmp_path / Path(folder) / "pyproject.toml").is_file()
+
+
+def test_commands_that_come_next_can_be_pasted_for_folders_of_any_name(tmp_path):
+    said = mmrs("plugin", "new", "roof-wash", "-o", "my $roof", cwd=tmp_path)
+    assert "  cd 'my $roof'\n" in said
