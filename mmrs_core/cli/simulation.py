@@ -37,7 +37,16 @@ def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
 
 
 def fly(workshop: Workshop, program: Program, place: Place, conditions: Mapping[str, bool]) -> Run:
-    """Return the simulated run of a behaviour."""
+    """Return the simulated run of a behaviour.
+
+    Raises:
+        typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
+    """
+    asked = {each.condition for robot in program.robots for each in robot.transitions.values()} - {None}
+    unasked = [identifier for identifier in conditions if identifier not in asked]
+    if unasked:
+        known = ", ".join(sorted(map(repr, asked))) or "none at all"
+        raise typer.BadParameter(f"no choice asks for condition {unasked[0]!r}; asked for: {known}")
     return workshop.stage(
         "simulate",
         "simulating",

@@ -85,6 +85,12 @@ def test_an_answer_that_is_neither_yes_nor_no_is_wrong_usage(mmrs, project):
     assert "perhaps" in err
 
 
+def test_an_answer_that_no_choice_asks_for_is_wrong_usage(mmrs, project):
+    code, _, err = mmrs("simulate", project, "--assume", "raining=yes")
+    assert code == 2
+    assert f"no choice asks for condition 'raining'; asked for: '{CHOICE}'" in err
+
+
 def test_an_altered_log_does_not_replay(mmrs, project):
     mmrs("simulate", project, "-o", project / "logs")
     log = next((project / "logs").iterdir())
