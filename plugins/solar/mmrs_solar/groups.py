@@ -10,6 +10,9 @@ from mmrs_core.scene import Part, Position, Ring, Scene
 from mmrs_core.scene.attributes import number, positions, text
 from mmrs_solar.names import PANEL_GROUP
 
+MOST_DRAWN = 2_000
+"""Rows at most that are drawn one by one."""
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
@@ -57,16 +60,23 @@ class Group:
 
 
 def outlines_of(part: Part) -> tuple[Ring, ...]:
-    """Return each row of a panel group as seen from above; none where figures are missing."""
+    """Return each row of a panel group as seen from above; none where figures are missing.
+
+    Where there are so many that nobody could tell them apart, it is one outline around all of them.
+    """
     try:
         group = laid_out(part)
     except InfeasibleError:
         return ()
+    if group.rows > MOST_DRAWN:
+        return (_around(group, 1, group.rows),)
+    return tuple(_around(group, number, number) for number in range(1, group.rows + 1))
+
+
+def _around(group: Group, first: int, last: int) -> Ring:
     half = group.width / 2.0
-    sides = ((group.row(number, -half), group.row(number, half)) for number in range(1, group.rows + 1))
-    return tuple(
-        tuple((east, north) for east, north, _ in (*lower, *reversed(upper))) for lower, upper in sides
-    )
+    lower, upper = group.row(first, -half), group.row(last, half)
+    return tuple((east, north) for east, north, _ in (*lower, *reversed(upper)))
 
 
 def group_of(task: Part, scene: Scene) -> Group:

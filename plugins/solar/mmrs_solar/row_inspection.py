@@ -24,6 +24,12 @@ RULE = "row_inspection"
 LONGEST = 150.0
 """Metres of a row that are recorded in one go, so that robots can share long rows."""
 
+MOST_PASSES = 1_000
+"""Passes at most over one row: more, nobody means."""
+
+MOST_WAYS = 20_000
+"""Ways at most along the rows of one task: more, nobody waits for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pass:
@@ -112,6 +118,9 @@ def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]
         width: of the row, metres. strip: what is seen of it at once.
         overlap: part of a strip that the next one shows again; one strip over all needs no other.
 
+    Raises:
+        InfeasibleError: these are too many to be planned.
+
     >>> passes_over(4.0, 5.0, 0.6)
     (0.0,)
     >>> passes_over(6.0, 4.0, 0.5)
@@ -119,7 +128,12 @@ def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]
     """
     if strip >= width:
         return (0.0,)
-    steps = ceil((width - strip) / (strip * (1.0 - overlap)) - 1e-9)
+    wanted = (width - strip) / (strip * (1.0 - overlap))
+    if not wanted < MOST_PASSES:
+        raise InfeasibleError(
+            f"a row takes about {wanted:,.0f} passes, of which {MOST_PASSES:,} can be planned"
+        )
+    steps = ceil(wanted - 1e-9)
     step = (width - strip) / steps
     return tuple(index * step - (width - strip) / 2.0 for index in range(steps + 1))
 
@@ -129,10 +143,16 @@ def _ways(part: Part, group: Group, how: Pass) -> Iterator[tuple[int, Position, 
     first, last = whole(part, "firstRow", 1), whole(part, "lastRow", group.rows)
     if not 1 <= first <= last <= group.rows:
         raise InfeasibleError(f"rows {first} to {last} are asked for, the group has {group.rows}")
+    parts = max(1, ceil(dist(group.begin, group.end) / LONGEST))
+    wanted = (last - first + 1) * len(how.uphill) * parts
+    if wanted > MOST_WAYS:
+        raise InfeasibleError(
+            f"takes {wanted:,} ways along rows, of which {MOST_WAYS:,} can be planned: "
+            "divide it by firstRow and lastRow"
+        )
     for row in range(first, last + 1):
         for uphill in how.uphill:
             begin, end = (before(each, how.view, how.distance) for each in group.row(row, uphill))
-            parts = max(1, ceil(dist(begin, end) / LONGEST))
             stops = [between(begin, end, index / parts) for index in range(parts + 1)]
             yield from ((row, *stretch) for stretch in pairwise(stops))
 

@@ -51,6 +51,11 @@ def test_upper_and_lower_edge_are_a_row_width_apart_in_the_plane_of_the_panels(a
     assert upper[2] - lower[2] == pytest.approx(width * sin(radians(tilt)))
 
 
+def test_more_rows_than_anybody_could_tell_apart_are_one_outline(group):
+    (outline,) = outlines_of(group(rows=2_000_000_000, tilt=0.0))
+    assert outline[2] == pytest.approx((100.0, 1_999_999_999 * 8.0 + 2.0))
+
+
 def test_each_row_is_an_outline_on_the_map(group):
     outlines = outlines_of(group())
     half = 2.0 * cos(radians(30.0))

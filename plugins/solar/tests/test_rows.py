@@ -187,3 +187,16 @@ def test_passes_see_all_of_a_row_and_overlap_by_what_is_asked(width, strip, over
     assert offsets[-1] + strip / 2 == pytest.approx(width / 2, abs=1e-6)
     assert all(b - a <= strip * (1.0 - overlap) * (1 + 1e-6) for a, b in pairwise(offsets))
     assert len(offsets) <= 1 + ceil((width - strip) / (strip * (1.0 - overlap)))
+
+
+@pytest.mark.parametrize(
+    ("of_group", "of_task", "reason"),
+    [
+        ({"rows": 2_000_000_000}, {}, "takes 2,000,000,000 ways along rows, of which 20,000 .* by firstRow"),
+        ({"rowWidth": 1e6}, {}, "a row takes about .* passes, of which 1,000"),
+        ({"rowWidth": 1e300}, {"sideOverlap": 0.999}, "a row takes about .* passes, of which 1,000"),
+    ],
+)
+def test_more_than_can_be_planned_is_refused_at_once(robot, scene, group, of_group, of_task, reason):
+    with pytest.raises(InfeasibleError, match=reason):
+        row_inspection_work(rows(**of_task), robot(), scene(groups=(group(**of_group),)))
