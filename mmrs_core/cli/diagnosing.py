@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mmrs_core.analysis.fixes.repair import Diagnosis
 from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
 from mmrs_core.cli.behaviours import faults_of, is_behaviour, read_behaviour_files
 from mmrs_core.cli.journey import Workshop
-from mmrs_core.diagnostics import Diagnostic, in_order
+from mmrs_core.diagnostics import Diagnostic, Severity, in_order
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import check_models, read_models
+
+_NOT_FINITE = "ECO009"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,8 @@ class Subject:
         """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
         found = read_foreign(self.workshop, self.file, self.metamodels)
         models = (found.model, *found.model.linked)
-        faults = [*faults_in(found), *(f for each in models for f in check_conformance(each, found.registry))]
+        breaches = (fault for each in models for fault in check_conformance(each, found.registry))
+        faults = (*faults_in(found), *(_as_emf_takes_it(fault) for fault in breaches))
         return Diagnosis(True, in_order(faults), models)
 
     def _is_behaviour(self) -> bool:
@@ -91,3 +94,8 @@ class Subject:
             if not unsaved:
                 raise
             return Diagnosis(False, error.diagnostics, files.models, None, robots)
+
+
+def _as_emf_takes_it(fault: Diagnostic) -> Diagnostic:
+    """Return the fault; as a warning, if it is a number without end, which only missions cannot do with."""
+    return replace(fault, severity=Severity.WARNING) if fault.code == _NOT_FINITE else fault

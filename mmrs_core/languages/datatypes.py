@@ -19,6 +19,9 @@ XML_TYPES = "http://www.eclipse.org/emf/2003/XMLType"
 
 _JAVA_REAL = re.compile(r"[+-]?(?:NaN|Infinity|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[fFdD]?)", re.ASCII)
 _JAVA_DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_LAST_UNIT = "\uffff"
+_MOST_DIGITS = 4300
+"""Of a whole number; Python reads no longer ones, since that takes the square of their length."""
 _JAVA_INTEGER = re.compile(r"[+-]?[0-9]+")
 _DATE = re.compile(
     r"(\d+)-(\d\d)-(\d\d)(?:T(\d\d):(\d\d)(?::(\d\d)(?:\.(\d{1,6}))?)?)?(Z|[+-]\d\d:?\d\d)?", re.ASCII
@@ -106,6 +109,8 @@ def render_real(value: object) -> str:
         text = format(Decimal(repr(number)), "f")
         return text if "." in text else f"{text}.0"
     sign, digits, exponent = Decimal(repr(number)).as_tuple()
+    if len(digits) == 1:  # Java writes the nearest two; they differ for a few of the smallest numbers only
+        sign, digits, exponent = Decimal(f"{number:.1e}").as_tuple()
     figures = "".join(map(str, digits))
     power = int(exponent) + len(figures) - 1
     fraction = figures[1:].rstrip("0") or "0"
@@ -132,6 +137,8 @@ def _integer(bits: int | None) -> Callable[[str], int]:
             raise ValueError(f"{shown(text)}: not a whole number")
         if bits is not None and len(text) > 25:
             raise ValueError(f"{shown(text)}: does not fit into {bits} bits")
+        if len(text.lstrip("+-")) > _MOST_DIGITS:
+            raise ValueError(f"{shown(text)}: more than {_MOST_DIGITS} digits")
         value = int(text)
         if bits is not None and not -(1 << bits - 1) <= value < 1 << bits - 1:
             raise ValueError(f"{shown(text)}: does not fit into {bits} bits")
@@ -152,6 +159,8 @@ def _parse_character(text: str) -> str:
         return chr(int(text))
     if len(text) != 1:
         raise ValueError(f"{shown(text)}: not one character")
+    if text > _LAST_UNIT:
+        raise ValueError(f"{shown(text)}: not one character of 16 bits")
     return text
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from os.path import isfile
 from pathlib import Path
@@ -12,7 +13,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Unknown
 from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
 from mmrs_core.languages.model import Model
-from mmrs_core.languages.places import stated_places
+from mmrs_core.languages.places import first_kind, stated_places
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, Registry
 from mmrs_core.languages.xmi.events import XMI, XSI
@@ -50,6 +51,8 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
     """
     sources = list(gathered(metamodels, registry))
     known = registry.extended(sources)
+    sources += gathered(_candidates(path, _root_needs(path, known)), known)
+    known = registry.extended(sources)
     model = read_model(path, known)
     for _ in range(_MOST_ROUNDS):
         missing = missing_from(model, known)
@@ -61,6 +64,14 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
         model = read_model(path, known)
     files = tuple(source.ecore for source in sources if isinstance(source.ecore, Path))
     return ForeignModel(model, known, files)
+
+
+def _root_needs(path: Path, registry: Registry) -> frozenset[str]:
+    """Return the language of a first element, unless it is known: what is unknown may not nest as deeply."""
+    with suppress(UnreadableError):  # reading it says why
+        ns_uri, _ = first_kind(path)
+        return frozenset((ns_uri,) if ns_uri and not registry.has(ns_uri) else ())
+    return frozenset()
 
 
 def missing_from(model: Model, registry: Registry, certainly: bool = False) -> frozenset[str]:

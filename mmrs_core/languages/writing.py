@@ -74,7 +74,10 @@ def replace_file(path: Path, data: bytes) -> None:
         OSError: if the folder cannot be written to; the file is as it was before.
     """
     real = path.resolve()  # a symbolic link stays one
-    handle, name = tempfile.mkstemp(prefix=f".{real.name}.", suffix=".part", dir=real.parent)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{real.name}.", suffix=".part", dir=real.parent)
+    except OSError as fault:  # it names the part, of which nobody knows
+        raise OSError(fault.errno, fault.strerror, str(path)) from None
     part = Path(name)
     try:
         with os.fdopen(handle, "wb") as stream:

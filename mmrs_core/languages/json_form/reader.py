@@ -296,7 +296,9 @@ class JsonReader:
 
 
 def _fits(feature: Feature, metaclass: Metaclass) -> bool:
-    return isinstance(feature.type, Metaclass) and metaclass.is_kind(*feature.type.key)
+    kind, made = feature.type, metaclass.implementation
+    # by interface, since every element is an EObject, though no metamodel says so
+    return isinstance(kind, Metaclass) and made is not None and issubclass(made, kind.interface)
 
 
 def _parts(value: object) -> list[object]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from bisect import bisect_left
+from collections import Counter
 from typing import NoReturn, TypeGuard
 
 from mmrs_core.errors import UnreadableError
@@ -13,6 +14,7 @@ from mmrs_core.languages.xmi.events import DEEPEST_NESTING
 _STRING = r'"[^"\\]*+(?:\\.[^"\\]*+)*+"'
 _TOKEN = re.compile(rf"{_STRING}|[{{}}\[\]]", re.DOTALL)
 _MEMBER = re.compile(rf"({_STRING})\s*:|{_STRING}|[{{}}\[\]]", re.DOTALL)
+_CONSTANT = re.compile(rf"{_STRING}|(NaN|-?Infinity)", re.DOTALL)
 _MANY = 10_000
 _SHORTEST_OBJECT = len('{"x":1},')
 _DEEPEST = 2 * DEEPEST_NESTING
@@ -88,9 +90,13 @@ class Tree:
         self._text = _decoded(data, file)
         self._lines = [match.start() for match in re.finditer("\n", self._text)]
         self._keys: dict[int, dict[str, int]] = {}
+        self._twice: list[tuple[Node, str]] = []
         nodes: list[Node] = []
         self.top = self._parsed(nodes)
         self._give_places(nodes)
+        for node, key in self._twice:
+            line = self.line_of(node, key)
+            raise UnreadableError(f"{file}:{line}: {key!r}: given twice in one object")
 
     def line_of(self, node: Node, key: str) -> int:
         """Return the line on which an object says something."""
@@ -105,13 +111,12 @@ class Tree:
 
     def _parsed(self, nodes: list[Node]) -> object:
         def made(pairs: list[tuple[str, object]]) -> Node:
-            members = dict(pairs)
-            if len(members) < len(pairs):
-                keys = [key for key, _ in pairs]
-                twice = next(key for key in keys if keys.count(key) > 1)
-                raise UnreadableError(f"{self.file}: {twice!r}: given twice in one object")
-            nodes.append(Node(members))
-            return nodes[-1]
+            node = Node(dict(pairs))
+            if len(node.members) < len(pairs):
+                often = Counter(key for key, _ in pairs)
+                self._twice.append((node, often.most_common(1)[0][0]))
+            nodes.append(node)
+            return node
 
         try:
             return json.loads(
@@ -128,7 +133,9 @@ class Tree:
             raise UnreadableError(f"{self.file}: nested deeper than {_DEEPEST} levels") from None
 
     def _no_constant(self, word: str) -> NoReturn:
-        raise UnreadableError(f'{self.file}: not well-formed JSON: {word} is no number; write "{word}"')
+        offset = next((match.start() for match in _CONSTANT.finditer(self._text) if match[1]), 0)
+        place = f"{self.file}:{self._line(offset)}"
+        raise UnreadableError(f'{place}: not well-formed JSON: {word} is no number; write "{word}"')
 
     def _give_places(self, nodes: list[Node]) -> None:
         """Tell every object where it begins; they were made in the order in which they end."""

@@ -14,6 +14,7 @@ from mmrs_core.languages.metaclass import Enumeration
 _EXACT = 2**53
 """Beyond this, many readers of JSON round whole numbers."""
 _CHARACTERS = ("char", "java.lang.Character")
+_LAST_UNIT = "\uffff"
 _LONE = re.compile("[\ud800-\udfff]")
 
 
@@ -54,9 +55,16 @@ def parsed(kind: DataType | Enumeration, value: object) -> object:
         what = "an object" if isinstance(value, Node) else "a list" if isinstance(value, list) else "null"
         raise ValueError(f"{what}: not a value of the type {kind.name}")
     is_character = isinstance(kind, DataType) and kind.java_class in _CHARACTERS
-    if is_character and len(value) == 1 and not isinstance(value, Words | Leaf):
-        return value  # in XML it would be the number of a character
-    return kind.parse(value)
+    if not is_character or isinstance(value, Words | Leaf):
+        return kind.parse(value)
+    return _character(kind, value)
+
+
+def _character(kind: DataType | Enumeration, value: str) -> object:
+    """Return one UTF-16 unit, which is all that a char holds; in XML it is written as its number."""
+    if len(value) == 1 and value > _LAST_UNIT:
+        raise ValueError(f"{shown(value)}: not one character of 16 bits")
+    return value if len(value) == 1 else kind.parse(value)
 
 
 def _number(kind: DataType | Enumeration, value: Number) -> object:

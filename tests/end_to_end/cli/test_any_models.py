@@ -267,3 +267,16 @@ def test_a_mission_whose_plug_in_is_missing_names_it_and_refuses_to_plan(json_pr
     assert run(["plan", str(project), "-o", str(output), "--no-plugins"]) == 1
     assert "install mmrs-auv, which brings urn:mmrs:auv:1.0" in capsys.readouterr().err
     assert not output.exists()
+
+
+def test_a_number_without_end_is_valid_where_nobody_flies_by_it(town, capsys):
+    library = LIBRARY.replace("//EInt", "//EDouble")
+    (town / "models" / "library.ecore").write_text(library)
+    (town / "town.xmi").write_text(TOWN.replace("204", "Infinity"))
+    assert run(["validate", "town.xmi", *GIVEN]) == 0
+    assert "warning: Book: pages is Infinity, not a finite number" in capsys.readouterr().err
+
+
+def test_a_folder_that_is_missing_is_named_by_the_file_asked_for(town, capsys):
+    assert run(["convert", "pointing.xmi", "nowhere/town.json"]) == 3
+    assert capsys.readouterr().err == "mmrs: nowhere/town.json: no such file or directory\n"
