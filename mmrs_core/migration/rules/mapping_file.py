@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 
@@ -11,12 +12,15 @@ from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.notation import declared_structure
 from mmrs_core.migration.rules.rules_file import read_rules
+from mmrs_core.migration.rules.toml_places import line_of
 from mmrs_core.migration.rules.toml_tables import Table
 from mmrs_core.migration.sources.documents import KnownDocument
 from mmrs_core.migration.sources.metamodels import Dialect
 from mmrs_core.migration.sources.structure import Structure
 
 LARGEST = 4 * 1024 * 1024
+
+_LINE = re.compile(r"at line (\d+)")
 
 
 def read_mapping(path: Path, registry: Registry) -> DialectMapping:
@@ -27,13 +31,30 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
             says where.
     """
     try:
-        value = tomllib.loads(read_bytes(path, LARGEST).decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+        text = read_bytes(path, LARGEST).decode()
+        value = tomllib.loads(text)
+    except UnicodeDecodeError as fault:
         raise UnreadableError(f"{path}: not TOML: {str(fault).lower()}") from None
+    except tomllib.TOMLDecodeError as fault:
+        line = _LINE.search(str(fault))
+        place = f"{path}:{line[1]}" if line else str(path)
+        raise UnreadableError(f"{place}: not TOML: {str(fault).lower()}") from None
     top = Table(str(path), value)
-    mapping = _mapping(top, registry)
-    top.done()
+    if not value.get("rules"):
+        raise top.fault("holds no rules, so it says of no class what becomes of it")
+    try:
+        mapping = _mapping(top, registry)
+        top.done()
+    except UnreadableError as fault:
+        raise UnreadableError(_with_line(str(fault), str(path), text)) from None
     return mapping
+
+
+def _with_line(message: str, path: str, text: str) -> str:
+    """Return a message that begins with a file and keys in it, with the line of the deepest key."""
+    said = message.removeprefix(f"{path}: ")
+    line = line_of(text, re.split(r": |\.", said))
+    return f"{path}:{line}: {said}" if line else message
 
 
 def _mapping(top: Table, registry: Registry) -> DialectMapping:
@@ -42,9 +63,12 @@ def _mapping(top: Table, registry: Registry) -> DialectMapping:
         if not registry.has(ns_uri):
             raise top.fault(f"languages: {prefix}: {ns_uri} is not installed")
     structure = _structure(top)
+    dialect = _dialect(top.table("packages"))
+    for package in sorted({kind.partition(".")[0] for kind in structure.classes} - set(dialect.uris)):
+        raise top.fault(f"packages: {package}: needs 'uris' or 'files', which its models name")
     return DialectMapping(
         name=top.take("name", str, "") or top.where,
-        dialect=_dialect(top.table("packages")),
+        dialect=dialect,
         structure=structure,
         rules=read_rules(top.table("rules"), languages, registry, structure),
         types=top.table("types").text_by_key(),
@@ -56,7 +80,10 @@ def _dialect(packages: Table) -> Dialect:
     uris, files = {}, {}
     for name, table in packages.tables().items():
         uris[name] = table.texts("uris")
-        files[name] = table.texts("files") or (f"{name}.ecore",)
+        files[name] = table.texts("files")
+        if not (uris[name] or files[name]):
+            raise table.fault("needs 'uris' or 'files', which its models name")
+        files[name] = files[name] or (f"{name}.ecore",)
         table.done()
     return Dialect(uris, files)
 

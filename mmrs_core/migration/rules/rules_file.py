@@ -19,6 +19,7 @@ from mmrs_core.migration.rules.mapping import (
     Wait,
 )
 from mmrs_core.migration.rules.paths import feature_at
+from mmrs_core.migration.rules.sense import nonsense
 from mmrs_core.migration.rules.toml_tables import Table
 from mmrs_core.migration.sources.structure import Structure
 
@@ -31,7 +32,8 @@ def read_rules(
     """Return the rules by ``package.Class`` and ``package.Class/variant``.
 
     Raises:
-        UnreadableError: if a key is misspelt, or a class or feature does not exist on either side.
+        UnreadableError: if a key is misspelt, a class, feature or literal does not exist on either side, or
+            a rule makes no sense.
     """
     rules: dict[str, Rule] = {}
     for package, classes in packages.tables().items():
@@ -41,6 +43,8 @@ def read_rules(
             rules[rule.source] = rule
     for rule in rules.values():
         _check_inherited(rule, rules, packages, registry, structure)
+    for fault in nonsense(rules, registry, structure):
+        raise packages.fault(fault)
     return rules
 
 

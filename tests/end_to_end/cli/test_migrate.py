@@ -142,5 +142,5 @@ def test_a_name_may_be_said_to_stand_for_a_robot_type(mmrs, project):
 def test_a_mapping_that_is_none_is_refused_before_anything_is_written(mmrs, project):
     code, _, err = mmrs("migrate", FLYAQ / "Heron.xmi", "--mapping", FLYAQ / "palette.json", "-o", project)
     assert code == 3
-    assert "palette.json: not TOML" in err
+    assert "palette.json:1: not TOML" in err
     assert not project.exists()

@@ -1,5 +1,7 @@
 """Mapping files are checked before anything is migrated, and every fault says where."""
 
+import re
+
 import pytest
 
 from mmrs_core.errors import UnreadableError
@@ -69,15 +71,70 @@ def test_a_mapping_is_read(read):
         ('"length: number"', '"length: metre"', "port.Hull: length: 'metre' is no declared class"),
         ("urn:mmrs:robot:1.0", "urn:mmrs:robots", "languages: robot: urn:mmrs:robots is not installed"),
         ("[languages]", "[languages", "not TOML"),
+        ("port.uris", "harbour.uris", "packages: port: needs 'uris' or 'files'"),
+        ('port.uris = "urn:example:port"', "port.uris = []", "packages: port: needs 'uris' or 'files'"),
+        (
+            'title = "name"',
+            'length = { to = "size.length", times = nan }',
+            "times: expected a number other than 0, not nan",
+        ),
+        (
+            'title = "name"',
+            'length = { to = "size.length", times = 0 }',
+            "times: expected a number other than 0, not 0",
+        ),
+        (
+            'title = "name"',
+            'colour = { to = "name", values = { REED = "red" } }',
+            "port: Hull: colour: values: 'REED' is no literal of colour (RED, BLUE); did you mean RED?",
+        ),
+        (
+            'title = "name"',
+            'colour = { to = "rangingSystem", values = { RED = "LIDER" } }',
+            "; did you mean LIDAR?",
+        ),
+        (
+            'title = "name"',
+            'cabins = ["batteries", "devices"]',
+            "an element has one place only, not 2: batteries, devices",
+        ),
     ],
 )
 def test_a_fault_of_a_mapping_says_where_it_is(read, old, new, message):
     with pytest.raises(UnreadableError) as fault:
         read(GOOD.replace(old, new, 1) if "Hull" not in old else GOOD.replace(old, new))
     assert message in str(fault.value)
-    assert "m.toml: " in str(fault.value)
+    assert re.search(r"m\.toml:\d+: ", str(fault.value))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ('title = "name"', "title = name", 12),
+        ('title = "name"', '# none\ntitle = { too = "name" }', 13),
+        ('features]\ntitle = "name"', 'features."title"]\ntoo = "name"', 12),
+        ('"length: number"', '"length: metre"', 8),
+        ('to = "robot:Robot"', 'to = "robot:Robo"', 10),
+        ("port.uris", "harbour.uris", 4),
+    ],
+)
+def test_a_fault_of_a_mapping_has_a_line(read, old, new, line):
+    with pytest.raises(UnreadableError, match=rf"m\.toml:{line}: "):
+        read(GOOD.replace(old, new))
+
+
+def test_a_key_that_stands_in_a_table_of_its_own_is_found_there(read):
+    text = GOOD + '[rules.port.Hull.features.length]\nto = "size.length"\ntime = 2\n'
+    with pytest.raises(UnreadableError, match=r"m\.toml:15: rules: port: Hull: length: time: no such key"):
+        read(text)
 
 
 def test_a_form_of_document_needs_something_to_be_recognised_by(read):
     with pytest.raises(UnreadableError, match="needs 'under' or 'keys'"):
         read(GOOD + '[documents.tides]\nis = "a tide table"\n')
+
+
+@pytest.mark.parametrize("text", ["", 'name = "Port"\n'])
+def test_a_mapping_without_rules_is_none(read, text):
+    with pytest.raises(UnreadableError, match="holds no rules"):
+        read(text)
