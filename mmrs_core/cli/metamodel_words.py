@@ -23,7 +23,7 @@ def verdict_line(found: Sequence[Difference], chain: Sequence[Migration]) -> str
     """Return whether old models still load.
 
     >>> verdict_line([], [])
-    'the versions do not differ: old models load'
+    'nothing differs for models: old models load'
     """
     bad = sum(each.verdict is Verdict.INCOMPATIBLE for each in found)
     doubtful = sum(each.verdict is Verdict.MEANING for each in found)
@@ -33,4 +33,4 @@ def verdict_line(found: Sequence[Difference], chain: Sequence[Migration]) -> str
         return f"{counted(bad, 'incompatible change')}: not all old models load{way}{unless}"
     if doubtful:
         return f"old models load{way}, but {counted(doubtful, 'change')} may give them another meaning"
-    return f"old models load{way}" if found else "the versions do not differ: old models load"
+    return f"old models load{way}" if found else "nothing differs for models: old models load"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 ZOO = Path(__file__).parents[1] / "fixtures" / "models" / "zoo.ecore"
@@ -24,6 +25,12 @@ NEST = (
     '<eStructuralFeatures xsi:type="ecore:EReference" name="nest" eType="#//wing/Nest" containment="true"/>'
 )
 DEPUTY = '<eStructuralFeatures xsi:type="ecore:EReference" name="deputy" eType="#//Keeper"/>'
+DEPUTY_OF = DEPUTY.replace("deputy", "deputyOf").replace("/>", ' eOpposite="#//Keeper/deputy"/>')
+PAIRED = DEPUTY.replace("/>", ' eOpposite="#//Keeper/deputyOf"/>')
+MATES = (
+    ' eOpposite="#//Animal/mateOf"/>\n    <eStructuralFeatures xsi:type="ecore:EReference" name="mateOf"'
+    ' eType="#//Animal" eOpposite="#//Animal/mate"/>'
+)
 CALM = '<eLiterals name="CALM" value="5" literal="is-calm"/>'
 ANGRY = '<eLiterals name="ANGRY" value="2"/>'
 
@@ -76,6 +83,23 @@ EDITS: dict[str, tuple[str, str, str]] = {
         DEPUTY,
         DEPUTY.replace("#//Keeper", "ecore:EClass http://www.eclipse.org/emf/2002/Ecore#//EObject"),
         "compatible",
+    ),
+    "a reference gets another end": (DEPUTY, PAIRED + DEPUTY_OF, "incompatible"),
+    "a reference gets another end that takes many": (
+        DEPUTY,
+        PAIRED + DEPUTY_OF.replace("eType", 'upperBound="-1" eType'),
+        "compatible",
+    ),
+    "a reference loses its other end": (
+        MATES,
+        re.sub(' eOpposite="[^"]*"', "", MATES),
+        "changed meaning",
+    ),
+    "a type of its own is another in Java": ("java.net.URI", "java.lang.Integer", "incompatible"),
+    "a type of its own becomes an enumeration": (
+        '"ecore:EDataType" name="Colour" instanceClassName="java.net.URI"',
+        '"ecore:EEnum" name="Colour"',
+        "incompatible",
     ),
     "an id is an id no longer": (' iD="true"', "", "incompatible"),
     "a number becomes an id": (STEPS, STEPS.replace("/>", ' iD="true"/>'), "incompatible"),

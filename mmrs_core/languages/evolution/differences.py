@@ -101,7 +101,7 @@ class _Comparison:
     def _feature(self, old: Metaclass, new: Metaclass, feature: Feature, name: str) -> Iterator[Difference]:
         now = new.by_name.get(name)
         own = feature.owner is old
-        if now is not None and own:
+        if now is not None and (own or now.owner.key != self._image(feature.owner.key)):
             yield from feature_differences(f"{new.name}.{name}", feature, now, self._image)
         elif now is None and (own or not self._goes_above(feature)):
             yield self._gone(old, new, feature, "the feature" if own else "the feature, which it inherited")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mmrs_core.languages.datatypes import DataType
+from mmrs_core.languages.datatypes import ECORE, XML_TYPES, DataType
 from mmrs_core.languages.evolution.verdicts import Difference, Verdict, changed, refused
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 
@@ -12,6 +12,25 @@ Image = Callable[[tuple[str, str]], tuple[str, str]]
 """From (nsURI, name) of a class of the older version to that in the newer one."""
 
 _BITS = {"EByte": 8, "EShort": 16, "EInt": 32, "ELong": 64, "EBigInteger": 1000}
+
+_OF_JAVA = {
+    "byte": "EByte",
+    "Byte": "EByte",
+    "short": "EShort",
+    "Short": "EShort",
+    "int": "EInt",
+    "Integer": "EInt",
+    "long": "ELong",
+    "Long": "ELong",
+    "float": "EFloat",
+    "Float": "EFloat",
+    "double": "EDouble",
+    "Double": "EDouble",
+    "boolean": "EBoolean",
+    "Boolean": "EBoolean",
+    "java.math.BigInteger": "EBigInteger",
+    "java.math.BigDecimal": "EBigDecimal",
+}
 
 
 def feature_differences(what: str, old: Feature, new: Feature, image: Image) -> Iterator[Difference]:
@@ -33,15 +52,32 @@ def feature_differences(what: str, old: Feature, new: Feature, image: Image) -> 
 
 def _types(what: str, old: Feature, new: Feature, image: Image) -> Iterator[Difference]:
     ours, theirs = image((old.type.ns_uri, old.type.name)), (new.type.ns_uri, new.type.name)
-    if ours == theirs:
+    if ours == theirs and _made_of(old) == _made_of(new):
         return
-    words = f"its type was {old.type.name}, is {new.type.name}"
+    before, now = (old.type.name, new.type.name) if ours != theirs else (_made_of(old), _made_of(new))
+    words = f"its type was {before}, is {now}"
     if isinstance(old.type, Metaclass) and isinstance(new.type, Metaclass):
         yield _class_change(what, words, old, new, ours)
+    elif _may_hold_nothing(old) and not _may_hold_nothing(new):
+        yield refused(what, words, f"older models may say nil, which is no {now}")
     elif _widens(old.type, new.type):
         yield changed(what, words)
     else:
-        yield refused(what, words, f"not every {old.type.name} can be read as {new.type.name}")
+        yield refused(what, words, f"not every {before} can be read as {now}")
+
+
+def _made_of(feature: Feature) -> str:
+    """Return what the type of a feature is in Java, whatever it is called."""
+    if isinstance(feature.type, DataType):
+        return feature.type.java_class
+    return "an enumeration" if isinstance(feature.type, Enumeration) else "a class"
+
+
+def _may_hold_nothing(feature: Feature) -> bool:
+    """Return whether EMF writes nil for some values: among many, or where nothing is not the default."""
+    if isinstance(feature.type, DataType) and feature.type.primitive:
+        return False
+    return feature.many or feature.unsettable or feature.default is not None
 
 
 def _class_change(what: str, words: str, old: Feature, new: Feature, ours: tuple[str, str]) -> Difference:
@@ -79,7 +115,9 @@ def _widens(old: object, new: object) -> bool:
 
 
 def _plain(kind: DataType) -> str:
-    """Return a type's name without what says that its values may be null."""
+    """Return Ecore's name of a type, without what says that its values may be null."""
+    if kind.ns_uri not in (ECORE, XML_TYPES):
+        return _OF_JAVA.get(kind.java_class.removeprefix("java.lang."), kind.java_class)
     return {"EIntegerObject": "EInt"}.get(kind.name, kind.name.removesuffix("Object"))
 
 
@@ -135,6 +173,22 @@ def _flags(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
         yield changed(
             what, "cannot be unset any more", Verdict.MEANING, "a stated default is no statement now"
         )
-    if new.opposite is not None and old.opposite is None:
-        reason = "older models may contradict it"
-        yield changed(what, f"has {new.opposite.name} as its other end now", Verdict.MEANING, reason)
+    yield from _other_ends(what, old, new)
+
+
+def _other_ends(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
+    before, now = old.opposite, new.opposite
+    if now is not None and before is None:
+        words = f"has {now.name} as its other end now"
+        is_new = isinstance(old.type, Metaclass) and now.name not in old.type.by_name
+        if is_new and (now.many or new.containment):
+            yield changed(what, words)  # reading sets the other end
+        else:
+            yield refused(what, words, "older models may contradict it")
+    elif before is not None and now is None and _has(new, before.name):
+        reason = "older models may state one of the two only"
+        yield changed(what, f"has {before.name} as its other end no longer", Verdict.MEANING, reason)
+
+
+def _has(feature: Feature, name: str) -> bool:
+    return isinstance(feature.type, Metaclass) and name in feature.type.by_name

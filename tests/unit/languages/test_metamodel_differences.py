@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from metamodel_edits import EDITS, ZOO, edited
 
@@ -97,3 +99,26 @@ def test_a_metamodel_that_needs_another_says_which(core, tmp_path):
     file.write_text(edited().replace('eType="#//Keeper"', 'eType="gone.ecore#//Keeper"', 1))
     with pytest.raises(PluginError, match=r"needs the metamodel gone\.ecore"):
         version_of(str(file), core)
+
+
+def test_a_number_that_may_be_nil_is_not_one_that_may_not(core, tmp_path):
+    old, new = tmp_path / "old.ecore", tmp_path / "new.ecore"
+    text = edited("a byte may be absent").replace('name="cage"', 'name="cage" unsettable="true"')
+    old.write_text(text, encoding="utf-8")
+    new.write_text(text.replace("EByteObject", "EByte"), encoding="utf-8")
+    found = differences(version_of(str(old), core), version_of(str(new), core))
+    assert "older models may say nil, which is no EByte" in {each.reason for each in found}
+
+
+def test_a_feature_that_was_inherited_and_is_declared_anew_is_compared(core, tmp_path):
+    old, new = tmp_path / "old.ecore", tmp_path / "new.ecore"
+    text = ZOO.read_text(encoding="utf-8").replace("urn:test:zoo", "urn:test:park")
+    depth = re.search(r'<eStructuralFeatures [^>]*name="depth"[^>]*/>', text)[0]
+    otter = '<eClassifiers xsi:type="ecore:EClass" name="Otter" eSuperTypes="#//Animal #//Swimmer"'
+    assert otter in text
+    old.write_text(text, encoding="utf-8")
+    bare = text.replace(depth, "").replace(otter + "/>", otter + "></eClassifiers>")
+    anew = depth.replace("EDouble", "EInt")
+    new.write_text(re.sub(f"({re.escape(otter)}[^>]*>)", rf"\g<1>{anew}", bare), encoding="utf-8")
+    found = differences(version_of(str(old), core), version_of(str(new), core))
+    assert ("Otter.depth", "incompatible") in {(each.what, each.verdict.value) for each in found}
