@@ -24,8 +24,8 @@ def judged(contributions, folder, cases, seed):
 def test_damaged_models_never_break_us(contributions, tmp_path):
     """Migration goes on with other files, so that one that cannot be read is a fault to it."""
     tallies = judged(contributions, tmp_path, 2_000, seed=1)
-    assert all(tally.ends["faults"] for tally in tallies.values())
-    assert all(tally.ends["unreadable"] for name, tally in tallies.items() if name != "migrate")
+    assert all("faults" in tally.ends for tally in tallies.values())
+    assert all("unreadable" in tally.ends for name, tally in tallies.items() if name != "migrate")
 
 
 @pytest.mark.thorough
@@ -45,6 +45,9 @@ def test_a_reader_that_breaks_is_a_defect():
 
 
 def test_a_reader_that_hangs_is_told():
-    with pytest.raises(HangError), in_time(0.05):
+    def hang():
         while True:
             pass
+
+    with pytest.raises(HangError), in_time(0.05):
+        hang()
