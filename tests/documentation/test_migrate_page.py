@@ -18,6 +18,8 @@ OF_FEATURES = KEYS.findall(FEATURES.split("### Files")[0])
 FRAME = """
 [languages]
 robot = "urn:mmrs:robot:1.0"
+[packages]
+port.uris = "urn:example:port"
 [structure.port]
 Boat = ["title: text"]
 [rules.port.Boat]
