@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from shlex import quote
 
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import children, text
@@ -30,13 +31,13 @@ class RobotTypes:
             return self.named[name], f"the robot type {name!r} is taken for {self.named[name]!r}"
         if name in self.known:
             return name, ""
-        unknown = f"no robot type {name!r} is known"
+        unknown, option = f"no robot type {name!r} is known", quote(f"{name}=NAME")
         if otherwise in self.known:
             return (
                 otherwise,
-                f"{unknown}; {otherwise!r} stands in for it: say what it is by --type {name}=NAME",
+                f"{unknown}; {otherwise!r} stands in for it: say what it is by --type {option}",
             )
-        return name, f"{unknown}: write robots/{name}.xmi, or say what it is by --type {name}=NAME"
+        return name, f"{unknown}: write robots/{name}.xmi, or say what it is by --type {option}"
 
     def device_for(self, type_name: str, action: str) -> str:
         """Return the id of the only device of a type that supports an action, or an empty text."""

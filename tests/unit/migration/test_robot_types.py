@@ -3,6 +3,7 @@
 import pytest
 
 from mmrs_core.languages.writing import to_xmi
+from mmrs_core.migration.building.robot_types import RobotTypes
 
 DRONE = (
     '<d:Drone xmlns:d="http://www.flyaq.it/drone" name="Tern"><size width="1"/>'
@@ -107,3 +108,8 @@ def test_types_of_one_name_that_contradict_each_other_get_two_names(migrated, to
 def test_the_same_file_gives_the_same_bytes(migrated, flyaq, registry):
     first, second = (migrated(flyaq / "Heron.xmi").outputs[0].element for _ in range(2))
     assert to_xmi((first,), registry) == to_xmi((second,), registry)
+
+
+def test_the_option_for_an_unknown_type_can_be_pasted_into_a_shell():
+    _, told = RobotTypes({}, {}).resolved("Bot X", "")
+    assert told.endswith("say what it is by --type 'Bot X=NAME'")
