@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,8 +27,15 @@ Metamodels = Annotated[
 ]
 
 
-def read_foreign(workshop: Workshop, file: Path, metamodels: Sequence[Path] | None) -> ForeignModel:
+def read_foreign(
+    workshop: Workshop,
+    file: Path,
+    metamodels: Sequence[Path] | None,
+    unsaved: Mapping[Path, bytes] | None = None,
+) -> ForeignModel:
     """Return a model of any language; tell of metamodels that were found for it and of those not used.
+
+    Nothing is told of a file that might be, whose text stands in `unsaved`.
 
     Raises:
         UnreadableError: if the file or a metamodel that was named cannot be read.
@@ -37,7 +44,9 @@ def read_foreign(workshop: Workshop, file: Path, metamodels: Sequence[Path] | No
     from mmrs_core.languages.foreign import read_any
 
     given = tuple(metamodels or ())
-    found = read_any(file, workshop.contributions.languages, given)
+    found = read_any(file, workshop.contributions.languages, given, unsaved)
+    if unsaved:
+        return found
     used = {each.resolve() for each in found.found}
     for each in given:
         if each.resolve() not in used:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_mistake
-from mmrs_core.cli.output import counted, report, say, say_file, say_json
+from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
 from mmrs_core.cli.schema_places import SchemaLocation, places_in
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import InvalidModelError, UnsupportedError
@@ -69,7 +69,19 @@ def convert(
         say_json({"file": target, "form": form.value, "elements": count, "diagnostics": faults})
     else:
         say(f"written: {target} ({counted(count, 'element')})")
+    _tell_of_kept_links(found, source, target)
     return 0
+
+
+def _tell_of_kept_links(found: ForeignModel, source: Path, target: Path) -> None:
+    """Say that links in what is kept as it is were not adjusted to another folder."""
+    from mmrs_core.languages.element import Unknown
+
+    if source.resolve().parent == target.resolve().parent:
+        return
+    if any(isinstance(each, Unknown) for each in found.model.elements()):
+        words = "elements of languages that are not installed are kept as they are, with their links to files"
+        tell(f"{target}: note: {words}; such links still start from {source.parent}")
 
 
 def _form_of(source: Path, target: Path | None) -> Form:

@@ -52,12 +52,12 @@ class Subject:
             InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
         """
         if self.metamodels or is_foreign(self.workshop, self.file):
-            return self._alone()
+            return self._alone(unsaved)
         return self._behaviour(unsaved) if self._is_behaviour() else self._mission(unsaved)
 
-    def _alone(self) -> Diagnosis:
+    def _alone(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
-        found = read_foreign(self.workshop, self.file, self.metamodels)
+        found = read_foreign(self.workshop, self.file, self.metamodels, unsaved)
         models = (found.model, *found.model.linked)
         breaches = (fault for each in models for fault in check_conformance(each, found.registry))
         faults = (*faults_in(found), *(_as_emf_takes_it(fault) for fault in breaches))

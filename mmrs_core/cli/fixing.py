@@ -47,6 +47,9 @@ def show(repair: Repair) -> None:
         say(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
     for proposal in repair.refused:
         tell(f"{_where(proposal)}: not mended: that would bring other errors [{proposal.fault.code}]")
+    places = (fault.place.file for fault in repair.diagnosis.faults)
+    for file in dict.fromkeys(place for place in places if place.lower().endswith(".json")):
+        tell(f"{file}: note: quick fixes mend XMI only, so nothing of this file is changed")
 
 
 def _where(proposal: Proposal) -> str:

@@ -36,7 +36,12 @@ class ForeignModel:
     found: tuple[Path, ...] = ()
 
 
-def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) -> ForeignModel:
+def read_any(
+    path: Path,
+    registry: Registry,
+    metamodels: Sequence[Path] = (),
+    unsaved: Mapping[Path, bytes] | None = None,
+) -> ForeignModel:
     """Return the model in a file, of whatever language.
 
     Args:
@@ -44,6 +49,7 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
         registry: the metamodels that are installed.
         metamodels: .ecore files, which may refer to others beside them. What is still missing is looked for
             where the model's ``xsi:schemaLocation`` says, and among the .ecore files of its folder.
+        unsaved: what is read instead of a file.
 
     Raises:
         UnreadableError: if the file, or a metamodel that was given, cannot be read.
@@ -53,7 +59,7 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
     known = registry.extended(sources)
     sources += gathered(_candidates(path, _root_needs(path, known)), known)
     known = registry.extended(sources)
-    model = read_model(path, known)
+    model = read_model(path, known, unsaved=unsaved)
     for _ in range(_MOST_ROUNDS):
         missing = missing_from(model, known)
         more = list(gathered(_candidates(path, missing), known)) if missing else []
@@ -61,7 +67,7 @@ def read_any(path: Path, registry: Registry, metamodels: Sequence[Path] = ()) ->
             break
         sources += more
         known = known.extended(more)
-        model = read_model(path, known)
+        model = read_model(path, known, unsaved=unsaved)
     files = tuple(source.ecore for source in sources if isinstance(source.ecore, Path))
     return ForeignModel(model, known, files)
 

@@ -280,3 +280,25 @@ def test_a_number_without_end_is_valid_where_nobody_flies_by_it(town, capsys):
 def test_a_folder_that_is_missing_is_named_by_the_file_asked_for(town, capsys):
     assert run(["convert", "pointing.xmi", "nowhere/town.json"]) == 3
     assert capsys.readouterr().err == "mmrs: nowhere/town.json: no such file or directory\n"
+
+
+def test_a_model_of_any_language_is_mended(town, capsys):
+    (town / "town.xmi").write_text(TOWN.replace("pages=", "pagse="))
+    assert run(["validate", "town.xmi", *GIVEN, "--fix", "--yes"]) == 0
+    assert (town / "town.xmi").read_text() == TOWN
+
+
+def test_faults_that_are_not_mended_because_they_are_in_json_are_told_so(town, capsys):
+    assert run(["convert", "pointing.xmi", "town.json"]) == 0
+    text = (town / "town.json").read_text().replace('"pages":', '"pagse":')
+    (town / "town.json").write_text(text)
+    assert run(["validate", "town.json", "--fix", "--yes"]) == 1
+    assert "town.json: note: quick fixes mend XMI only" in capsys.readouterr().err
+    assert (town / "town.json").read_text() == text
+
+
+@pytest.mark.parametrize(("target", "is_told"), [("town.json", False), ("models/town.json", True)])
+def test_links_of_what_is_kept_are_told_where_they_go_to_another_folder(town, capsys, target, is_told):
+    (town / "kite.xmi").write_text('<k:Kite xmlns:k="urn:kites:1.0"><line href="sky.xmi#/"/></k:Kite>')
+    assert run(["convert", "kite.xmi", target]) == 0
+    assert ("note: elements of languages that are not installed" in capsys.readouterr().err) is is_told
