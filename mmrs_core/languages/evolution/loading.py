@@ -47,7 +47,7 @@ def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:
     for what, line in old.ignored:
         message = f"{what}: not read, and not kept when the model is saved"
         draft.fault("XMI011", message, line, severity=Severity.WARNING)
-    way = Migrating(old.roots, registry, {})
+    way = Migrating(old.roots, registry, {}, draft.source.file)
     top = Node({ROOTS: list(old.roots)})
     _read(XmiTree(draft.source.file, top), old.roots, way, draft, registry)
 
@@ -66,7 +66,7 @@ def read_json(data: bytes, draft: Draft, registry: Registry) -> None:
     languages = {k: str(v) for k, v in prefixes.members.items()} if isinstance(prefixes, Node) else {}
     if kept:
         _unpack(roots, registry, languages, draft.source.file)
-    _read(tree, roots, Migrating(roots, registry, languages), draft, registry)
+    _read(tree, roots, Migrating(roots, registry, languages, tree.file), draft, registry)
 
 
 def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, str], file: str) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from mmrs_core.errors import PluginError
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.renaming import Kind, Renaming, after
 from mmrs_core.languages.json_form.tree import Leaf, Node, Number
@@ -36,14 +37,21 @@ class Migrating:
         addresses: the objects by where they stood before, as fragments write it.
     """
 
-    def __init__(self, roots: Sequence[Node], registry: Registry, languages: Mapping[str, str]) -> None:
+    def __init__(
+        self, roots: Sequence[Node], registry: Registry, languages: Mapping[str, str], file: str
+    ) -> None:
         """Take the objects at the top of a model, which change in place.
 
         Args:
             roots: with types written ``nsURI#Name``, or with a prefix.
             registry: the installed metamodels, and the migrations that lead to them.
             languages: the prefixes, as nsURIs.
+            file: what messages call the model.
+
+        Raises:
+            PluginError: if the function of a migration fails; says for which element.
         """
+        self._file = file
         self.lost: list[Lost] = []
         self.addresses: dict[str, Node] = {}
         self._registry = registry
@@ -110,7 +118,13 @@ class Migrating:
         if kind[0] == step.from_uri:
             node.members[TYPE] = "#".join(after(step, kind))
             if step.rewrite is not None:
-                step.rewrite(node)
+                self._rewrite(step.rewrite, node)
+
+    def _rewrite(self, rewrite: Callable[[Node], None], node: Node) -> None:
+        try:
+            rewrite(node)
+        except PluginError as fault:
+            raise PluginError(f"{fault}; at {self._file}:{node.line}") from fault
 
     def _lose(self, step: Migration, node: Node, dropped: Mapping[str, bool]) -> None:
         for key in node.members:

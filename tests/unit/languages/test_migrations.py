@@ -193,6 +193,15 @@ def test_a_function_is_not_called_for_elements_of_other_languages(fair):
     assert seen == ["Fair"]
 
 
+def test_a_function_that_fails_is_told_with_the_element_that_it_failed_for(fair):
+    def fail(element):
+        raise PluginError(f"fails for {element.kind}")
+
+    step = Migration("urn:test:fair:1.0", NEW, rewrite=fail)
+    with pytest.raises(PluginError, match=r"^fails for Fair; at old\.xmi:\d+$"):
+        read_text(OLD, "old.xmi", fair(step))
+
+
 def test_elements_of_a_missing_language_are_kept_inside_a_migrated_model(fair):
     alien = b'<dragons xsi:type="far:Thing" xmlns:far="urn:far" x="&lt;"><y/></dragons>'
     text = OLD.replace(b"  <dragons>", b"  " + alien + b"\n  <dragons>")
