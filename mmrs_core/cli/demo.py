@@ -19,9 +19,9 @@ def demo(
     example: Annotated[
         str, typer.Argument(metavar="EXAMPLE", help="Name of an example; --list shows them.")
     ] = DEFAULT,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where everything goes.")] = Path(
-        "mmrs-demo"
-    ),
+    out: Annotated[
+        Path, typer.Option("-o", "--output", "--out", metavar="DIR", help="Where everything goes.")
+    ] = Path("mmrs-demo"),
     list_examples: Annotated[bool, typer.Option("--list", help="List the examples.")] = False,
     json: Json = False,
 ) -> int:

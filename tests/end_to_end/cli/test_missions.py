@@ -38,13 +38,13 @@ def test_a_demonstration_can_be_repeated(mmrs, tmp_path):
     folder = tmp_path / "out"
     first = mmrs("demo", "pool", "--out", folder)
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    second = mmrs("demo", "pool", "--out", folder)
+    second = mmrs("demo", "pool", "-o", folder)
     assert first == second
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
 
 
 def test_a_demonstration_tells_itself_as_one_object(mmrs, tmp_path):
-    told = json.loads(mmrs("demo", "pool", "--out", tmp_path / "out", "--json")[1])
+    told = json.loads(mmrs("demo", "pool", "--output", tmp_path / "out", "--json")[1])
     assert told["mission"] == "Objects in the pool"
     assert told["replay"]["complaints"] == []
     assert {"robots", "tasks", "makespan", "verdicts", "ending", "files"} <= set(told)
