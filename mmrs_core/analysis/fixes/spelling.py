@@ -31,9 +31,14 @@ def _features(wrong: Wrong) -> Iterator[Edit]:
                 yield with_name(attribute, name)
     for tag in wrong.children:
         if tag.name not in metaclass.by_name and ":" not in tag.name:
-            name = meant(tag.name, _free(wrong.tag, metaclass, lambda each: each.containment))
+            name = meant(tag.name, _free(wrong.tag, metaclass, _is_written_inside))
             if name is not None:
                 yield from _renamed(tag, name)
+
+
+def _is_written_inside(feature: Feature) -> bool:
+    """Return whether a feature may be a child: a part, or a value, of which EMF writes many so."""
+    return feature.containment or not feature.is_reference
 
 
 def _free(tag: Tag, metaclass: Metaclass, wanted: Callable[[Feature], bool]) -> list[str]:

@@ -26,6 +26,12 @@ SPOILT = {
     "XMI003": (DAM, "mission.xmi", '<home xsi:type="mission:GeoCoordinate" ', "<home "),
     "XMI004": (DAM, "mission.xmi", 'photoDistance="20.0"', 'photoDistanse="20.0"'),
     "XMI004 of an element": (DAM, "mission.xmi", "<initialPosition", "<initalPosition"),
+    "XMI004 of a value": (
+        EXAMPLES / "pool",
+        "mission.xmi",
+        "<acceptedUnknowns>range</acceptedUnknowns>",
+        "<acceptedUnknown>range</acceptedUnknown>",
+    ),
     "XMI005": (DAM, "mission.xmi", 'travelMode="SAFE"', 'travelMode="Safe"'),
     "XMI005 of a truth": (DAM, "mission.xmi", 'returnHome="true"', 'returnHome="yes"'),
     "XMI005 of a decimal comma": (DAM, "mission.xmi", 'latitude="42.538500"', 'latitude="42,538500"'),
