@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
+_UNKNOWN = "known to be safe: give what is missing, or name the property in the mission's acceptedUnknowns"
 NO_CONTEXT = "no context: nothing is known of obstacles and forbidden areas"
 
 
@@ -201,8 +202,10 @@ def require_safe(program: Program, verdicts: Sequence[Verdict], name: str) -> No
     Raises:
         RefusedError: if a property is violated, or unknown without the mission accepting that.
     """
+    from mmrs_core.contributions.checks import Status
     from mmrs_core.pipeline import refusals
 
     against = refusals(verdicts, program)
     if against:
-        raise RefusedError(f"{name}: the behaviour is not safe", against)
+        unknown = all(each.status is Status.UNKNOWN for each in against)
+        raise RefusedError(f"{name}: the behaviour is not {_UNKNOWN if unknown else 'safe'}", against)

@@ -105,6 +105,16 @@ def test_every_stage_can_be_looked_at(mmrs, pool, stage):
     assert not (pool / "behaviour.xmi").exists()
 
 
+def test_what_is_not_known_is_refused_with_the_ways_out(mmrs, tmp_path):
+    park = shutil.copytree(shipped("examples") / "solar-park", tmp_path / "park")
+    context = park / "context.xmi"
+    context.write_text(re.sub(r' irradiance="[\d.]+"', "", context.read_text("utf-8")), "utf-8")
+    code, _, err = mmrs("plan", park)
+    assert code == 1
+    assert "not known to be safe: give what is missing" in err
+    assert "acceptedUnknowns\n  - irradiance: unknown" in err
+
+
 def test_planning_again_replaces_the_behaviour_in_its_own_form(mmrs, pool):
     assert mmrs("plan", pool, "-o", pool / "behaviour.json")[0] == 0
     assert mmrs("plan", pool)[0] == 0
