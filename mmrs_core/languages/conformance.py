@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.codes import explained
@@ -95,7 +95,7 @@ class _Check:
         if feature.many and feature.unique:
             yield from _repeated(element, feature, values, _as_java)
         if feature.is_id and values[0] is not None:
-            other = self._ids.setdefault(values[0], element)
+            other = self._ids.setdefault(_as_java(values[0]), element)
             if other is not element:
                 message = f"{values[0]}: an identifier used twice; first at {place_of(other)}"
                 yield _fault("ECO012", element, message)
@@ -178,7 +178,8 @@ def _answered(element: Element, feature: Feature, value: Element) -> Iterator[Di
 
 def _as_java(value: object) -> object:
     """Return what equals the same of another value where Java's equals says so: 0.0 is not -0.0."""
-    return type(value), repr(value) if isinstance(value, float) else value
+    comparable = isinstance(value, Hashable) and not isinstance(value, float)
+    return type(value), value if comparable else repr(value)
 
 
 def _repeated(

@@ -131,6 +131,14 @@ def test_an_identifier_used_twice_is_a_fault(zoo):
     assert codes(zoo, zoo.create(ZOO, "Zoo", keepers=keepers)) == ["ECO012"]
 
 
+def test_values_that_are_no_values_at_all_are_faults_like_others(zoo):
+    keeper, lion = zoo.create(ZOO, "Keeper", badge="k"), zoo.create(ZOO, "Lion", name="l", tags=["a"])
+    keeper.badge, lion.tags[:] = [], [[], {}]
+    faults = codes(zoo, zoo.create(ZOO, "Zoo", keepers=[keeper], animals=[lion]))
+    assert set(faults) == {"ECO003"}
+    assert len(faults) == 3
+
+
 def test_an_element_of_another_registry_is_a_fault(core, zoo):
     assert codes(core, zoo.create(ZOO, "Zoo")) == ["ECO010"]
 
