@@ -133,7 +133,7 @@ def passes_over(width: float, strip: float, overlap: float) -> tuple[float, ...]
         raise InfeasibleError(
             f"a row takes about {wanted:,.0f} passes, of which {MOST_PASSES:,} can be planned"
         )
-    steps = ceil(wanted - 1e-9)
+    steps = max(1, ceil(wanted - 1e-9))
     step = (width - strip) / steps
     return tuple(index * step - (width - strip) / 2.0 for index in range(steps + 1))
 
