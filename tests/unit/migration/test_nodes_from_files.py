@@ -25,7 +25,7 @@ def from_xmi(text):
     [
         ("shop://Order", Claim("http://shop", "Order")),
         ("http://shop#//Order", Claim("http://shop", "Order")),
-        ("file:/C:/work/shop.ecore#//Order", Claim("file:/C:/work/shop.ecore", "Order")),
+        ("file:/C:/shops/shop.ecore#//Order", Claim("file:/C:/shops/shop.ecore", "Order")),
         ("shop.ecore#//Order", Claim("shop.ecore", "Order")),
         ("unknown://Order", Claim("unknown", "Order")),
     ],

@@ -14,28 +14,16 @@ from plain_scenes import (
     visit,
     with_kinematics,
 )
-from plan_replay import complaints
+from sound_plans import sound, steps_of
 
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.planner import plan
 from mmrs_core.planning.separation import first_encounter
-from mmrs_core.scene import Await, Branch, Launch, Policy, Recharge, Recover, Serve, Signal, Transit
+from mmrs_core.scene import Await, Branch, Launch, Recover, Serve, Signal, Transit
 
 TWO = (robot("r1"), robot("r2", (20.0, 0.0, 0.0)))
 FIELD = ((100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0))
 CUTS = tuple(range(50, 1000, 50))
-
-
-def steps_of(found, name, kind):
-    return [
-        step for each in found.robots if each.robot == name for step in each.steps if isinstance(step, kind)
-    ]
-
-
-def sound(whole, **features):
-    found = plan(whole, **features)
-    assert complaints(whole, found) == []
-    return found
 
 
 def test_one_robot_goes_does_it_and_comes_back():
@@ -176,20 +164,6 @@ def test_an_earliest_time_is_kept_even_by_a_robot_that_does_not_stop_at_corners(
     assert without_stops + (wait.until - wait.begin) >= 130.0 - 1e-6
 
 
-def test_a_robot_does_not_wait_aloft_longer_than_its_charge_bears_if_it_is_early():
-    sluggish = with_kinematics(robot("r1"), acceleration=0.5, endurance=190.0, recharge=60.0)
-    other = with_kinematics(robot("r2", (40.0, 0.0, 0.0)), cruise=5.0)
-    works = {
-        "first": {"r1": visit((150.0, 0.0, 20.0), (150.0, 150.0, 20.0))},
-        "long": {"r2": visit((150.0, 40.0, 20.0), hold=70.0)},
-        "b": {"r1": visit((150.0, 20.0, 20.0))},
-    }
-    whole = scene((sluggish, other), works, after=[("first", "b"), ("long", "b")])
-    assert len(steps_of(sound(whole), "r1", Recharge)) == 1
-    stopping = replace(whole, minimum_separation=0.0)
-    assert len(steps_of(sound(stopping), "r1", Recharge)) == 0
-
-
 def test_a_deadline_that_cannot_be_kept_is_refused_with_how_late_it_is():
     whole = scene([robot()], {"a": visit((1000.0, 0.0, 20.0))}, tasks={"a": task("a", deadline=100.0)})
     with pytest.raises(InfeasibleError, match=r"its deadline is 100 s: 12 s late"):
@@ -208,58 +182,6 @@ def test_a_higher_priority_comes_first():
     whole = scene([robot()], works, tasks={"b": task("b", priority=5)})
     found = sound(whole)
     assert found.begins["b"] < found.begins["a"]
-
-
-def folded():
-    """Return a road of 5.5 km in a square of half a kilometre: eleven times there and back."""
-    points = [(500.0 * (k % 2), 20.0 * (k // 2), 20.0) for k in range(12)]
-    return road(*points, cuts=tuple(range(50, 5500, 50)))
-
-
-def test_work_that_takes_longer_than_a_charge_becomes_several_sorties():
-    found = sound(scene([with_kinematics(robot(), endurance=200.0, energy=1e9)], {"a": folded()}))
-    assert found.robots[0].sorties > 3
-    assert len(steps_of(found, "r1", Recharge)) == found.robots[0].sorties - 1
-
-
-def test_energy_limits_sorties_as_time_does():
-    found = sound(scene([with_kinematics(robot(), energy=200.0 * 200.0)], {"a": folded()}))
-    assert found.robots[0].sorties > 3
-
-
-def test_work_that_no_charge_suffices_for_is_refused_with_what_is_short():
-    whole = scene([with_kinematics(robot(), endurance=100.0)], {"a": visit((1000.0, 0.0, 20.0))})
-    with pytest.raises(
-        InfeasibleError, match=r"takes 227 s there and back, of one charge 100 s .*: 127 s short"
-    ):
-        plan(whole)
-
-
-def test_a_battery_that_cannot_be_recharged_is_told():
-    works = {name: visit((300.0, 10.0 * k, 20.0)) for k, name in enumerate("abcd")}
-    lone = with_kinematics(robot(), endurance=120.0, recharge=None)
-    whole = scene(
-        [lone],
-        {n: replace(w, strokes=tuple(replace(s, hold=30.0) for s in w.strokes)) for n, w in works.items()},
-    )
-    with pytest.raises(InfeasibleError, match="cannot recharge"):
-        plan(whole)
-
-
-def test_charges_that_all_together_do_not_suffice_are_told_with_what_is_short():
-    lone = with_kinematics(robot(), endurance=150.0, recharge=None)
-    with pytest.raises(InfeasibleError, match=r"150 s a charge, cannot recharge.*: at least 400 s short"):
-        plan(scene([lone], {"a": folded()}))
-
-
-def test_pieces_that_are_too_long_for_different_robots_are_not_told_to_be_too_long_for_all():
-    west = with_kinematics(robot("west"), endurance=130.0)
-    east = with_kinematics(robot("east", (1000.0, 0.0, 0.0)), endurance=130.0)
-    line = road((0.0, 50.0, 20.0), (1000.0, 50.0, 20.0), cuts=CUTS)
-    sound(scene([west, east], {"a": line}))
-    tasks = {"a": task("a", wanted=1)}
-    with pytest.raises(InfeasibleError, match=r"cannot be done by exactly 1 robot,.*too long for some: west"):
-        plan(scene([west, east], {"a": line}, tasks=tasks))
 
 
 def test_all_reasons_are_given_at_once():
@@ -330,78 +252,9 @@ def test_points_of_one_task_are_gone_between_at_their_speed():
     assert [step.speed for step in steps_of(slow, "r1", Transit)] == [5.0, 5.0, None]
 
 
-def test_a_slow_approach_counts_against_the_charge():
-    lone = with_kinematics(robot(), endurance=115.0)
-    sound(scene([lone], {"a": visit((400.0, 0.0, 20.0))}))
-    with pytest.raises(InfeasibleError, match=r"takes 147 s there and back.*: 32 s short"):
-        plan(scene([lone], {"a": visit((400.0, 0.0, 20.0), slow_down=0.5)}))
-
-
 def test_a_point_that_is_never_reached_is_refused():
     with pytest.raises(InfeasibleError, match="its speed there is zero"):
         plan(scene([robot()], {"a": visit((400.0, 0.0, 20.0), slow_down=0.0)}))
-
-
-def test_a_robot_that_need_not_return_comes_down_where_it_ends():
-    found = sound(scene([robot(returns=False)], {"a": visit((300.0, 0.0, 20.0))}))
-    assert found.robots[0].steps[-1].at == (300.0, 0.0, 20.0)
-    assert found.robots[0].steps[-1].up == 0.0
-
-
-def test_a_robot_that_cannot_come_down_where_it_ends_returns():
-    whole = scene(
-        [robot(returns=False)],
-        {"a": visit((300.0, 0.0, 20.0))},
-        areas=[box("hut", 290, -9, 310, 9, high=8.0)],
-    )
-    assert sound(whole).robots[0].steps[-1].at[:2] == (0.0, 0.0)
-
-
-def test_a_robot_that_need_not_return_goes_home_to_recharge_and_ends_where_it_ends():
-    lone = with_kinematics(robot(returns=False), endurance=200.0)
-    found = sound(scene([lone], {"a": folded()}))
-    assert found.robots[0].sorties > 3
-    assert found.robots[0].steps[-1].at[2] == 20.0
-    assert found.robots[0].steps[-1].at[:2] != (0.0, 0.0)
-
-
-def test_a_robot_that_need_not_return_may_go_so_far_that_it_could_not():
-    lone = with_kinematics(robot(returns=False), endurance=120.0, recharge=300.0)
-    found = sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))}))
-    assert found.robots[0].sorties == 1
-    assert any("robot 'r1' ends where its charge does not suffice to go home" in note for note in found.notes)
-
-
-def test_a_robot_that_lands_on_a_low_battery_may_go_so_far_without_a_note():
-    lone = with_kinematics(robot(returns=False), endurance=120.0)
-    landing = (Policy("BATTERY_LOW", "LAND"),)
-    found = sound(scene([lone], {"a": visit((800.0, 0.0, 20.0))}, policies=landing))
-    assert not [note for note in found.notes if "r1" in note]
-
-
-def test_a_robot_that_need_not_return_can_always_go_home_where_that_is_possible():
-    lone = with_kinematics(robot(returns=False), endurance=140.0, recharge=60.0)
-    works = {"a": visit((400.0, 0.0, 20.0)), "b": visit((0.0, 400.0, 20.0))}
-    found = sound(scene([lone], works))
-    assert found.robots[0].sorties == 2
-    assert not [note for note in found.notes if "r1" in note]
-
-
-def test_a_charge_that_just_suffices_is_enough():
-    works = {name: visit((100.0 * k, 40.0, 20.0)) for k, name in enumerate(("a", "b", "c"), 1)}
-    works["d"] = road((0.0, 90.0, 20.0), (400.0, 90.0, 20.0), cuts=CUTS[:7])
-    plenty = with_kinematics(robot(), acceleration=0.5, recharge=None, energy=1e9)
-    needed = plan(scene([plenty], works)).makespan
-    exact = with_kinematics(plenty, endurance=needed)
-    assert sound(scene([exact], works)).makespan == pytest.approx(needed)
-
-
-def test_a_robot_that_need_not_return_keeps_enough_to_recharge_between_tasks():
-    lone = with_kinematics(robot(returns=False), endurance=120.0, recharge=300.0)
-    works = {name: visit((450.0, 10.0 * k, 20.0)) for k, name in enumerate("ab")}
-    works = {name: replace(w, strokes=(replace(w.strokes[0], hold=10.0),)) for name, w in works.items()}
-    far = {"z": visit((-450.0, 0.0, 20.0))}
-    assert sound(scene([lone], {**works, **far})).robots[0].sorties >= 2
 
 
 def test_a_crawler_neither_launches_nor_recovers():
