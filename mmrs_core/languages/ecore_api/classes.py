@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from inspect import isdatadescriptor
 from typing import Any
 
 from pyecore import ecore
@@ -14,6 +17,11 @@ from mmrs_core.languages.metamodels.tables import GENMODEL
 _OWN_ECORE = frozenset(("EStringToStringMapEntry",))
 """Classes of Ecore that pyecore has as data types only."""
 
+_KEPT = frozenset(
+    ("__class__", "_staticEClass", *(name for name, held in vars(type).items() if isdatadescriptor(held)))
+)
+"""Names that Python or pyecore keeps for every class itself, so that it cannot hold a feature there."""
+
 
 def epackage_of(package: Package) -> Any:
     """Return a package as a pyecore ``EPackage``, always the same object.
@@ -21,7 +29,8 @@ def epackage_of(package: Package) -> Any:
     It is the one that a plug-in handed in, or one made of the tables; so are the packages that it refers to.
     """
     if package.pyecore is None:
-        _build(package)
+        with _usual_order():
+            _build(package)
     return package.pyecore
 
 
@@ -32,6 +41,20 @@ def eclass_of(metaclass: Metaclass) -> Any:
     if metaclass.package is None:
         raise InternalError(f"{metaclass.name}: a metaclass without a package")
     return _classifier(epackage_of(metaclass.package), metaclass.name)
+
+
+@contextmanager
+def _usual_order() -> Iterator[None]:
+    """Undo what pyecore does to all its classes where Python has no order for the supertypes of one.
+
+    It is needed while the bases of that class are set, and not afterwards.
+    """
+    before = "mro" in vars(ecore.Metasubinstance)
+    try:
+        yield
+    finally:
+        if not before and "mro" in vars(ecore.Metasubinstance):
+            del ecore.Metasubinstance.mro
 
 
 def _classifier(epackage: Any, name: str) -> Any:
@@ -113,10 +136,20 @@ def _fill(metaclass: Metaclass, eclass: Any, package: Package) -> None:
             eclass.eSuperTypes.append(_type(above, package))
     for feature in metaclass.features:
         if feature.owner is metaclass:
-            eclass.eStructuralFeatures.append(_feature(feature, package))
+            _declare(eclass, _feature(feature, package))
     for feature in metaclass.features:
         if feature.owner is metaclass and feature.opposite is not None:
             _join(feature, eclass, package)
+
+
+def _declare(eclass: Any, made: Any) -> None:
+    """Add a feature to a class, and to its Python class unless that cannot have an attribute of its name."""
+    made_of = eclass.python_class
+    made_of._staticEClass = made.name in _KEPT  # then pyecore leaves the Python class as it is
+    try:
+        eclass.eStructuralFeatures.append(made)
+    finally:
+        made_of._staticEClass = False
 
 
 def _join(feature: Feature, eclass: Any, package: Package) -> None:

@@ -163,3 +163,33 @@ def normal(table):
         for row in table.classes
     ]
     return table.ns_uri, table.name, table.prefix, table.documentation, classes, table.enums, table.datatypes
+
+
+def test_features_whose_names_python_keeps_for_classes_are_in_the_eclass(tmp_path):
+    names = ("__dict__", "__class__", "__name__", "__bases__", "_staticEClass", "plain")
+    text = "ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EString"
+    file = tmp_path / "kept.ecore"
+    file.write_text(
+        '<ecore:EPackage xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+        ' xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="kept" nsURI="urn:test:kept">'
+        '<eClassifiers xsi:type="ecore:EClass" name="A">'
+        + "".join(
+            f'<eStructuralFeatures xsi:type="ecore:EAttribute" name="{name}" eType="{text}"/>'
+            for name in names
+        )
+        + "</eClassifiers></ecore:EPackage>"
+    )
+    registry = registry_with([MetamodelSource("urn:test:kept", file)])
+    eclass = registry.metaclass("urn:test:kept", "A").eclass
+    assert tuple(feature.name for feature in eclass.eStructuralFeatures) == names
+    assert eclass(plain="as ever").plain == "as ever"
+
+
+def test_supertypes_that_python_has_no_order_for_change_no_other_class():
+    file = Path(__file__).parents[1] / "generation" / "stubs" / "awkward.ecore"
+    registry = registry_with([MetamodelSource("urn:test:awkward", file)])
+    before = dict(vars(pyecore.Metasubinstance))
+    crossed = registry.metaclass("urn:test:awkward", "Two words").eclass
+    assert dict(vars(pyecore.Metasubinstance)) == before
+    assert {each.name for each in crossed.eAllSuperTypes()} == {"First", "Second", "Left", "Right"}
+    assert crossed(int=3, second=True).int == 3
