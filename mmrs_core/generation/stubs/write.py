@@ -10,8 +10,8 @@ from pathlib import Path
 
 import mmrs_core.languages
 from mmrs_core.errors import MmrsError
-from mmrs_core.generation.stubs.module import referred, stub_text
 from mmrs_core.generation.stubs.names import module_name
+from mmrs_core.generation.stubs.view import referred
 from mmrs_core.languages.metaclass import Package
 from mmrs_core.languages.registry import CORE_LANGUAGES, Registry, core_registry
 from mmrs_core.languages.writing import replace_file
@@ -41,10 +41,10 @@ def write_stubs(registry: Registry, ns_uris: Iterable[str], folder: Path) -> tup
         The files, in the order of the names given, then what these refer to.
 
     Raises:
-        MmrsError: if a file of somebody else's would be replaced; nothing is written.
+        MmrsError: if a file of somebody else's would be replaced, or pyecoregen is not installed; nothing is
+            written.
     """
     packages = _with_referred(registry, ns_uris)
-    folder.mkdir(parents=True, exist_ok=True)
     home = _dotted(folder.resolve())
     modules = dict(_CORE)
     for package in packages:
@@ -81,16 +81,25 @@ def _dotted(folder: Path) -> str:
 
 
 def _written(packages: Iterable[Package], modules: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
-    texts = {
-        folder / f"{modules[package.ns_uri].rpartition('.')[2]}.pyi": stub_text(package, modules)
-        for package in packages
-    }
+    texts = _texts(packages, modules, folder)
     foreign = [str(path) for path in texts if path.exists() and not _is_ours(path)]
     if foreign:
         raise MmrsError(f"{', '.join(foreign)}: not made by this command; nothing was written")
     for path, text in texts.items():
         replace_file(path, text.encode())
     return tuple(texts)
+
+
+def _texts(packages: Iterable[Package], modules: Mapping[str, str], folder: Path) -> Mapping[Path, str]:
+    try:
+        from mmrs_core.generation.stubs.generator import stub_texts  # only extenders have what it needs
+    except ModuleNotFoundError as fault:
+        missing = (fault.name or "").partition(".")[0]
+        if missing not in ("pyecoregen", "multigen"):
+            raise
+        hint = 'pip install "mmrs-core[extend]"'
+        raise MmrsError(f"{missing}: not installed, but stubs are made with it; {hint}") from fault
+    return stub_texts(packages, modules, folder)
 
 
 def _is_ours(path: Path) -> bool:

@@ -1,17 +1,15 @@
-"""The stub of one package."""
+"""What the stub of one package says, in the words of Python."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from mmrs_core.generation.environment import environment_in, rendered
 from mmrs_core.generation.escaping import python_literal
 from mmrs_core.generation.stubs.bases import Lineage
 from mmrs_core.generation.stubs.names import Scope, member_names
 from mmrs_core.languages.datatypes import ECORE, DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.resources import shipped
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,29 +43,15 @@ class EnumerationView:
     documentation: str
 
 
-def stub_text(package: Package, modules: Mapping[str, str]) -> str:
-    """Return the stub of the module that describes a package.
+def module_view(package: Package, modules: Mapping[str, str]) -> Mapping[str, object]:
+    """Return what the template of a stub is filled with.
 
     Args:
         package: the metamodel.
         modules: the dotted name of the module for each nsURI that the metamodel refers to. One without
             a dot is imported as it is.
     """
-    filters: dict[str, Callable[..., str]] = {"code": str, "docstring": docstring}
-    environment = environment_in(shipped("codegen_templates") / "python-stubs", filters)
-    text = rendered(environment, "module.pyi.jinja", _Module(package, modules).view())
-    return text.rstrip("\n") + "\n"
-
-
-def docstring(text: object, indent: int = 0) -> str:
-    """Return a text as a docstring that nothing in the text can end, its further lines indented."""
-    safe = str(text).strip().replace("\\", "\\\\")
-    if '"""' in safe or safe.endswith('"'):
-        safe = safe.replace('"', '\\"')
-    lines = [line.strip() for line in safe.splitlines()]
-    body = f"\n{' ' * indent}".join(lines).replace(f"\n{' ' * indent}\n", "\n\n")
-    shown = (each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in body)
-    return f'"""{"".join(shown)}"""'
+    return _Module(package, modules).view()
 
 
 class _Module:
@@ -85,7 +69,6 @@ class _Module:
         classes = [self._class(each) for each in self._package.metaclasses]
         aliases = [{"alias": alias, "name": name} for name, alias in self._scope.aliases().items()]
         return {
-            "ns_uri": self._package.ns_uri,
             "final": final,
             "string": string,
             "alias": self._scope.known("TypeAlias") if enumerations or aliases else "",
