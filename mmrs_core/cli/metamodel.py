@@ -116,6 +116,8 @@ def stubs(
 ) -> int:
     """Write typed stubs (.pyi) of a metamodel, for completion in editors and for type checkers.
 
+    Needs pyecoregen, which pip install "mmrs-core[extend]" brings.
+
     Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
     """
     from mmrs_core.generation.stubs.write import write_stubs

@@ -73,6 +73,8 @@ def new_plugin(
 ) -> int:
     """Write a plug-in with a task of its own: metamodel, rule, constraint, symbol, example and tests.
 
+    Needs pyecoregen, which pip install "mmrs-core[extend]" brings.
+
     Example: mmrs plugin new roof-wash --task polygon
     """
     from mmrs_core.generation.scaffolding.names import plugin_names

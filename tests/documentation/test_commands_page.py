@@ -21,7 +21,15 @@ CORE = (
     "diff",
     "migrate",
 )
-GROUPS = ("plugin list", "metamodel list", "metamodel diff", "metamodel export", "metamodel docs")
+GROUPS = (
+    "plugin list",
+    "plugin new",
+    "metamodel list",
+    "metamodel diff",
+    "metamodel export",
+    "metamodel docs",
+    "metamodel stubs",
+)
 HEAD = "# Commands\n\nThis page is made from the help of the commands; do not edit it.\n"
 
 
