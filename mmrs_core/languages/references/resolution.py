@@ -33,11 +33,7 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pendi
     """
     pending, draft.pending = draft.pending, []
     doubled = []
-    for reference in pending:
-        if isinstance(reference, tuple):
-            if _quickly(reference, draft):
-                continue
-            reference = Pending(*reference)
+    for reference in _left(pending, draft):
         for uri in _uris(reference.text):
             target = _target(uri, reference, draft, opener, root)
             if target is not None and _set(reference, target, draft):
@@ -51,24 +47,28 @@ def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) ->
         _tell_other_end(reference, target, draft)
 
 
-def _quickly(reference: Quick, draft: Draft) -> bool:
-    """Set a reference whose text is one path into a list, to an element that it takes; return whether it is.
+def _left(pending: Iterable[Pending | Quick], draft: Draft) -> Iterator[Pending]:
+    """Set the references whose text is one path into a list, to an element that they take; yield all others.
 
     This runs for nearly every reference of a large model, hence makes no calls of its own.
     """
-    element, feature, text, _ = reference
-    head, _, index = text.rpartition(".")
-    values = draft.lists.get(head) or draft.list_at(head)
-    if not (index.isdecimal() and index.isascii() and len(index) < 10 and (at := int(index)) < len(values)):
-        return False
-    target = values[at]
-    if not isinstance(target, feature.type.interface):  # type: ignore[union-attr]  # a reference has a class
-        return False
-    if feature.many:
-        getattr(element, feature.attribute).append(target)
-    else:
-        setattr(element, feature.attribute, target)
-    return True
+    lists = draft.lists
+    for reference in pending:
+        if not isinstance(reference, tuple):
+            yield reference
+            continue
+        element, feature, text, _ = reference
+        head, _, index = text.rpartition(".")
+        values = lists.get(head) or draft.list_at(head)
+        if index.isdecimal() and index.isascii() and len(index) < 10 and (at := int(index)) < len(values):
+            target = values[at]
+            if isinstance(target, feature.type.interface):  # type: ignore[union-attr]  # it is a reference
+                if feature.many:
+                    getattr(element, feature.attribute).append(target)
+                else:
+                    setattr(element, feature.attribute, target)
+                continue
+        yield Pending(*reference)
 
 
 def _uris(text: str) -> Iterator[str]:

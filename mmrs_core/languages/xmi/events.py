@@ -17,7 +17,8 @@ MOST_ATTRIBUTES = 10_000
 _SHORTEST_ATTRIBUTE = len(' a=""')
 _TAG = re.compile(rb"<[^\s<>/=]+")
 _ATTRIBUTE = re.compile(rb"""\s+[^\s<>/="']+\s*=\s*(?:"[^"<]*"|'[^'<]*')""")
-_Start = Callable[[str, list[str]], None]
+Start = Callable[[str, list[str]], None]
+Tell = Callable[[str], None]
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 XSI_TYPE = f"{XSI} type"
@@ -122,9 +123,8 @@ class Document:
                 attributes than any model.
         """
         start = listener.start if counts_depth else self._counted(listener.start)
-        self.parser.StartElementHandler = self._first(start)
-        self.parser.EndElementHandler = listener.end if counts_depth else self._uncounted(listener.end)
-        self.parser.CharacterDataHandler = listener.text
+        end = listener.end if counts_depth else self._uncounted(listener.end)
+        self.tell(self._first(start), end, listener.text)
         _refuse_crowds(self.data, self.file)
         try:
             self.parser.Parse(self.data, True)
@@ -136,11 +136,17 @@ class Document:
                 raise
             raise UnreadableError(f"{self.file}: not readable as XML: {fault}") from None
 
+    def tell(self, start: Start, end: Tell, text: Tell) -> None:
+        """Send the following events to these functions; a listener may change its mind at any event."""
+        self.parser.StartElementHandler = start
+        self.parser.EndElementHandler = end
+        self.parser.CharacterDataHandler = text
+
     def refuse_depth(self) -> NoReturn:
         """Raise the error for an element inside more than `DEEPEST_NESTING` others."""
         raise UnreadableError(f"{self.file}:{self.line}: nested deeper than {DEEPEST_NESTING} levels")
 
-    def _first(self, start: _Start) -> _Start:
+    def _first(self, start: Start) -> Start:
         def first(tag: str, attributes: list[str]) -> None:
             self._begun = True
             self.parser.StartElementHandler = start
@@ -148,7 +154,7 @@ class Document:
 
         return first
 
-    def _counted(self, start: _Start) -> _Start:
+    def _counted(self, start: Start) -> Start:
         def counted(tag: str, attributes: list[str]) -> None:
             self._depth += 1
             if self._depth > DEEPEST_NESTING:
@@ -157,7 +163,7 @@ class Document:
 
         return counted
 
-    def _uncounted(self, end: Callable[[str], None]) -> Callable[[str], None]:
+    def _uncounted(self, end: Tell) -> Tell:
         def uncounted(tag: str) -> None:
             self._depth -= 1
             end(tag)

@@ -20,11 +20,14 @@ from mmrs_core.languages.references.documents import Pending
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element, Source
 
+    Frame = tuple[Element, Metaclass, Feature | None]
     Waiting = Callable[[Pending | tuple[Element, Feature, str, int]], None]
-    Maker = Callable[[Element, list[str], int, Source, Waiting], Element]
-    """Makes an element inside its owner, from attributes, line, source and where references wait.
+    Opening = Callable[[Frame], None]
+    Maker = Callable[[Element, list[str], int, Source, Waiting, Opening], bool]
+    """Makes an element inside its owner; takes attributes, line, source, what waits and what is open.
 
-    It raises ValueError, and has changed nothing, if a value cannot be read or the owner's place is taken.
+    It returns False if the attributes have other names, and raises ValueError if a value cannot be read or
+    the owner's place is taken; then it has changed nothing.
     """
 
 _KEPT = 2048
@@ -33,17 +36,22 @@ _KEPT = 2048
 
 @lru_cache(_KEPT)
 def maker(
-    owner: Metaclass, feature: Feature, metaclass: Metaclass, names: tuple[Feature | None, ...]
+    owner: Metaclass,
+    feature: Feature,
+    metaclass: Metaclass,
+    names: tuple[str, ...],
+    features: tuple[Feature | None, ...],
 ) -> Maker | None:
     """Return the function for elements of a metaclass in a containment feature of an owner.
 
     Args:
-        names: the feature that each attribute gives, in order; None where it says nothing of the element.
+        names: those of the attributes, in order.
+        features: what each of them gives; None where it says nothing of the element.
 
     Returns:
         None if the shape needs more than that: identifiers, lists of values, containment by reference.
     """
-    if metaclass.implementation is None or not all(each is None or _simple(each) for each in names):
+    if metaclass.implementation is None or not all(each is None or _simple(each) for each in features):
         return None
     bound: dict[str, object] = {
         "new": object.__new__,
@@ -52,11 +60,19 @@ def maker(
         "LinkedList": LinkedList,
         "append": list.append,
         "Pending": Pending,
+        "metaclass": metaclass,
         "real": parse_real,
     }
     check = [] if feature.many else _vacancy(owner, feature)
-    lines = [*check, *_body(metaclass, names, bound), *_attachment(owner, feature, metaclass), "    return e"]
-    source = "\n".join(["def make(owner, attributes, line, source, wait):", *lines])
+    lines = [
+        *_unpacking(names, bound),
+        *check,
+        *_body(metaclass, features, bound),
+        *_attachment(owner, feature, metaclass),
+        "    opened((e, metaclass, None))",
+        "    return True",
+    ]
+    source = "\n".join(["def make(owner, attributes, line, source, wait, opened):", *lines])
     exec(compile(source, f"<reader of {metaclass.name}>", "exec"), bound)  # noqa: S102  # no foreign text in it
     made: Maker = bound["make"]  # type: ignore[assignment]  # the source above defines it
     return made
@@ -69,13 +85,22 @@ def _simple(feature: Feature) -> bool:
     return not (feature.many or feature.is_id)
 
 
-def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[str, object]) -> list[str]:
+def _unpacking(names: tuple[str, ...], bound: dict[str, object]) -> list[str]:
+    """Return the lines that take the attributes apart, if they have these names."""
+    if not names:
+        return []
+    bound |= {f"name{at}": name for at, name in enumerate(names)}
+    parts = ", ".join(f"n{at}, v{at}" for at in range(len(names)))
+    differs = " or ".join(f"n{at} != name{at}" for at in range(len(names)))
+    return [f"    {parts} = attributes", f"    if {differs}: return False"]
+
+
+def _body(
+    metaclass: Metaclass, features: tuple[Feature | None, ...], bound: dict[str, object]
+) -> list[str]:
     """Return the lines that make the element and set its slots, values before anything else can see it."""
-    given = {feature: f"v{at}" for at, feature in enumerate(names) if feature is not None}
-    lines: list[str] = []
-    if names:
-        lines.append(f"    {', '.join(f'_, v{at}' for at in range(len(names)))} = attributes")
-    lines.append("    e = new(cls)")
+    given = {feature: f"v{at}" for at, feature in enumerate(features) if feature is not None}
+    lines = ["    e = new(cls)"]
     shared: list[str] = []
     for index, feature in enumerate(metaclass.features):
         text, slot = given.get(feature), f"e.{bare_name(index)}"
@@ -89,9 +114,9 @@ def _body(metaclass: Metaclass, names: tuple[Feature | None, ...], bound: dict[s
             lines.append(f"    {slot} = {text}")
             shared.append(f"s{index}")
         elif isinstance(feature.type, DataType) and feature.type.parse is parse_real:
-            # as `parse_real` asks, without the call
-            usual = f"{text}.isascii() and {text}[-1:].isdigit() and '_' not in {text}"
-            lines.append(f"    {slot} = float({text}) if {usual} else real({text})")
+            # of what Python takes, Java refuses these and words, and words are not finite
+            usual = f"{text}.isascii() and '_' not in {text} and r - r == 0.0"
+            lines += [f"    r = float({text})", f"    {slot} = r if {usual} else real({text})"]
         else:
             bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
             lines.append(f"    {slot} = p{index}({text})")
