@@ -22,7 +22,7 @@ _MEANINGLESS = HARMLESS - {XSI_TYPE, f"{XMI} type"}
 _NEARLY_DEEPEST = DEEPEST_NESTING - 2
 
 _Key = tuple[Metaclass, str | None, str, int]
-"""The owner, ``xsi:type``'s value where that comes first, as all write it, the tag, the attributes' number."""
+"""The owner, ``xsi:type``'s value where that comes first, as all write it, the tag, attributes' length."""
 _Shape = tuple[Metaclass | str | None, ...]
 """The same, with the attributes' names instead of their number."""
 
