@@ -15,13 +15,14 @@ from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import DialectMapping, Rule, Use
 from mmrs_core.migration.rules.paths import reach
-from mmrs_core.migration.sources.nodes import Link, Node
+from mmrs_core.migration.sources.nodes import STRAY, Link, Node
 from mmrs_core.migration.sources.structure import Sort, Structure
 
 _ORDER = {Sort.ATTRIBUTE: 0, Sort.REFERENCE: 1, Sort.CONTAINED: 2}
 _NO_RULE = "the mapping has no rule for this class"
 _NO_USE = "the mapping does not say what becomes of this feature"
 _NO_FEATURE = "the metamodel has no such feature"
+_STRAY = "text where only elements may stand"
 
 
 class Builder:
@@ -98,7 +99,8 @@ class Builder:
         for feature in self._in_order(node, uses):
             use = uses.get(feature)
             if feature in node.values and self._structure.feature(node.kind, feature) is None:
-                self._record.value(Category.LOST, _NO_FEATURE, node, feature)
+                reason = _STRAY if feature == STRAY else _NO_FEATURE
+                self._record.value(Category.LOST, reason, node, feature)
             elif use is None:
                 self._record.value(Category.LOST, _NO_USE, node, feature)
             else:

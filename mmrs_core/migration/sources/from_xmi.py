@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
-from mmrs_core.migration.sources.nodes import Claim, Link, Node, Text
+from mmrs_core.migration.sources.nodes import STRAY, Claim, Link, Node, Text
 from mmrs_core.migration.sources.nodes import Document as SourceDocument
 
 DEEPEST_NESTING = 100
 _LOCATION = f"{XSI} schemaLocation"
 _TYPES = (f"{XSI} type", f"{XMI} type")
+_ID = f"{XMI} id"
+_OF_THE_FORMAT = (f"{XMI} ", f"{XSI} ")
 _WRAPPER = f"{XMI} XMI"
 
 
@@ -22,7 +24,7 @@ def parse_xmi(data: bytes, file: str) -> SourceDocument:
     document = Document(data, file)
     listener = _Listener(document)
     document.parse(listener)
-    return SourceDocument(file, tuple(listener.roots), tuple(listener.locations))
+    return SourceDocument(file, tuple(listener.roots), tuple(listener.locations), listener.ids)
 
 
 class _Listener:
@@ -30,6 +32,7 @@ class _Listener:
         self._document = document
         self.roots: list[Node] = []
         self.locations: list[tuple[str, str]] = []
+        self.ids: dict[str, Node] = {}
         self._open: list[Node] = []
         self._words: list[str] = []
         self._wrapped = False
@@ -40,7 +43,7 @@ class _Listener:
             raise UnreadableError(
                 f"{self._document.file}:{line}: nested deeper than {DEEPEST_NESTING} levels"
             )
-        self._words.clear()
+        self._keep_stray(self._said())
         named = dict(zip(attributes[::2], attributes[1::2], strict=True))
         places = named.get(_LOCATION, "").split()
         self.locations += zip(places[::2], places[1::2], strict=False)
@@ -60,7 +63,9 @@ class _Listener:
             self.roots.append(node)
         self._open.append(node)
         for key, text in attributes.items():
-            if " " not in key:
+            if key == _ID:
+                self.ids.setdefault(text, node)
+            elif not key.startswith(_OF_THE_FORMAT):
                 node.add(key, Text(text, self._document.line))
 
     def _claim(self, attributes: dict[str, str]) -> Claim | None:
@@ -71,16 +76,27 @@ class _Listener:
     def end(self, tag: str) -> None:
         if not self._open:
             return
-        node = self._open.pop()
-        words = "".join(self._words).strip()
-        self._words.clear()
-        if self._open and not node.values and node.claim is None and words:
+        node, words, inner = self._open[-1], self._said(), len(self._open) > 1
+        if inner and not node.values and node.claim is None and words:
             _instead(node, Text(words, node.line))
-        elif self._open and node.claim is None and node.text("href"):
-            _instead(node, Link(node.text("href"), node.line))
+        else:
+            self._keep_stray(words)
+            if inner and node.claim is None and node.text("href"):
+                _instead(node, Link(node.text("href"), node.line))
+        self._open.pop()
 
     def text(self, text: str) -> None:
         self._words.append(text)
+
+    def _said(self) -> str:
+        """Return the text since the last tag."""
+        words = "".join(self._words).strip()
+        self._words.clear()
+        return words
+
+    def _keep_stray(self, words: str) -> None:
+        if words and self._open:
+            self._open[-1].add(STRAY, Text(words, self._document.line))
 
 
 def _instead(node: Node, value: Text | Link) -> None:

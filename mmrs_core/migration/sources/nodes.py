@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from mmrs_core.diagnostics import Place
+
+STRAY = "#text"
+"""The feature, which no metamodel has, of text where only elements may stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +24,7 @@ class Link:
     """A reference.
 
     Attributes:
-        text: a path such as ``//@tasks.0`` within the same file.
+        text: a path such as ``//@tasks.0`` within the same file, or an identifier.
         target: the node it leads to; None until it is resolved, and where it leads nowhere.
     """
 
@@ -137,8 +140,10 @@ class Document:
         file: as the user gave it.
         roots: the elements at its top.
         locations: where the file itself says that metamodels lie, by nsURI.
+        ids: the elements to which the file itself gives identifiers (``xmi:id``).
     """
 
     file: str
     roots: tuple[Node, ...]
     locations: tuple[tuple[str, str], ...] = ()
+    ids: Mapping[str, Node] = field(default_factory=dict)

@@ -66,10 +66,12 @@ def _links(value: Text | Link | Node) -> list[Text | Link | Node]:
 
 
 def _target(text: str, document: Document, root: Node) -> Node | None:
-    """Return the node that a path means, such as ``//@drones.0/@slots.2``; None for any other reference."""
+    """Return the node that a path means, such as ``//@drones.0/@slots.2``, or an id; None for all else."""
     path = text.partition("#")[2] if "#" in text else text
     if text.partition("#")[0] and "#" in text:
         return None
+    if "/" not in path:
+        return document.ids.get(path)
     head, *steps = path.removeprefix("/").split("/")
     roots = document.roots
     node: Node | None = root
