@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -13,17 +14,17 @@ from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import spread
 from mmrs_core.cli.settings import taken_from
 
-FLAGS = frozenset(
-    {"--json", "--allow-lossy", "--force", "--list-targets", "--list", "--partial", "--help", "--version"}
-)
+if TYPE_CHECKING:
+    from click import Command
 
 
 def run_command(arguments: Sequence[str], program: str) -> int:
     """Run ``mmrs`` or ``mmrs-gen``; return the exit code, whatever happens."""
     settings, rest = taken_from(arguments)
     try:
-        app = generate_app() if program == "mmrs-gen" else app_for(rest, settings)
-        result = app(spread(rest, FLAGS), prog_name=program, standalone_mode=False, obj=settings)
+        command = typer.main.get_command(generate_app() if program == "mmrs-gen" else app_for(rest, settings))
+        line = spread(rest, frozenset(flags_of(command)))
+        result = command.main(line, prog_name=program, standalone_mode=False, obj=settings)
         return result if isinstance(result, int) else 0
     except typer.Exit as ending:
         return ending.exit_code
@@ -33,6 +34,16 @@ def run_command(arguments: Sequence[str], program: str) -> int:
         return ending.code if isinstance(ending.code, int) else MODEL_INVALID
     except Exception as error:
         return _interrupted() if interrupted() else _ended_by(error, arguments)
+
+
+def flags_of(command: Command) -> Iterator[str]:
+    """Yield the options of a command and of the commands in it that take no value."""
+    for parameter in command.params:
+        if getattr(parameter, "is_flag", False):
+            yield from parameter.opts
+    yield "--help"
+    for inner in getattr(command, "commands", {}).values():
+        yield from flags_of(inner)
 
 
 def _interrupted() -> int:

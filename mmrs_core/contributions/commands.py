@@ -17,6 +17,7 @@ CORE_COMMANDS = frozenset(
         "show",
         "convert",
         "diff",
+        "migrate",
         "plugin",
         "metamodel",
     }

@@ -155,7 +155,8 @@ def _enumerations(old: Package, new: Package) -> Iterator[Difference]:
             yield from _literals(kind, now[kind.name])
         else:
             yield Difference("removed", kind.name, Verdict.COMPATIBLE, "the enumeration")
-    for name in now.keys() - {kind.name for kind in old.enumerations}:
+    before = {kind.name for kind in old.enumerations}
+    for name in (kind.name for kind in new.enumerations if kind.name not in before):
         yield Difference("added", name, Verdict.COMPATIBLE, "the enumeration")
 
 

@@ -1,8 +1,11 @@
 """Files may be named in the ways that people write them."""
 
 import pytest
+import typer
 
+from mmrs_core.cli.app import app_for
 from mmrs_core.cli.parameters import behaviour_file, robot_files, spread
+from mmrs_core.cli.running import flags_of
 from mmrs_core.cli.settings import Settings, taken_from
 from mmrs_core.errors import UnreadableError
 
@@ -58,3 +61,11 @@ def test_what_follows_two_dashes_is_no_option():
     settings, rest = taken_from(["plan", "--", "--debug"])
     assert not settings.debug
     assert rest == ["plan", "--", "--debug"]
+
+
+@pytest.mark.parametrize("flag", ["--fix", "--json", "--force"])
+def test_a_flag_takes_no_file_away_from_the_robots(flag):
+    """What takes no value is asked of the commands themselves."""
+    own = frozenset(flags_of(typer.main.get_command(app_for(["validate"], Settings()))))
+    assert flag in own
+    assert "--robots" not in own
