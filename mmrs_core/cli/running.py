@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import typer
 
@@ -13,9 +12,6 @@ from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
 from mmrs_core.cli.parameters import spread
 from mmrs_core.cli.settings import taken_from
-
-if TYPE_CHECKING:
-    from click import Command
 
 
 def run_command(arguments: Sequence[str], program: str) -> int:
@@ -36,9 +32,9 @@ def run_command(arguments: Sequence[str], program: str) -> int:
         return _interrupted() if interrupted() else _ended_by(error, arguments)
 
 
-def flags_of(command: Command) -> Iterator[str]:
-    """Yield the options of a command and of the commands in it that take no value."""
-    for parameter in command.params:
+def flags_of(command: object) -> Iterator[str]:
+    """Yield the options of a command of typer's, and of the commands in it, that take no value."""
+    for parameter in getattr(command, "params", ()):
         if getattr(parameter, "is_flag", False):
             yield from parameter.opts
     yield "--help"
