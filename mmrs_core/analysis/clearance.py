@@ -20,7 +20,7 @@ from mmrs_core.analysis.figures import MissingFigureError, half_diagonal_of, kin
 from mmrs_core.analysis.motion import Motion, motions
 from mmrs_core.analysis.verdicts import TOLERANCE, Margin, for_each_robot, judged, not_checked, safe
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 from mmrs_core.scene import Area, AreaUse
 
 NAME = "clearance"
@@ -46,19 +46,22 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not areas:
         yield safe(NAME, robot, "nothing in the context is forbidden or in the way")
         return
-    own = half_diagonal_of(type_of(input, robot)) + input.position_error + _turning_radius(input, robot)
+    straight = half_diagonal_of(type_of(input, robot)) + input.position_error
+    try:
+        turning = kinematics_of(input, robot).turning_radius
+    except MissingFigureError:
+        # What is too near already if it turns on the spot is too near however it turns.
+        yield from (each for each in _kept(input, robot, areas, straight) if each.status is Status.VIOLATED)
+        raise
+    yield from _kept(input, robot, areas, straight + turning)
+
+
+def _kept(input: CheckInput, robot: RobotProgram, areas: list[Area], own: float) -> Iterator[Verdict]:
+    """Yield how the robot keeps its distances if its ways must stay `own` metres off beside the areas'."""
     motion = motions(input)[robot.id]
     segments = _segments(motion)
     margins = list(_margins(segments, areas, own)) if segments.moves else []
     yield from judged(NAME, robot, "m", (_described(robot, margin) for margin in margins), motion.gaps)
-
-
-def _turning_radius(input: CheckInput, robot: RobotProgram) -> float:
-    """Return how far from its way the robot may be where it turns; 0 where nobody knows how it moves."""
-    try:
-        return kinematics_of(input, robot).turning_radius
-    except MissingFigureError:
-        return 0.0
 
 
 def _segments(motion: Motion) -> _Segments:
