@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import typer
 
 from mmrs_core.cli.output import counted, say, tell
+from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Change, Diagnose, Proposal, Repair, Repairer
@@ -38,8 +39,12 @@ def _lines(change: Change) -> Iterator[str]:
         yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
-def show(repair: Repair) -> None:
-    """Print the diff, what it mends, and what it cannot mend."""
+def show(repair: Repair, mendable: Container[str]) -> None:
+    """Print the diff, what it mends, and what it cannot mend.
+
+    Args:
+        mendable: codes that have a quick fix.
+    """
     for line in difference(repair.changes).splitlines():
         heading = line.startswith(("+++", "---"))
         say(line, "1" if heading else _COLOURS.get(line[:1], ""))
@@ -47,9 +52,10 @@ def show(repair: Repair) -> None:
         say(f"{proposal.fault.place}: {proposal.title} [{proposal.fault.code}]")
     for proposal in repair.refused:
         tell(f"{_where(proposal)}: not mended: that would bring other errors [{proposal.fault.code}]")
-    places = (fault.place.file for fault in repair.diagnosis.faults)
-    for file in dict.fromkeys(place for place in places if place.lower().endswith(".json")):
-        tell(f"{file}: note: quick fixes mend XMI only, so nothing of this file is changed")
+    refused = {proposal.fault for proposal in repair.refused}
+    for fault in repair.diagnosis.faults:
+        if fault.code in mendable and fault not in refused:
+            tell(f"{fault.place}: not mended: no single right answer is seen here [{fault.code}]")
 
 
 def _where(proposal: Proposal) -> str:
@@ -69,12 +75,23 @@ def agreed(repair: Repair, *, yes: bool, dry_run: bool) -> bool:
 
 
 def write(repair: Repair) -> None:
-    """Make the changes, each file in one step.
+    """Make all changes, or none.
 
     Raises:
-        OSError: if a file cannot be written; it is as it was before.
+        UnreadableError: if a file was changed since it was examined; nothing is changed.
+        OSError: if a file cannot be written; all are as they were before.
     """
     from mmrs_core.languages.writing import replace_file
 
     for change in repair.changes:
-        replace_file(change.file, change.after)
+        if change.file.read_bytes() != change.before:
+            raise UnreadableError(f"{change.name}: changed meanwhile by somebody else; nothing is mended")
+    done: list[Change] = []
+    try:
+        for change in repair.changes:
+            replace_file(change.file, change.after)
+            done.append(change)
+    except OSError:
+        for change in done:
+            replace_file(change.file, change.before)
+        raise

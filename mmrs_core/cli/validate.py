@@ -58,7 +58,7 @@ def validate(
     repair = repairer.repair(found) if fix else None
     if repair is not None:
         if not json:
-            show(repair)
+            show(repair, workshop.contributions.fixes)
         changed = agreed(repair, yes=yes, dry_run=dry_run or (json and not yes))
         if changed:
             write(repair)

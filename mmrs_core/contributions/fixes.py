@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.json_form.markup import Member, Thing, inserted, taken_away, written
+from mmrs_core.languages.json_form.values import quoted
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.escapes import in_attribute
@@ -25,6 +27,9 @@ class Edit:
 @dataclass(frozen=True, slots=True)
 class Wrong:
     """What is wrong, in the model and in its text.
+
+    A JSON text is told as if it were XMI: objects are tags, plain values attributes, ``$type`` is
+    ``xsi:type``, and ``$languages`` declares namespaces. What gives a tag another text knows the difference.
 
     Attributes:
         fault: the diagnostic to be mended.
@@ -48,8 +53,16 @@ class Wrong:
 
     @property
     def children(self) -> list[Tag]:
-        """The tags directly in the element's that begin on the line of the fault."""
-        return [child for child in self.tag.children if child.line == self.fault.place.line]
+        """The tags directly in the element's that begin on the line of the fault, or are named on it."""
+        line = self.fault.place.line
+        return [child for child in self.tag.children if line in _lines(child)]
+
+
+def _lines(tag: Tag) -> Iterator[int]:
+    yield tag.line
+    if isinstance(tag, Thing):
+        yield tag.lines[0]
+        yield from (each.line for each in tag.attributes if isinstance(each, Member))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +81,9 @@ class Fix:
 
 
 def with_value(attribute: Attribute, value: str) -> Edit:
-    """Return what gives an attribute another value."""
-    return Edit(attribute.value_begin, attribute.value_end, in_attribute(value))
+    """Return what gives an attribute another value; one that stands in quotes in JSON keeps them."""
+    text = written(value, bare=attribute.bare) if isinstance(attribute, Member) else in_attribute(value)
+    return Edit(attribute.value_begin, attribute.value_end, text)
 
 
 def with_name(attribute: Attribute, name: str) -> Edit:
@@ -77,14 +91,32 @@ def with_name(attribute: Attribute, name: str) -> Edit:
     return Edit(attribute.begin, attribute.end, name)
 
 
-def with_attribute(tag: Tag, name: str, value: str) -> Edit:
+def renamed(tag: Tag, name: str) -> tuple[Edit, ...]:
+    """Return what gives a tag another name, where it opens and where it closes."""
+    if isinstance(tag, Thing):
+        return (Edit(*tag.key, quoted(name)[1:-1]),) if tag.key[0] >= 0 else ()
+    size = len(tag.name.encode())
+    opening = Edit(tag.begin + 1, tag.begin + 1 + size, name)
+    return (
+        (opening, Edit(tag.closing + 2, tag.closing + 2 + size, name))
+        if tag.closing < tag.end
+        else (opening,)
+    )
+
+
+def with_attribute(tag: Tag, name: str, value: str, markup: Markup) -> Edit:
     """Return what adds an attribute to a tag, before those that it has."""
+    if isinstance(tag, Thing):
+        begin, text = inserted(tag, name, value, markup.data)
+        return Edit(begin, begin, text)
     place = tag.begin + 1 + len(tag.name.encode())
     return Edit(place, place, f' {name}="{in_attribute(value)}"')
 
 
 def without(tag: Tag, markup: Markup) -> Edit:
     """Return what takes a tag away, with its line where nothing else stands there."""
+    if isinstance(tag, Thing):
+        return Edit(*taken_away(tag), "")
     begin, end, data = tag.begin, tag.end, markup.data
     start = data.rfind(b"\n", 0, begin) + 1
     following = data.find(b"\n", end)

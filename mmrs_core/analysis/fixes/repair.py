@@ -13,6 +13,8 @@ from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Unknown
 from mmrs_core.languages.grounding.values import child, children
+from mmrs_core.languages.json_form.markup import JsonMarkup
+from mmrs_core.languages.json_form.tree import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry
@@ -104,7 +106,7 @@ class Repairer:
     def proposals(
         self, diagnosis: Diagnosis, texts: Mapping[Path, bytes] | None = None
     ) -> Iterator[Proposal]:
-        """Yield the fixes of faults that have one; files in JSON have none.
+        """Yield the fixes of faults that have one.
 
         Args:
             texts: what files are to hold, where they hold something else.
@@ -200,11 +202,10 @@ def with_edits(data: bytes, edits: Iterable[Edit]) -> bytes | None:
 
 
 def _markup(file: Path, texts: Mapping[Path, bytes]) -> Markup | None:
-    """Return the markup of a file; None for JSON, and for what is not in UTF-8."""
-    if file.suffix.lower() == ".json":
-        return None
+    """Return the markup of a file; None for what is not in UTF-8."""
+    parse = JsonMarkup if is_json(file.name) else Markup
     try:
-        return Markup(texts[file] if file in texts else read_bytes(file), str(file))
+        return parse(texts[file] if file in texts else read_bytes(file), str(file))
     except UnreadableError:
         return None
 

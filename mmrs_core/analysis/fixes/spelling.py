@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from mmrs_core.analysis.fixes.likeness import meant
-from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_attribute, with_name, with_value
+from mmrs_core.contributions.fixes import Edit, Fix, Wrong, renamed, with_attribute, with_name, with_value
 from mmrs_core.languages.element import Element, container_of, is_kind, metaclass_of
 from mmrs_core.languages.grounding.values import children, text
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.languages.xmi.markup import Attribute, Tag
+from mmrs_core.languages.xmi.markup import Tag
 
 BEHAVIOUR = "urn:mmrs:behaviour:1.0"
 _TYPES = ("xsi:type", "xmi:type")
@@ -33,7 +33,7 @@ def _features(wrong: Wrong) -> Iterator[Edit]:
         if tag.name not in metaclass.by_name and ":" not in tag.name:
             name = meant(tag.name, _free(wrong.tag, metaclass, _is_written_inside))
             if name is not None:
-                yield from _renamed(tag, name)
+                yield from renamed(tag, name)
 
 
 def _is_written_inside(feature: Feature) -> bool:
@@ -48,26 +48,25 @@ def _free(tag: Tag, metaclass: Metaclass, wanted: Callable[[Feature], bool]) -> 
     return [each.name for each in found if each.many or each.name not in given]
 
 
-def _renamed(tag: Tag, name: str) -> Iterator[Edit]:
-    begin = tag.begin + 1
-    yield Edit(begin, begin + len(tag.name.encode()), name)
-    if tag.closing < tag.end:
-        yield Edit(tag.closing + 2, tag.closing + 2 + len(tag.name.encode()), name)
-
-
 def _classes(wrong: Wrong) -> Iterator[Edit]:
     """Correct the class in an ``xsi:type``, or that of a root."""
     for tag in (wrong.tag, *wrong.children):
         for attribute in tag.attributes:
             if attribute.name in _TYPES:
-                prefix, _, name = attribute.value.rpartition(":")
-                right = _class(wrong, tag.prefixes().get(prefix, ""), name)
+                prefix, sign, name = _parted(attribute.value)
+                ns_uri = prefix if sign == "#" else tag.prefixes().get(prefix, "")
+                right = _class(wrong, ns_uri, name)
                 if right is not None:
-                    yield with_value(attribute, f"{prefix}:{right}")
+                    yield with_value(attribute, f"{prefix}{sign}{right}")
         prefix, colon, name = tag.name.rpartition(":")
         right = _class(wrong, tag.prefixes().get(prefix, ""), name) if colon else None
         if right is not None:
-            yield from _renamed(tag, f"{prefix}:{right}")
+            yield from renamed(tag, f"{prefix}:{right}")
+
+
+def _parted(kind: str) -> tuple[str, str, str]:
+    """Return prefix, sign and name of a class; JSON also has ``nsURI#Class``."""
+    return kind.rpartition("#" if "#" in kind else ":")
 
 
 def _class(wrong: Wrong, ns_uri: str, name: str) -> str | None:
@@ -103,29 +102,21 @@ def _prefixes(wrong: Wrong) -> Iterator[Edit]:
             prefix = attribute.value.rpartition(":")[0] if attribute is not None else ""
             found = [each for each in wrong.registry.packages if each.prefix == prefix]
             if prefix and prefix not in declared and len(found) == 1:
-                yield with_attribute(wrong.markup.root, f"xmlns:{prefix}", found[0].ns_uri)
+                yield with_attribute(wrong.markup.root, f"xmlns:{prefix}", found[0].ns_uri, wrong.markup)
 
 
 def _named(feature: str, known: Callable[[Wrong], Iterable[str]]) -> Callable[[Wrong], Iterator[Edit]]:
-    """Return what gives an attribute the one known name that its value, or a word of it, was meant for."""
+    """Return what gives an attribute the one known name that its value was meant for."""
 
     def edits(wrong: Wrong) -> Iterator[Edit]:
         names = tuple(known(wrong))
-        for attribute, value in _values(wrong.tag, feature):
-            right = meant(value, names) if value not in names else None
+        attribute = wrong.tag.attribute(feature)
+        if attribute is not None and attribute.value not in names:
+            right = meant(attribute.value, names)
             if right is not None:
-                begin = attribute.value_begin + wrong.markup.data[
-                    attribute.value_begin : attribute.value_end
-                ].find(value.encode())
-                yield Edit(begin, begin + len(value.encode()), right)
+                yield with_value(attribute, right)
 
     return edits
-
-
-def _values(tag: Tag, feature: str) -> Iterator[tuple[Attribute, str]]:
-    attribute = tag.attribute(feature)
-    if attribute is not None and "&" not in attribute.value:
-        yield attribute, attribute.value
 
 
 def _accepted(wrong: Wrong) -> Iterator[Edit]:

@@ -9,8 +9,11 @@ from mmrs_core.analysis.fixes.likeness import meant
 from mmrs_core.contributions.fixes import Edit, Fix, Wrong, with_attribute, with_value
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
-from mmrs_core.languages.xmi.markup import Tag
+from mmrs_core.languages.json_form.markup import Member
+from mmrs_core.languages.json_form.values import quoted, written
+from mmrs_core.languages.metaclass import Enumeration, Metaclass
+from mmrs_core.languages.xmi.events import XSI
+from mmrs_core.languages.xmi.markup import Attribute, Tag
 
 _COMMA = re.compile(r"[+-]?[0-9]+,(?:[0-9]{1,2}|[0-9]{4,})")
 """A decimal comma; with three digits behind it, it may part thousands."""
@@ -26,15 +29,30 @@ def _value(wrong: Wrong) -> Iterator[Edit]:
     for name, feature in metaclass_of(wrong.element).by_name.items():
         attribute = wrong.tag.attribute(name)
         if attribute is not None and not feature.many and not feature.is_reference:
-            right = _meant_by(attribute.value, feature)
-            if right is not None:
-                yield with_value(attribute, right)
+            yield from _written(attribute, feature.type)
 
 
-def _meant_by(given: str, feature: Feature) -> str | None:
+def _written(attribute: Attribute, kind: DataType | Enumeration | Metaclass) -> Iterator[Edit]:
+    if isinstance(kind, Metaclass):
+        return
+    begin, end = attribute.value_begin, attribute.value_end
+    if isinstance(attribute, Member) and attribute.bare and _is_text(kind):
+        yield Edit(begin, end, quoted(attribute.value))
+        return
+    right = _meant_by(attribute.value, kind)
+    if right is not None and isinstance(attribute, Member):
+        yield Edit(begin, end, written(kind, kind.parse(right)))
+    elif right is not None:
+        yield with_value(attribute, right)
+
+
+def _is_text(kind: DataType | Enumeration) -> bool:
+    return isinstance(kind, DataType) and kind.python is str
+
+
+def _meant_by(given: str, kind: DataType | Enumeration) -> str | None:
     """Return what a value that its type does not take can only mean."""
-    kind = feature.type
-    if isinstance(kind, Metaclass) or _parses(given, kind):
+    if _parses(given, kind):
         return None
     if isinstance(kind, Enumeration):
         return meant(given, [literal.literal for literal in kind.literals])
@@ -87,10 +105,10 @@ def _typed(tag: Tag, general: Metaclass, wrong: Wrong) -> Iterator[Edit]:
         if package.prefix in tag.prefixes():
             return
         prefix = package.prefix
-        yield with_attribute(wrong.markup.root, f"xmlns:{prefix}", chosen.ns_uri)
-    if "http://www.w3.org/2001/XMLSchema-instance" not in prefixes:
-        yield with_attribute(wrong.markup.root, "xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance")
-    yield with_attribute(tag, "xsi:type", f"{prefix}:{chosen.name}")
+        yield with_attribute(wrong.markup.root, f"xmlns:{prefix}", chosen.ns_uri, wrong.markup)
+    if XSI not in prefixes:
+        yield with_attribute(wrong.markup.root, "xmlns:xsi", XSI, wrong.markup)
+    yield with_attribute(tag, "xsi:type", f"{prefix}:{chosen.name}", wrong.markup)
 
 
 def _system(wrong: Wrong) -> Iterator[Edit]:
