@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import isnan
 from typing import TypeVar, cast
 
 from mmrs_core.analysis.figures import MissingFigureError
@@ -68,20 +69,26 @@ def judged(
 ) -> Iterator[Verdict]:
     """Yield what margins and gaps mean for one robot.
 
-    The worst violation of each area, or one in all where there are no areas; then what is unknown;
-    and only if there is neither, that the property is kept, with the smallest margin.
+    The worst violation of each area, or one in all where there are no areas; then what is unknown,
+    margins that are not a number among it; and only if there is neither, that the property is kept,
+    with the smallest margin.
     """
-    measured = sorted(margins, key=lambda margin: margin.value)
+    given = tuple(margins)
+    unclear = [margin for margin in given if isnan(margin.value)]
+    measured = sorted((each for each in given if not isnan(each.value)), key=lambda each: each.value)
     violations: dict[str, Margin] = {}
     for margin in measured:
         if margin.value < -TOLERANCE:
             violations.setdefault(margin.area, margin)
     for margin in violations.values():
         yield of_margin(property, Status.VIOLATED, robot, unit, margin)
+    for margin in unclear:
+        found = of_margin(property, Status.UNKNOWN, robot, unit, margin)
+        yield replace(found, margin=None, message=f"{found.message}, one of which is not a number")
     missing = tuple(gaps)
     if missing:
         yield unknown_moves(property, robot, missing)
-    elif not violations and measured:
+    elif not violations and not unclear and measured:
         yield of_margin(property, Status.SAFE, robot, unit, measured[0])
 
 

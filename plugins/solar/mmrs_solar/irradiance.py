@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 
 from mmrs_core.analysis.verdicts import Gap, Margin, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
@@ -37,9 +38,10 @@ def _needs(robot: RobotProgram) -> Iterator[tuple[int, float | None]]:
 
 def _figure(value: str) -> float | None:
     try:
-        return float(value)
+        figure = float(value)
     except ValueError:
         return None
+    return figure if isfinite(figure) else None
 
 
 IRRADIANCE_CHECK = Check(

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from mmrs_solar.irradiance import IRRADIANCE_CHECK
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram
@@ -45,3 +46,9 @@ def test_a_need_that_is_no_number_is_unknown():
 
 def test_behaviours_that_record_no_panels_are_not_asked():
     assert judged(irradiance=100.0) == []
+
+
+@pytest.mark.parametrize("needed", ["nan", "inf"])
+def test_a_need_that_is_not_finite_is_unknown(needed):
+    (verdict,) = judged(needed, irradiance=900.0)
+    assert (verdict.status, verdict.margin) == (Status.UNKNOWN, None)

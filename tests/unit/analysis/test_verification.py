@@ -1,8 +1,12 @@
 """All checks together, and what they let pass."""
 
+from math import nan
+
+import pytest
 from checking import given, kind, rover, square, strange
 
 from mmrs_core.analysis.checks import CHECKS
+from mmrs_core.analysis.verdicts import Margin, judged
 from mmrs_core.analysis.verification import refuses, verify
 from mmrs_core.contributions.checks import Check, Status, Verdict
 from mmrs_core.testing.small_programs import go, robot
@@ -39,6 +43,20 @@ def test_every_measure_that_is_safe_has_a_margin_and_a_unit():
         assert verdict.margin is not None
         assert verdict.margin >= 0.0
         assert verdict.unit
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_margin_that_is_not_a_number_is_never_safe(order):
+    margins = [Margin(3.0, 1, "keeps 3 m, 0 m are required"), Margin(nan, 2, "keeps nan m, 0 m are required")]
+    made = robot("a", [go("m1", (9.0, 0.0, 0.0)), go("m2", (9.0, 0.0, 0.0))])
+    (verdict,) = judged("clearance", made, "m", [margins[index] for index in order])
+    assert (verdict.status, verdict.margin, verdict.move) == (Status.UNKNOWN, None, "m2")
+
+
+def test_a_margin_that_is_not_a_number_hides_no_violation():
+    margins = [Margin(nan, None, "keeps nan m"), Margin(-3.0, None, "keeps -3 m")]
+    found = judged("clearance", robot("a", []), "m", margins)
+    assert [verdict.status for verdict in found] == [Status.VIOLATED, Status.UNKNOWN]
 
 
 VIOLATED = Verdict("clearance", Status.VIOLATED, "a")
