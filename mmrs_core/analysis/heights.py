@@ -28,6 +28,10 @@ ATMOSPHERE = 101_325.0
 GRAVITY = 9.80665
 """Metres per second squared: the standard acceleration of gravity."""
 
+_OVER_LAND = (
+    "it flies below the height of the water surface, over land as its type states no operating pressure"
+)
+
 
 def _judge_altitude(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     """Check floor and ceiling; moves that begin or end on the ground may go below the floor."""
@@ -60,7 +64,7 @@ def _judge_depth(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
         yield from _above_water(robot, allowed, motion)
         return
     if allowed is None and kinematics_of(input, robot).launches:
-        yield not_checked(DEPTH_NAME, robot, "it flies, and its type states no operating pressure")
+        yield not_checked(DEPTH_NAME, robot, _OVER_LAND)
         return
     missing = _missing_for_depth(input, robot, allowed)
     density = input.environment.get("waterDensity")

@@ -17,18 +17,17 @@ TEMPERATURE_NAME = "temperature"
 
 def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     """Check the wind against positionHold: every flight ends in a landing, in which it must hold."""
-    wind = input.environment.get("windSpeed")
-    if wind is None:
-        yield not_checked(WIND_NAME, robot, "the environment states no windSpeed")
-        return
-    robot_type = type_of(input, robot)
-    held = number_of(robot_type.part, "positionHold")
+    held = number_of(type_of(input, robot).part, "positionHold")
     if held is None and not kinematics_of(input, robot).launches:
         yield not_checked(WIND_NAME, robot, "it does not fly")
         return
     hovers = _hovers(states_of(input, robot))
+    wind = input.environment.get("windSpeed")
     if hovers is None:
         yield not_checked(WIND_NAME, robot, "it never leaves the ground")
+    elif wind is None:
+        limit = "" if held is None else f", the robot holds against {held:g} m/s"
+        yield not_checked(WIND_NAME, robot, f"the environment states no windSpeed{limit}")
     elif held is None:
         raise MissingFigureError(
             f"{robot.id}: the positionHold of robot type '{robot.type_name}' is not given"
@@ -46,20 +45,23 @@ def _hovers(states: States) -> int | None:
 
 
 def _judge_temperature(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
-    temperature = input.environment.get("temperature")
-    if temperature is None:
-        yield not_checked(TEMPERATURE_NAME, robot, "the environment states no temperature")
-        return
     bounds = type_of(input, robot).part.attributes.get("operatingTemperature")
     least = number_of(bounds, "min") if isinstance(bounds, Part) else None
     most = number_of(bounds, "max") if isinstance(bounds, Part) else None
-    if least is None or most is None:
+    known = least is not None and most is not None
+    operates = f"the robot operates from {least:g} to {most:g} °C" if known else ""
+    temperature = input.environment.get("temperature")
+    if temperature is None:
+        limit = f", {operates}" if known else ""
+        yield not_checked(TEMPERATURE_NAME, robot, f"the environment states no temperature{limit}")
+    elif least is None or most is None:
         raise MissingFigureError(
             f"{robot.id}: the operatingTemperature of robot type '{robot.type_name}' is not given"
         )
-    words = f"it is {temperature:g} °C, the robot operates from {least:g} to {most:g} °C"
-    margin = Margin(min(temperature - least, most - temperature), None, words)
-    yield from judged(TEMPERATURE_NAME, robot, "°C", [margin])
+    else:
+        words = f"it is {temperature:g} °C, {operates}"
+        margin = Margin(min(temperature - least, most - temperature), None, words)
+        yield from judged(TEMPERATURE_NAME, robot, "°C", [margin])
 
 
 WIND = Check(

@@ -9,10 +9,11 @@ from mmrs_core.planning.jobs import Job, is_control
 from mmrs_core.planning.schedule import Schedule, signal_name
 from mmrs_core.planning.states import State
 from mmrs_core.scene import Await, Branch, Plan, RobotPlan, Scene, Serve, Signal, Step
+from mmrs_core.scene.attributes import number
 
 _NOTES = (
     "the terrain is flat at the origin's height",
-    "times count a stop at the end of every leg; turns on the spot are not counted",
+    "times count a stop at the end of every leg, and no turn into the next leg by what turns on the spot",
     "energy is the power against the wind or current times the time on one charge",
 )
 
@@ -35,8 +36,18 @@ def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         makespan=max((state.time for state in finished.values()), default=0.0),
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
-        notes=(*_NOTES, *_of_no_return(crew, schedule)),
+        notes=(*_NOTES, *_of_calm(crew.scene), *_of_no_return(crew, schedule)),
     )
+
+
+def _of_calm(scene: Scene) -> Iterator[str]:
+    """Yield which wind or current that robots travel in nobody states."""
+    flies = any(each.kinematics is not None and each.kinematics.launches for each in scene.robots)
+    dives = any(number(each.type.part, "maxOperatingPressure") is not None for each in scene.robots)
+    if flies and "windSpeed" not in scene.environment:
+        yield "the context states no windSpeed: this is a plan for calm air"
+    if dives and "currentSpeed" not in scene.environment:
+        yield "the context states no currentSpeed: this is a plan for still water"
 
 
 def _of_no_return(crew: Crew, schedule: Schedule) -> Iterator[str]:

@@ -84,7 +84,9 @@ def test_a_dive_without_figures_is_unknown_and_says_which():
 
 
 def test_a_flying_robot_below_the_origin_is_not_taken_to_dive():
-    assert finding("depth", dive(10.0, robot_kind=flyer())).status is Status.NOT_CHECKED
+    verdict = finding("depth", dive(10.0, robot_kind=flyer()))
+    assert verdict.status is Status.NOT_CHECKED
+    assert "over land as its type states no operating pressure" in verdict.message
 
 
 def test_a_robot_above_the_surface_is_not_checked_for_depth():
@@ -192,8 +194,17 @@ def test_wind_without_a_position_hold_is_unknown():
     )
 
 
-def test_no_wind_stated_is_not_checked():
-    assert finding("wind", given(flight(), robot_kind=flyer())).status is Status.NOT_CHECKED
+def test_no_wind_stated_is_not_checked_and_says_what_the_robot_holds_against():
+    calm = given(flight(), robot_kind=flyer(), type=rover(attributes={"positionHold": 8.0}))
+    verdict = finding("wind", calm)
+    assert (verdict.status, verdict.message) == (
+        Status.NOT_CHECKED,
+        "a: the environment states no windSpeed, the robot holds against 8 m/s",
+    )
+
+
+def test_where_no_wind_is_stated_robots_on_the_ground_are_told_as_such():
+    assert finding("wind", given(robot("a", [AWAY]))).message == "a: it does not fly"
 
 
 def test_wind_does_not_concern_what_stays_on_the_ground():
@@ -220,8 +231,15 @@ def test_temperature_without_an_operating_range_is_unknown():
     assert verdict.status is Status.UNKNOWN
 
 
-def test_no_temperature_stated_is_not_checked():
-    assert finding("temperature", given(robot("a", []))).status is Status.NOT_CHECKED
+def test_no_temperature_stated_is_not_checked_and_says_where_the_robot_operates():
+    bounds = Part((), {"min": 0.0, "max": 40.0})
+    verdict = finding(
+        "temperature", given(robot("a", []), type=rover(attributes={"operatingTemperature": bounds}))
+    )
+    assert (verdict.status, verdict.message) == (
+        Status.NOT_CHECKED,
+        "a: the environment states no temperature, the robot operates from 0 to 40 °C",
+    )
 
 
 @pytest.mark.parametrize("name", ["altitude", "range", "endurance", "energy", "states", "clearance"])

@@ -40,6 +40,18 @@ def test_a_robot_without_work_has_no_steps():
     assert sorted(len(each.steps) for each in found.robots) == [0, 5]
 
 
+def test_a_plan_says_that_it_is_for_calm_air_where_nobody_states_the_wind():
+    calm = "the context states no windSpeed: this is a plan for calm air"
+    silent = scene([robot()], {"a": visit((100.0, 0.0, 20.0))})
+    assert calm in plan(silent).notes
+    assert calm not in plan(replace(silent, environment={"windSpeed": 2.0})).notes
+
+
+def test_a_plan_for_robots_on_the_ground_asks_for_no_wind():
+    driving = scene([robot(kinematics=CRAWLER)], {"a": visit((100.0, 0.0, 0.0))})
+    assert [note for note in plan(driving).notes if "windSpeed" in note] == []
+
+
 def test_a_field_is_shared_by_robots_that_are_back_at_about_the_same_time():
     empty = scene(TWO, {})
     alone = sound(scene(TWO[:1], {"a": field_work(empty, FIELD)}))
