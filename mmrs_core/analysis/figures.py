@@ -1,8 +1,8 @@
 """The figures that limits follow from, taken from the robot types themselves.
 
-What the planner computed from the same models is not looked at: of a robot kind's kinematics only
-speeds, limits of height and the turning radius are used, lifetime, energy and dimensions are worked out
-anew.
+What the planner computed from the same models is not looked at, but both believe the same
+contributions: of a robot kind's kinematics speeds, limits of height and the turning radius are used
+here, of move kinds their paths and durations. Lifetime, energy and dimensions are worked out anew.
 """
 
 from __future__ import annotations
