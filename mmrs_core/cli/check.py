@@ -32,19 +32,20 @@ def check(
     """
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop, verdicts_of
-    from mmrs_core.cli.sarif import as_faults, refusals_in, write_sarif
+    from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
     from mmrs_core.cli.verdict_words import verdict_line, verdict_table
     from mmrs_core.pipeline import refusals
 
     workshop = Workshop(settings_of(call))
     file = behaviour_file(behaviour)
     refuse_two_outputs(sarif, json)
-    with refusals_in(sarif, workshop):
+    subject = subject_of("check", file)
+    with refusals_in(sarif, workshop, subject):
         loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
     verdicts = verdicts_of(workshop, loaded.program, loaded.place)
     against = refusals(verdicts, loaded.program)
     if sarif is not None:
-        write_sarif(sarif, as_faults(verdicts, against), workshop.contributions)
+        write_sarif(sarif, as_faults(verdicts, against), workshop.contributions, subject=subject)
     if json:
         say_json({"safe": not against, "verdicts": verdicts, "against": against})
     elif sarif != STANDARD_OUTPUT:

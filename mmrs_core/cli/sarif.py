@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
+import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
 from mmrs_core.cli.output import say_json
 from mmrs_core.cli.reports import STANDARD_OUTPUT
+from mmrs_core.cli.sarif_places import ROOT, Places
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.writing import replace_file
@@ -26,11 +26,15 @@ if TYPE_CHECKING:
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "note"}
-_ROOT = "PROJECTROOT"
+_PROBLEMS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "recommendation"}
+_HASH = "primaryLocationLineHash"
 
 
 def sarif_of(
-    faults: Sequence[Diagnostic], entries: Mapping[str, Entry], proposals: Iterable[Proposal] = ()
+    faults: Sequence[Diagnostic],
+    entries: Mapping[str, Entry],
+    proposals: Iterable[Proposal] = (),
+    subject: str = "",
 ) -> dict[str, object]:
     """Return a SARIF log of one run.
 
@@ -40,10 +44,12 @@ def sarif_of(
         faults: all of them.
         entries: what is known of codes, by code.
         proposals: quick fixes of some of the faults.
+        subject: what was examined and how, such as ``validate/field``, so that runs on other subjects stand
+            beside this one and do not take its place.
     """
     codes = list(dict.fromkeys(fault.code for fault in faults))
     fixes: dict[Diagnostic, Proposal] = {each.fault: each for each in proposals}
-    base = Path.cwd()
+    places = Places(Path.cwd())
     driver = {
         "name": "mmrs",
         "semanticVersion": version("mmrs-core"),
@@ -51,9 +57,10 @@ def sarif_of(
     }
     run = {
         "tool": {"driver": driver},
-        "columnKind": "unicodeCodePoints",
-        "originalUriBaseIds": {_ROOT: {"uri": f"{base.as_uri()}/"}},
-        "results": [_result(fault, codes.index(fault.code), base, fixes.get(fault)) for fault in faults],
+        **({"automationDetails": {"id": f"mmrs/{subject}/"}} if subject else {}),
+        "columnKind": "utf16CodeUnits",
+        "originalUriBaseIds": {ROOT: {"uri": f"{places.base.as_uri()}/"}},
+        "results": [_result(fault, codes.index(fault.code), places, fixes.get(fault)) for fault in faults],
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
@@ -61,15 +68,30 @@ def sarif_of(
 def _rule(code: str, entry: Entry | None) -> dict[str, object]:
     if entry is None:
         return {"id": code}
+    told = {"Expected": entry.expected, "Mend": entry.hint}
+    if entry.fix:
+        told["Quick fix"] = f"mmrs validate --fix: {entry.fix}"
     return {
         "id": code,
         "shortDescription": {"text": entry.meaning},
-        "help": {"text": f"expected: {entry.expected}\nhint: {entry.hint}"},
+        "fullDescription": {"text": f"{entry.meaning}; expected: {entry.expected}"},
+        "help": {
+            "text": "\n".join(f"{name}: {words}" for name, words in told.items()),
+            "markdown": "\n".join(f"- **{name}**: {_escaped(words)}" for name, words in told.items()),
+        },
         "defaultConfiguration": {"level": _LEVELS[entry.severity]},
+        "properties": {
+            "tags": [entry.plugin or "mmrs-core", *([entry.subject] if entry.subject else [])],
+            "problem.severity": _PROBLEMS[entry.severity],
+        },
     }
 
 
-def _result(fault: Diagnostic, index: int, base: Path, proposal: Proposal | None) -> dict[str, object]:
+def _escaped(words: str) -> str:
+    return re.sub(r"([\\`*_\[\]<>#|])", r"\\\1", words)
+
+
+def _result(fault: Diagnostic, index: int, places: Places, proposal: Proposal | None) -> dict[str, object]:
     words = [fault.message, fault.expected and f"expected: {fault.expected}"]
     words.append(fault.hint and f"hint: {fault.hint}")
     result: dict[str, object] = {
@@ -78,58 +100,13 @@ def _result(fault: Diagnostic, index: int, base: Path, proposal: Proposal | None
         "level": _LEVELS[fault.severity],
         "message": {"text": "\n".join(filter(None, words))},
     }
-    if location := _location(fault, base):
+    if location := places.location(fault):
         result["locations"] = [location]
+    if mark := places.fingerprint(fault):
+        result["partialFingerprints"] = {_HASH: mark}
     if proposal is not None:
-        result["fixes"] = [_fix(proposal, base)]
+        result["fixes"] = [places.fix(proposal)]
     return result
-
-
-def _location(fault: Diagnostic, base: Path) -> dict[str, object]:
-    place, location = fault.place, dict[str, object]()
-    if place.file:
-        physical: dict[str, object] = {"artifactLocation": _artifact(Path(place.file), base)}
-        if place.line > 0:
-            physical["region"] = {"startLine": place.line}
-        location["physicalLocation"] = physical
-    if place.path:
-        location["logicalLocations"] = [{"fullyQualifiedName": place.path, "kind": "element"}]
-    return location
-
-
-def _artifact(file: Path, base: Path) -> dict[str, str]:
-    """Return where a file lies: below the base, or anywhere."""
-    relative = os.path.relpath(file.absolute(), base)
-    if relative.startswith(os.pardir):
-        return {"uri": file.absolute().as_uri()}
-    return {"uri": quote(Path(relative).as_posix()), "uriBaseId": _ROOT}
-
-
-def _fix(proposal: Proposal, base: Path) -> dict[str, object]:
-    data = proposal.file.read_bytes()
-    replacements = [
-        {
-            "deletedRegion": _region(data, edit.begin, edit.end),
-            "insertedContent": {"text": edit.text},
-        }
-        for edit in sorted(proposal.edits)
-    ]
-    change = {
-        "artifactLocation": _artifact(Path(proposal.fault.place.file), base),
-        "replacements": replacements,
-    }
-    return {"description": {"text": proposal.title}, "artifactChanges": [change]}
-
-
-def _region(data: bytes, begin: int, end: int) -> dict[str, int]:
-    """Return lines and columns from 1; columns count characters, as ``columnKind`` says."""
-    (first, left), (last, right) = _place(data, begin), _place(data, end)
-    return {"startLine": first, "startColumn": left, "endLine": last, "endColumn": right}
-
-
-def _place(data: bytes, offset: int) -> tuple[int, int]:
-    start = data.rfind(b"\n", 0, offset) + 1
-    return data.count(b"\n", 0, offset) + 1, len(data[start:offset].decode("utf-8", "replace")) + 1
 
 
 def as_faults(verdicts: Iterable[Verdict], against: Container[Verdict]) -> tuple[Diagnostic, ...]:
@@ -154,14 +131,25 @@ def as_faults(verdicts: Iterable[Verdict], against: Container[Verdict]) -> tuple
 
 
 @contextmanager
-def refusals_in(file: Path | None, workshop: Workshop) -> Iterator[None]:
+def refusals_in(file: Path | None, workshop: Workshop, subject: str) -> Iterator[None]:
     """Write the faults of a model that is refused inside into a SARIF file, too."""
     try:
         yield
     except InvalidModelError as error:
         if file is not None:
-            write_sarif(file, error.diagnostics, workshop.contributions)
+            write_sarif(file, error.diagnostics, workshop.contributions, subject=subject)
         raise
+
+
+def subject_of(command: str, file: Path) -> str:
+    """Return what a command examines, as runs are told apart by: its path, if it lies below this folder.
+
+    >>> subject_of("check", Path("field/behaviour.xmi"))
+    'check/field/behaviour.xmi'
+    """
+    whole = file.absolute()
+    relative = whole.relative_to(Path.cwd()) if whole.is_relative_to(Path.cwd()) else Path(whole.name)
+    return "/".join((command, *relative.parts))
 
 
 def write_sarif(
@@ -169,15 +157,17 @@ def write_sarif(
     faults: Sequence[Diagnostic],
     contributions: Contributions,
     proposals: Iterable[Proposal] = (),
+    *,
+    subject: str,
 ) -> None:
-    """Write a SARIF log to a file, or to standard output for ``-``.
+    """Write a SARIF log to a file, or to standard output for ``-``; the rest as for `sarif_of`.
 
     Raises:
         OSError: if the file cannot be written.
     """
     from mmrs_core.cli.catalogue import catalogue_of
 
-    log = sarif_of(faults, catalogue_of(contributions), proposals)
+    log = sarif_of(faults, catalogue_of(contributions), proposals, subject)
     if file == STANDARD_OUTPUT:
         say_json(log)
     else:

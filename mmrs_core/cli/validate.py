@@ -45,7 +45,7 @@ def validate(
     from mmrs_core.cli.diagnosing import Subject
     from mmrs_core.cli.fixing import agreed, repairer_for, show, write
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.sarif import write_sarif
+    from mmrs_core.cli.sarif import subject_of, write_sarif
 
     if (yes or dry_run) and not fix:
         raise typer.BadParameter("--yes and --dry-run go with --fix")
@@ -65,7 +65,8 @@ def validate(
             found = repair.diagnosis
     proposals = tuple(repairer.proposals(found))
     if sarif is not None:
-        write_sarif(sarif, found.faults, workshop.contributions, proposals)
+        named = subject_of("validate", project)
+        write_sarif(sarif, found.faults, workshop.contributions, proposals, subject=named)
     if json:
         say_json(_as_json(found, proposals, repair, changed))
     elif sarif != STANDARD_OUTPUT:

