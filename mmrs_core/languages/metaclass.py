@@ -135,6 +135,8 @@ def is_null(feature: Feature, value: object) -> bool:
 class Metaclass:
     """A class of a metamodel, with the Python classes made of it.
 
+    Those classes are made when they are first asked for: of a large metamodel most never are.
+
     Attributes:
         features: all of them, inherited ones included, in EMF's order.
         ancestry: (nsURI, name) of itself and all supertypes, most specific first.
@@ -151,12 +153,22 @@ class Metaclass:
     documentation: str
     supertypes: tuple[Metaclass, ...] = ()
     features: tuple[Feature, ...] = ()
-    ancestry: tuple[tuple[str, str], ...] = ()
-    interface: type[Element] = field(repr=False, default=None)  # type: ignore[assignment]  # set at once
-    implementation: type[Element] | None = field(repr=False, default=None)
+    ancestry: tuple[tuple[str, str], ...] = field(init=False)
+    interface: type[Element] = field(init=False)
+    implementation: type[Element] | None = field(init=False)
     by_name: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     package: Package | None = field(repr=False, default=None)
+
+    if not TYPE_CHECKING:  # the fields are declared above
+
+        def __getattr__(self, name: str) -> object:
+            if name not in ("ancestry", "interface", "implementation"):
+                raise AttributeError(f"{name}: no attribute of a metaclass", name=name, obj=self)
+            from mmrs_core.languages.metamodels.classes import give_classes
+
+            give_classes(self)
+            return object.__getattribute__(self, name)
 
     @property
     def key(self) -> tuple[str, str]:

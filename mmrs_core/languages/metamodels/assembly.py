@@ -8,10 +8,13 @@ from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declared_type
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.metamodels.classes import implementation_class, interface_class
 from mmrs_core.languages.metamodels.locating import Directory, Located
 from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
 from mmrs_core.languages.naming import nearest, python_name
+
+DEEPEST_INHERITANCE = 100
+MOST_FEATURES = 500_000
+"""Of all classes together, inherited ones counted again in each; the largest metamodels have a tenth."""
 
 _Key = tuple[str, str]
 
@@ -39,7 +42,7 @@ _ECORE_ITSELF = Located(
 def _any_object() -> Metaclass:
     """Return Ecore's EObject, which every element is."""
     metaclass = Metaclass(ECORE, "EObject", True, "Any element at all.")
-    _complete(metaclass, ancestry=(metaclass.key,), interface=Element)
+    _complete(metaclass, ancestry=(metaclass.key,), interface=Element, implementation=None)
     return metaclass
 
 
@@ -59,6 +62,8 @@ class Assembly:
             self._types |= {(kind.ns_uri, kind.name): kind for kind in package.datatypes}
         self._packages = {package.ns_uri: package for package in packages}
         self._tables: dict[_Key, tuple[ClassTable, Located]] = {}
+        self._depths: dict[_Key, int] = {}
+        self._count = 0
         self._unlinked: list[tuple[Feature, FeatureTable, Located]] = []
 
     def packages(self) -> tuple[Package, ...]:
@@ -73,9 +78,6 @@ class Assembly:
             self._inherit(key, table, entry, ())
         for feature, row, entry in self._unlinked:
             self._join_opposites(feature, row, entry)
-        for metaclass in (self._metaclasses[key] for key in self._tables):
-            if not metaclass.abstract:
-                _complete(metaclass, implementation=implementation_class(metaclass, metaclass.interface))
         made = tuple(self._package(entry) for entry in self._located)
         self._packages |= {package.ns_uri: package for package in made}
         for package in made:
@@ -101,27 +103,30 @@ class Assembly:
 
     def _inherit(self, key: _Key, table: ClassTable, entry: Located, below: tuple[_Key, ...]) -> None:
         metaclass = self._metaclasses[key]
-        if metaclass.ancestry:
+        if key in self._depths:
             return
         if key in below:
             raise PluginError(
                 f"{entry.provider}: {entry.table.ns_uri}: class {table.name} inherits from itself"
             )
-        supertypes = []
+        if len(below) > DEEPEST_INHERITANCE:
+            raise self._too_deep(table, entry)
+        supertypes, depth = [], 0
         for uri in table.supertypes:
             above = self._directory.find(uri, entry)
             if above in self._tables:
                 self._inherit(above, *self._tables[above], (*below, key))
             supertypes.append(self._class(above, entry, f"supertype of {table.name}"))
-        interface = interface_class(metaclass, tuple(dict.fromkeys(above.interface for above in supertypes)))
-        ancestry = [cls._mmrs_metaclass for cls in interface.__mro__ if isinstance(cls, type(Element))]
-        _complete(
-            metaclass,
-            supertypes=tuple(supertypes),
-            interface=interface,
-            ancestry=(key, *(above.key for above in ancestry[1:] if above)),
-        )
+            depth = max(depth, self._depths.get(above, 0))
+        if depth >= DEEPEST_INHERITANCE:
+            raise self._too_deep(table, entry)
+        self._depths[key] = depth + 1
+        _complete(metaclass, supertypes=tuple(supertypes))
         self._give_features(metaclass, table, entry)
+
+    def _too_deep(self, table: ClassTable, entry: Located) -> PluginError:
+        reason = f"class {table.name} inherits through more than {DEEPEST_INHERITANCE} others"
+        return PluginError(f"{entry.provider}: {entry.table.ns_uri}: {reason}")
 
     def _give_features(self, metaclass: Metaclass, table: ClassTable, entry: Located) -> None:
         inherited = dict.fromkeys(feature for above in metaclass.supertypes for feature in above.features)
@@ -132,6 +137,9 @@ class Assembly:
             taken.add(feature.attribute)
             own.append(feature)
         features = (*inherited, *own)
+        self._count += len(features)
+        if self._count > MOST_FEATURES:
+            raise PluginError(f"{entry.provider}: {metaclass.ns_uri}: more than {MOST_FEATURES} features")
         by_name = {feature.name: feature for feature in features}
         if len(by_name) < len(features):
             twice = next(feature.name for feature in features if by_name[feature.name] is not feature)

@@ -3,14 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from threading import RLock
 from typing import Any
 
 from mmrs_core.languages.element import Element, ElementType
 from mmrs_core.languages.links import LinkedList, link, raw, unlink
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
+_MAKING = RLock()
 
-def interface_class(metaclass: Metaclass, bases: tuple[type[Element], ...]) -> type[Element]:
+
+def give_classes(metaclass: Metaclass) -> None:
+    """Make the Python classes of a metaclass, unless another thread did so meanwhile."""
+    with _MAKING:
+        try:
+            object.__getattribute__(metaclass, "implementation")
+        except AttributeError:
+            _give_classes(metaclass)
+
+
+def _give_classes(metaclass: Metaclass) -> None:
+    interface = _interface_class(metaclass, tuple(dict.fromkeys(a.interface for a in metaclass.supertypes)))
+    above = (base._mmrs_metaclass for base in interface.__mro__[1:] if isinstance(base, ElementType))
+    object.__setattr__(metaclass, "interface", interface)
+    object.__setattr__(metaclass, "ancestry", (metaclass.key, *(each.key for each in above if each)))
+    made = None if metaclass.abstract else _implementation_class(metaclass, interface)
+    object.__setattr__(metaclass, "implementation", made)  # the last: others see that all is done
+
+
+def _interface_class(metaclass: Metaclass, bases: tuple[type[Element], ...]) -> type[Element]:
     """Return a class with no slots of its own, below the interfaces of the supertypes."""
     namespace = {
         "__slots__": (),
@@ -22,7 +43,7 @@ def interface_class(metaclass: Metaclass, bases: tuple[type[Element], ...]) -> t
     return _element_class(metaclass.name, bases or (Element,), namespace)
 
 
-def implementation_class(metaclass: Metaclass, interface: type[Element]) -> type[Element]:
+def _implementation_class(metaclass: Metaclass, interface: type[Element]) -> type[Element]:
     """Return the class of the metaclass's elements, with a slot for each of its features."""
     attributes = tuple(feature.attribute for feature in metaclass.features)
     namespace = {
