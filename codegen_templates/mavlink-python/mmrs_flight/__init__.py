@@ -1,7 +1,8 @@
 """The runtime of generated controllers: readable, standalone, on top of pymavlink.
 
 Read ``program.py`` first: the words that programs are written in. ``pilot.py`` carries a program
-out, ``vehicle.py`` says it in MAVLink, ``main.py`` is the command line.
+out, ``ardupilot.py`` says it in MAVLink. ``main.py`` runs all robots, ``session.py`` one of them
+from the opening of its link to its end, and ``options.py`` is the command line.
 """
 
 from .main import main

@@ -1,0 +1,115 @@
+"""Who has the vehicle: its mode, whether it is armed, and how long it may take to obey."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from . import modes
+from .commands import command
+from .faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
+from .link import Link
+from .telemetry import Telemetry
+
+MODE_SECONDS = 5.0
+MODE_TRIES = 3
+TAKE_OFF_TRIES = 3
+AFRESH_SECONDS = 3.0
+"""After which at least one new heartbeat should have come, even over a poor link."""
+
+
+class Helm:
+    """Keeps a vehicle in the mode that the program needs.
+
+    Modes are believed when heartbeats show them, never by acknowledgement alone. A mode that
+    nobody here asked for means that a pilot has taken over: the program then ends and leaves the
+    vehicle alone.
+    """
+
+    def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
+        """Take the helm of a vehicle of a kind, ``copter``, ``sub`` or ``rover``; change nothing yet."""
+        self._link = link
+        self._telemetry = telemetry
+        self._numbers = modes.MODES[kind]
+        self._mode: str | None = None
+        self._speed: float | None = None
+
+    def has(self, mode: str) -> bool:
+        """Return whether the vehicle has such a mode."""
+        return mode in self._numbers
+
+    def enter(self, mode: str) -> None:
+        """Change the mode; the vehicle forgets the speed it was told.
+
+        Raises:
+            Refused: the vehicle does not go into the mode.
+        """
+        number = self._numbers[mode]
+        for _ in range(MODE_TRIES):
+            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, 1, number)
+            if self._link.wait(
+                lambda: self._telemetry.mode() == number, self._link.clock.patience(MODE_SECONDS)
+            ):
+                self._mode, self._speed = mode, None
+                return
+        raise Refused(f"the vehicle does not go into mode {mode}")
+
+    def let_go(self) -> None:
+        """Accept whatever mode the vehicle goes into, as after landing."""
+        self._mode = None
+
+    def check(self) -> None:
+        """Make sure that nobody else has taken over.
+
+        Raises:
+            Fault: the vehicle has left the mode.
+        """
+        if self._mode is None or self._telemetry.mode() == self._numbers[self._mode]:
+            return
+        if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
+            raise Fault(TAKEN_OVER, f"the vehicle left mode {self._mode}: somebody else has taken over")
+
+    def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
+        """Wait until a test holds.
+
+        Raises:
+            Fault: it does not in that time; `doing` says what takes too long.
+        """
+        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0)):
+            raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
+
+    def arm(self) -> None:
+        """Be in GUIDED and armed."""
+        if self._mode != modes.GUIDED:
+            self.enter(modes.GUIDED)
+        if not self._telemetry.armed():
+            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+            self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
+
+    def leave_ground(self, height: float) -> None:
+        """Arm and take off, again where the vehicle has disarmed itself in between."""
+        for attempt in range(TAKE_OFF_TRIES):
+            self.arm()
+            try:
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+                return
+            except Refused:
+                if attempt + 1 == TAKE_OFF_TRIES:
+                    raise
+                self._link.wait(lambda: None, AFRESH_SECONDS)
+
+    def disarm(self) -> None:
+        """Stop the motors of a vehicle that does not fly; one that does refuses.
+
+        Raises:
+            Refused: the vehicle does not disarm.
+        """
+        command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+        self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
+
+    def pace(self, speed: float | None) -> None:
+        """Go at a speed in metres per second from now on; None: as before."""
+        if speed is not None and speed != self._speed:
+            command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
+            self._speed = speed

@@ -1,0 +1,177 @@
+"""The command line, as a parser and as what it was understood to say."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .clock import Clock
+from .link import TRIES
+from .program import Robot
+from .signing import signing_key
+
+FIRST_PORT = 14_550
+PORT_STEP = 10
+DRY_SPEEDUP = 500.0
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How vehicles are reached.
+
+    Attributes:
+        urls: of the links, by robot.
+        system: MAVLink system of the vehicles; 0: whichever speaks first.
+        patience: real seconds to wait for a vehicle's first sign.
+        tries: how often to send at most what is not answered.
+        key: to sign with; None: no signatures.
+    """
+
+    urls: Mapping[str, str]
+    system: int
+    patience: float
+    tries: int
+    key: bytes | None
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """Metres from a place that count as there, and metres that a vehicle may be from home at first."""
+
+    place: float
+    home: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bus:
+    """Whether slots are kept with robots in other processes, and the endpoints for that."""
+
+    used: bool
+    listen: tuple[str, ...]
+    connect: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What was asked for, for all robots.
+
+    Attributes:
+        log: folder for the logs.
+        run: identifier of the run.
+        on_stop: ``hold``, ``return`` or ``land``.
+        fence: whether to upload it.
+    """
+
+    log: Path
+    run: str
+    clock: Clock
+    dry: bool
+    on_stop: str
+    fence: bool
+    tolerances: Tolerances
+    reach: Reach
+    bus: Bus
+
+
+def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
+    """Return the parser of the command line that runs these robots."""
+    parser = argparse.ArgumentParser(
+        description=f"Flies {', '.join(ascii(robot.id) for robot in robots)}.",
+        epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped.",
+    )
+    add = parser.add_argument
+    add("--log", type=Path, default=Path("logs"), help="folder for the logs; must not hold any yet")
+    add("--run", default="run-0", help="identifier of this run, in the logs")
+    add("--dry-run", action="store_true", help="no link: go through the program with a vehicle made up")
+    add("--speedup", type=float, default=None, help="how much faster than real time the vehicles run")
+    add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
+    add("--no-fence", action="store_true", help="do not upload the fence")
+    add("--acceptance", type=float, default=0.5, help="metres from a place that count as there")
+    add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
+    _add_reach(parser)
+    add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
+    add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
+    add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
+    return parser
+
+
+def options_of(
+    parser: argparse.ArgumentParser, robots: Sequence[Robot], arguments: Sequence[str] | None
+) -> Options:
+    """Return what a command line says; exits with a usage error where it makes no sense.
+
+    Args:
+        parser: for the same robots.
+        robots: to run.
+        arguments: as on the command line; None: those of this process.
+    """
+    given = parser.parse_args(arguments)
+    taken = [str(given.log / robot.log) for robot in robots if (given.log / robot.log).exists()]
+    if taken:
+        parser.error(f"{taken[0]}: there is a log already; choose another --log")
+    speedup = given.speedup or (DRY_SPEEDUP if given.dry_run else 1.0)
+    if speedup <= 0:
+        parser.error("--speedup must be positive")
+    return Options(
+        given.log,
+        given.run,
+        Clock(speedup),
+        given.dry_run,
+        given.on_stop,
+        not given.no_fence,
+        Tolerances(given.acceptance, given.home_tolerance),
+        _reach(parser, robots, given),
+        _bus(given),
+    )
+
+
+def _add_reach(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add(
+        "--link",
+        action="append",
+        default=[],
+        metavar="[ROBOT=]URL",
+        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD;"
+        f" default udpin:127.0.0.1:{FIRST_PORT} for the first robot, {PORT_STEP} more for each further one",
+    )
+    add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
+    add("--tries", type=int, default=TRIES, help="how often to send at most what a vehicle does not answer")
+    add("--system", type=int, default=0, help="MAVLink system of the vehicle; 0: whichever speaks first")
+    add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
+
+
+def _reach(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:
+    if given.tries < 1:
+        parser.error("--tries must be at least 1")
+    urls, key = _urls(parser, robots, given.link), _key(parser, given.signing_key)
+    return Reach(urls, given.system, given.patience, given.tries, key)
+
+
+def _urls(parser: argparse.ArgumentParser, robots: Sequence[Robot], links: Sequence[str]) -> dict[str, str]:
+    urls = {robot.id: f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * i}" for i, robot in enumerate(robots)}
+    for link in links:
+        robot, separator, url = link.rpartition("=")
+        if separator and robot not in urls:
+            parser.error(f"--link {link}: there is no robot {robot!a}")
+        if not separator and len(robots) > 1:
+            parser.error(f"--link {link}: which robot? say ROBOT={link}")
+        urls[robot or robots[0].id] = url
+    return urls
+
+
+def _key(parser: argparse.ArgumentParser, path: Path | None) -> bytes | None:
+    if path is None:
+        return None
+    try:
+        return signing_key(path)
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
+
+
+def _bus(given: Any) -> Bus:
+    used = given.bus or given.bus_listen or given.bus_connect
+    return Bus(bool(used), tuple(given.bus_listen), tuple(given.bus_connect))

@@ -1,0 +1,147 @@
+"""One robot at work, from the opening of its log and link to whatever end it comes to."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from traceback import format_exception
+
+from .ardupilot import MavlinkVehicle
+from .dry import DryVehicle
+from .faults import CRASHED, LINK_LOST, STOPPED, Fault
+from .judgement import Judgement
+from .link import Link
+from .log import Log, Records
+from .options import Options
+from .pilot import Desk, Pilot
+from .ports import open_port
+from .program import Robot
+from .responses import policy_for, respond
+from .screen import say
+from .slots import Slots
+from .vehicle import Vehicle
+from .watch import Watch
+
+OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
+CODES = {STOPPED: INTERRUPTED, LINK_LOST: LINK}
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """What all robots of a process share; `stop` is set when they are to stop."""
+
+    options: Options
+    slots: Slots
+    judgement: Judgement
+    stop: threading.Event
+
+
+def run_robot(robot: Robot, shared: Shared) -> int:
+    """Run one robot's program to its end, or to the end that its policies say; return the exit code."""
+    try:
+        with ExitStack() as stack:
+            stack.callback(shared.slots.leave, robot.id)
+            return _open(robot, shared, stack).run(shared.options.fence)
+    except (OSError, ValueError) as error:
+        say(f"{robot.id!a}: {error}")
+        return LINK
+    except Fault as fault:
+        say(f"{robot.id!a}: {fault}")
+        return CODES.get(fault.event, FAILED)
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A robot with all that it needs: its pilot and vehicle, and who watches them."""
+
+    robot: Robot
+    vehicle: Vehicle
+    watch: Watch
+    desk: Desk
+    pilot: Pilot
+    on_stop: str
+
+    def run(self, fence: bool) -> int:
+        """Carry the program out, with or without a fence; return the exit code."""
+        try:
+            self.pilot.fly(fence)
+        except Fault as fault:
+            return self._end_early(fault)
+        except Exception as error:
+            say("".join(format_exception(error)))
+            return self._end_early(Fault(CRASHED, f"the program itself fails: {error!r}"))
+        say(f"{self.robot.id!a}: done")
+        return OK
+
+    def _end_early(self, fault: Fault) -> int:
+        response = self._response_to(fault)
+        say(f"{self.robot.id!a}: {fault.event}: {fault}; response: {response}")
+        self.watch.relax()
+        try:
+            self.pilot.fail(fault.event)
+        except OSError as error:
+            say(f"{self.robot.id!a}: the log cannot be written: {error}")
+        self.desk.slots.leave(self.robot.id)
+        try:
+            watched = respond(response, fault, self.robot, self.vehicle, self.pilot.track)
+        except Fault as error:
+            say(f"{self.robot.id!a}: cannot carry out {response}: {error}; take over by hand")
+            return CODES.get(error.event, FAILED)
+        if watched:
+            say(f"{self.robot.id!a}: holds; interrupt to end")
+            self.desk.stop.wait()
+        say(f"{self.robot.id!a}: stopped" if fault.event == STOPPED else f"{self.robot.id!a}: ended early")
+        return CODES.get(fault.event, FAILED)
+
+    def _response_to(self, fault: Fault) -> str:
+        if fault.event == STOPPED:
+            return self.on_stop.upper()
+        return policy_for(fault.event, self.robot, self.pilot.policies).response
+
+
+def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
+    options, judgement = shared.options, shared.judgement
+    log = Log(options.log / robot.log, options.run, robot.id)
+    stack.callback(log.close)
+    records = Records(options.log / f"{Path(robot.log).stem}.records.ndjson")
+    desk = Desk(
+        options.clock,
+        shared.slots,
+        log,
+        records,
+        judgement.conditions,
+        judgement.locators,
+        shared.stop,
+        say,
+    )
+    watch = Watch(robot, options.clock, shared.stop)
+    vehicle = _vehicle(robot, options, watch, stack)
+    pilot = Pilot(robot, vehicle, desk)
+    watch.current = lambda: pilot.policies
+    return Session(robot, vehicle, watch, desk, pilot, options.on_stop)
+
+
+def _vehicle(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Vehicle:
+    if options.dry:
+        return DryVehicle(options.clock, robot.home, watch.check)
+    link = _link(robot, options, watch, stack)
+    near = options.tolerances
+    vehicle = MavlinkVehicle(link, robot.vehicle, robot.home, acceptance=near.place, home_tolerance=near.home)
+    watch.begin(link, vehicle)
+    unset = vehicle.answer_lost_link(policy_for(LINK_LOST, robot).response)
+    if unset:
+        say(f"{robot.id!a}: response to a lost link: {unset}")
+    return vehicle
+
+
+def _link(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Link:
+    reach, url = options.reach, options.reach.urls[robot.id]
+    link = Link(open_port(url), options.clock, reach.system, reach.key)
+    stack.callback(link.close)
+    link.guard, link.tries = watch.check, reach.tries
+    say(f"{robot.id!a}: waits for a vehicle at {url}")
+    if not link.wait(lambda: link.component, reach.patience * options.clock.speedup):
+        raise Fault(LINK_LOST, f"no vehicle at {url}")
+    return link

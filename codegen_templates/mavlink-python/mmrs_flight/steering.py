@@ -1,0 +1,152 @@
+"""Going to places and turning to them, step by step in GUIDED."""
+
+from __future__ import annotations
+
+from math import hypot, radians
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from .commands import command
+from .faults import NO_PROGRESS, Fault
+from .helm import Helm
+from .link import Link, Message
+from .places import bearing, distance, offset
+from .program import Geographic, Look, Object, Place
+from .telemetry import Telemetry
+
+PATIENCE_FACTOR = 4.0
+PATIENCE_SECONDS = 60.0
+RESEND_SECONDS = 1.0
+STILL = 0.3
+CLOSE_DEGREES = 5.0
+
+
+class Steering:
+    """Steers a vehicle by position targets, which are sent again until it is there."""
+
+    def __init__(self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float) -> None:
+        """Steer a vehicle; places within `acceptance` metres count as reached."""
+        self._link = link
+        self._telemetry = telemetry
+        self._helm = helm
+        self._acceptance = acceptance
+        self._yaw = 0.0
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Go straight to a place; `through`: without a stop there.
+
+        Raises:
+            Fault: it does not get there.
+        """
+        self._helm.arm()
+        self._helm.pace(speed)
+        self._point(look)
+        way = distance(self._telemetry.here(), place)
+        limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
+        while True:
+            self._steer(place, look)
+            if self._link.wait(lambda: self._arrived(place, through), RESEND_SECONDS):
+                break
+            self._helm.check()
+            if self._link.clock.now() > limit:
+                raise Fault(
+                    NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
+                )
+        self._unpoint(look)
+
+    def turn(self, look: Look) -> None:
+        """Turn until a device points at something; a device with a gimbal turns by itself.
+
+        Raises:
+            Fault: it does not turn so far.
+        """
+        self._helm.arm()
+        if look.gimbal:
+            self._point(look)
+            return
+        here = self._telemetry.here()
+        wanted = self._yaw = _yaw(here, look)
+        until = self._link.clock.now() + self._link.clock.patience(PATIENCE_SECONDS, 2.0)
+        while not self._faces(wanted):
+            if self._link.clock.now() > until:
+                raise Fault(NO_PROGRESS, "the vehicle takes too long to turn")
+            self._send_target(here, wanted)
+            self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
+            self._helm.check()
+
+    def stay(self) -> None:
+        """Stay where the vehicle is, and look where it looked."""
+        self._send_target(self._telemetry.here(), self._yaw)
+
+    def _point(self, look: Look | None) -> None:
+        if look is not None and look.gimbal and isinstance(look.at, Geographic):
+            at = (look.at.latitude, look.at.longitude, look.at.height)
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, 0, 0, 0, 0, *at)
+
+    def _unpoint(self, look: Look | None) -> None:
+        if look is not None and look.gimbal:
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE)
+
+    def _steer(self, place: Place, look: Look | None) -> None:
+        here = self._telemetry.here()
+        if look is not None and not look.gimbal:
+            self._yaw = _yaw(here, look)
+        elif hypot(*offset(here, place)[:2]) > 1.0:
+            self._yaw = bearing(here, place)
+        self._send_target(place, self._yaw)
+
+    def _send_target(self, place: Place, yaw: float) -> None:
+        self._link.send(_target(self._link, place, radians(yaw)))
+
+    def _arrived(self, place: Place, through: bool) -> bool:
+        near = distance(self._telemetry.here(), place) <= self._acceptance
+        return near and (through or self._telemetry.speed() <= STILL)
+
+    def _faces(self, wanted: float) -> bool:
+        return abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < CLOSE_DEGREES
+
+    def _heading(self) -> float:
+        told = self._telemetry.heading()
+        return self._yaw if told is None else told
+
+
+def _yaw(here: Place, look: Look) -> float:
+    if isinstance(look.at, Object):
+        raise ValueError(f"{look.at} has not been found yet")
+    return (bearing(here, look.at) - look.angle - look.mount) % 360.0
+
+
+def _target(link: Link, place: Place, yaw: float) -> Message:
+    ignored = (
+        mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
+        | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+    )
+    rest = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, yaw, 0.0)
+    if isinstance(place, Geographic):
+        return mavlink.MAVLink_set_position_target_global_int_message(
+            0,
+            link.system,
+            link.component,
+            mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
+            ignored,
+            round(place.latitude * 1e7),
+            round(place.longitude * 1e7),
+            place.height,
+            *rest,
+        )
+    return mavlink.MAVLink_set_position_target_local_ned_message(
+        0,
+        link.system,
+        link.component,
+        mavlink.MAV_FRAME_LOCAL_NED,
+        ignored,
+        place.north,
+        place.east,
+        -place.height,
+        *rest,
+    )
