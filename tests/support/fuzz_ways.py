@@ -14,7 +14,7 @@ from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.foreign import gathered
+from mmrs_core.languages.metamodels.gathering import gathered
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import core_registry

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmrs_core.languages.datatypes import ECORE
-from mmrs_core.languages.foreign import documents_of, flat, gathered
 from mmrs_core.languages.metaclass import Metaclass, Package
+from mmrs_core.languages.metamodels.gathering import documents_of, flat, gathered
 from mmrs_core.languages.metamodels.tables import read_tables
 from mmrs_core.languages.registry import MetamodelSource, Registry
 

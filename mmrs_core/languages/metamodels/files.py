@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from pathlib import Path
-from urllib.parse import unquote
 
+from mmrs_core.languages.metamodels.gathering import documents_of, file_at, flat
 from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
-from mmrs_core.languages.xmi.events import read_bytes
-
-_REFERRED = re.compile(rb'[\s"]([^\s"#]+\.ecore)#')
 
 
 def registry_of_files(
@@ -32,8 +28,9 @@ def registry_of_files(
         PluginError: if a metamodel refers to one that is missing, or two files hold the same.
     """
     given = [file.resolve() for file in files]
-    tables = {file: read_tables(file) for file in _with_neighbours(given)}
-    held = {file: [uri for table in tables[file] for uri in _uris(table)] for file in tables}
+    held = {
+        file: [table.ns_uri for table in flat(tables)] for file, tables in _with_neighbours(given).items()
+    }
     taken = {uri for uris in held.values() for uri in uris}
     sources = [MetamodelSource(uris[0], file, file.name) for file, uris in held.items()]
     others = [source for source in installed if source.ns_uri not in taken]
@@ -41,19 +38,15 @@ def registry_of_files(
     return registry_with([*others, *sources]), wanted
 
 
-def _with_neighbours(files: Iterable[Path]) -> list[Path]:
-    found = list(dict.fromkeys(files))
-    for file in found:  # grows on the way
-        for named in _REFERRED.findall(read_bytes(file)):
-            path = unquote(named.decode("utf-8", "replace"))
-            places = (file.parent / path, file.parent / path.rpartition("/")[2])
-            other = next((each.resolve() for each in places if each.is_file()), file)
-            if other not in found:
-                found.append(other)
+def _with_neighbours(files: Iterable[Path]) -> dict[Path, tuple[PackageTable, ...]]:
+    found: dict[Path, tuple[PackageTable, ...]] = {}
+    pending = list(files)
+    while pending:
+        file = pending.pop(0)
+        if file in found:
+            continue
+        found[file] = read_tables(file)
+        for document in documents_of(found[file]):
+            other = file_at(document, file.parent) or file_at(document.rpartition("/")[2], file.parent)
+            pending += [other.resolve()] if other is not None else []
     return found
-
-
-def _uris(table: PackageTable) -> Iterable[str]:
-    yield table.ns_uri
-    for inner in table.subpackages:
-        yield from _uris(inner)

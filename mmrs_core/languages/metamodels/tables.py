@@ -30,17 +30,19 @@ class FeatureTable:
     stored: bool = True
     default: str | None = None
     opposite: str = ""
+    keys: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class ClassTable:
-    """A class; ``supertypes`` are URIs."""
+    """A class; ``supertypes`` are URIs; ``java_class`` is what Java is to have in its place, if anything."""
 
     name: str
     abstract: bool = False
     documentation: str = ""
     supertypes: tuple[str, ...] = ()
     features: tuple[FeatureTable, ...] = ()
+    java_class: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,6 +171,7 @@ def _class(node: _Node, file: str) -> ClassTable:
             *(reference for text in generic for reference in references(text)),
         ),
         tuple(_feature(child, file) for child in node.all("eStructuralFeatures")),
+        node.get("instanceClassName") or node.get("instanceTypeName"),
     )
 
 
@@ -188,6 +191,7 @@ def _feature(node: _Node, file: str) -> FeatureTable:
         stored=not node.flag("transient"),
         default=node.attributes.get("defaultValueLiteral"),
         opposite=node.get("eOpposite"),
+        keys=tuple(uri.rpartition("/")[2] for uri in references(node.get("eKeys"))),
     )
 
 

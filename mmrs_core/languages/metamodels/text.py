@@ -65,6 +65,7 @@ def _class(metaclass: Metaclass, address: Address) -> list[str]:
     attributes = [("xsi:type", "ecore:EClass"), ("name", metaclass.name)]
     attributes += [("abstract", "true")] if metaclass.abstract else []
     attributes += [("eSuperTypes", supertypes)] if supertypes else []
+    attributes += [("instanceClassName", MAP_ENTRY)] if metaclass.is_entry else []
     body = _documentation(metaclass.documentation)
     for feature in metaclass.features:
         if feature.owner is metaclass:
