@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError, UnsupportedError
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from mmrs_core.runtime.run import Run
     from mmrs_core.scene import Area, Plan, Policy, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
+
+Contributed = TypeVar("Contributed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,11 +187,8 @@ def render(
     """
     from mmrs_core.contributions.targets import TargetInput
     from mmrs_core.generation.render import render as rendered
-    from mmrs_core.languages.naming import nearest
 
-    if target not in contributions.targets:
-        known, guess = ", ".join(sorted(contributions.targets)), nearest(target, contributions.targets)
-        raise UnsupportedError(f"target '{target}': not known; there are {known}{guess and '; ' + guess}")
+    chosen = _named("target", target, contributions.targets)
     given = TargetInput(
         program=program,
         types=place.types,
@@ -198,7 +197,6 @@ def render(
         areas=place.areas or (),
         policies=policies,
     )
-    chosen = contributions.targets[target]
     provider = contributions.distribution_of("targets", chosen)
     return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider)
 
@@ -231,27 +229,45 @@ def simulate(
     place: Place,
     contributions: Contributions,
     *,
-    run: str = "run-0",
+    backend: str = "simulation",
+    options: Mapping[str, str] | None = None,
     assume: Mapping[str, bool] | None = None,
     observe: Callable[[StepRecord], None] | None = None,
 ) -> Run:
     """Return the simulated run of a behaviour, in still air and water unless the environment says otherwise.
 
     Args:
+        backend: name of what moves the robots; its time is simulated.
+        options: of the backend.
         assume: fixed answers by condition identifier, which go before contributed conditions.
         observe: called with each step before it has an effect, to write a log.
+
+    Raises:
+        UnsupportedError: if there is no such backend, it does not simulate or know an option, or the
+            behaviour holds what nobody contributed.
     """
     from mmrs_core.runtime.run import assumed
     from mmrs_core.runtime.run import simulate as simulated
 
     return simulated(
         program,
+        backend=_named("backend", backend, contributions.backends),
+        options=options,
         types=place.types,
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
         conditions={**contributions.conditions, **assumed(assume or {})},
         environment=place.environment,
         areas=place.areas or (),
-        run=run,
         observe=observe,
     )
+
+
+def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Contributed:
+    """Return what was contributed under a name; the nearest one is suggested where there is none."""
+    from mmrs_core.languages.naming import nearest
+
+    if name not in contributed:
+        known, guess = ", ".join(sorted(contributed)), nearest(name, contributed)
+        raise UnsupportedError(f"{sort} '{name}': not known; there are {known}{guess and '; ' + guess}")
+    return contributed[name]

@@ -21,6 +21,13 @@ def simulate(
     context: Context = None,
     robots: Robots = None,
     assume: Assume = None,
+    backend: Annotated[
+        str, typer.Option("--backend", metavar="NAME", help="What moves the robots, in simulated time.")
+    ] = "simulation",
+    backend_option: Annotated[
+        list[str] | None,
+        typer.Option("--backend-option", metavar="KEY=VALUE", help="Of the backend; may be repeated."),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Carry out a behaviour in simulation, faster than real time."""
@@ -28,14 +35,22 @@ def simulate(
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.protection import refuse_inputs
-    from mmrs_core.cli.simulation import answers, fly, run_lines, succeeded, write_logs
+    from mmrs_core.cli.simulation import (
+        Chosen,
+        answers,
+        fly,
+        options_of,
+        run_lines,
+        succeeded,
+        write_logs,
+    )
 
     workshop = Workshop(settings_of(call))
-    conditions = answers(assume)
+    conditions, chosen = answers(assume), Chosen(backend, options_of(backend_option))
     loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
     if output is not None:
         refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)
-    run = fly(workshop, loaded.program, loaded.place, conditions)
+    run = fly(workshop, loaded.program, loaded.place, conditions, chosen)
     logs = write_logs(run, loaded.program, output) if output is not None else ()
     if json:
         say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import dist
 from pathlib import Path
@@ -36,11 +37,40 @@ def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
     return found
 
 
-def fly(workshop: Workshop, program: Program, place: Place, conditions: Mapping[str, bool]) -> Run:
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The backend of a run. Attributes: its name, and its options by key."""
+
+    backend: str = "simulation"
+    options: Mapping[str, str] = field(default_factory=dict)
+
+
+def options_of(given: Sequence[str] | None) -> Mapping[str, str]:
+    """Return the options of a backend, from ``KEY=VALUE``.
+
+    Raises:
+        typer.BadParameter: if it is written otherwise.
+    """
+    pairs = [each.partition("=") for each in given or ()]
+    for key, sign, _ in pairs:
+        if not key or not sign:
+            raise typer.BadParameter(f"'{key}{sign}' is not written as KEY=VALUE")
+    return {key: value for key, _, value in pairs}
+
+
+def fly(
+    workshop: Workshop,
+    program: Program,
+    place: Place,
+    conditions: Mapping[str, bool],
+    chosen: Chosen = Chosen(),
+) -> Run:
     """Return the simulated run of a behaviour.
 
     Raises:
         typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
+        UnsupportedError: if there is no such backend, or it does not simulate, know its options or what
+            the behaviour holds.
     """
     asked = {each.condition for robot in program.robots for each in robot.transitions.values()} - {None}
     unasked = [identifier for identifier in conditions if identifier not in asked]
@@ -54,6 +84,8 @@ def fly(workshop: Workshop, program: Program, place: Place, conditions: Mapping[
             program,
             place,
             workshop.contributions,
+            backend=chosen.backend,
+            options=chosen.options,
             assume=conditions,
             observe=workshop.plugins.observe_step,
         ),

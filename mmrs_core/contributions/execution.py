@@ -5,9 +5,9 @@ Times are seconds of the run's clock throughout.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId
 from mmrs_core.contributions.rules import MoveKind, RobotKind
@@ -115,11 +115,26 @@ class Backend(Protocol):
         ...
 
 
+@runtime_checkable
+class Recorder(Protocol):
+    """What a backend may have beside the rest: the way of its robot, for pictures and people."""
+
+    @property
+    def notes(self) -> Sequence[str]:
+        """Return what was taken for granted, each line without the robot's name."""
+        ...
+
+    def track(self) -> tuple[Sample, ...]:
+        """Return the way that the robot has come."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class BackendInput:
     """All that a backend may use.
 
     Attributes:
+        options: as in ``--backend-option``.
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn; empty where none was given.
     """
@@ -143,8 +158,9 @@ class BackendFactory:
         name: as in ``--backend``.
         description: one line for people.
         connect: a backend for one robot. Raises LinkLostError where the robot does not answer,
-            ValueError for an option it does not know, UnsupportedError for what it cannot do.
-        simulated: whether its time is simulated: the run then jumps from event to event.
+            UnsupportedError for an option that it does not know and for what it cannot do.
+        simulated: whether its time is simulated, so that a run jumps from event to event;
+            ``mmrs simulate`` takes no other.
     """
 
     name: str

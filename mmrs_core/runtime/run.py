@@ -1,4 +1,4 @@
-"""Whole runs: all robots of a behaviour with backends of one sort, from Start to the end."""
+"""Whole simulated runs: all robots of a behaviour with backends of one sort, from Start to the end."""
 
 from __future__ import annotations
 
@@ -9,12 +9,18 @@ from math import inf
 from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import BackendInput, Condition, RobotState, Sample
+from mmrs_core.contributions.execution import (
+    BackendFactory,
+    BackendInput,
+    Condition,
+    Recorder,
+    RobotState,
+    Sample,
+)
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import Ending, interpret
-from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Area, Name, Part, Policy, RobotType
 
@@ -39,9 +45,11 @@ class Run:
 def simulate(
     program: Program,
     *,
+    backend: BackendFactory,
     types: Mapping[str, RobotType],
     robot_kinds: Mapping[Name, RobotKind],
     move_kinds: Mapping[Name, MoveKind],
+    options: Mapping[str, str] | None = None,
     conditions: Mapping[str, Condition] | None = None,
     environment: Mapping[str, float] | None = None,
     areas: tuple[Area, ...] = (),
@@ -54,8 +62,10 @@ def simulate(
 
     Args:
         program: the behaviour.
+        backend: what moves the robots, in simulated time.
         types: robot types by name.
         robot_kinds, move_kinds: by metaclass.
+        options: of the backend.
         conditions: by identifier; see `assumed` for fixed answers.
         environment: of the context, by attribute name; still air and water where it says nothing.
         areas: of the context as drawn; robots flee to its emergency areas.
@@ -65,11 +75,14 @@ def simulate(
 
     Raises:
         UnsupportedError: if a robot type is missing, or robots, moves, actions or conditions are of
-            kinds that nobody contributed; lists them.
+            kinds that nobody contributed; lists them. If the backend's time is not simulated, or it does
+            not know an option.
     """
+    if not backend.simulated:
+        raise UnsupportedError(f"backend '{backend.name}': does not simulate, it drives robots")
     policies = {robot.id: _policies(types, robot.type_name, robot_kinds) for robot in program.robots}
     robots = {
-        robot.id: SimulatedRobot(
+        robot.id: backend.connect(
             BackendInput(
                 program,
                 robot,
@@ -77,7 +90,7 @@ def simulate(
                 robot_kinds,
                 move_kinds,
                 environment or {},
-                {},
+                options or {},
                 policies[robot.id],
                 areas,
             )
@@ -100,8 +113,9 @@ def simulate(
         ),
         made,
     )
-    tracks = {id: robot.track() for id, robot in robots.items()}
-    notes = tuple(f"robot '{id}', {note}" for id, robot in robots.items() for note in robot.notes)
+    told = {id: robot for id, robot in robots.items() if isinstance(robot, Recorder)}
+    tracks = {id: robot.track() for id, robot in told.items()}
+    notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
     return Run(tuple(made), ending, tracks, notes)
 
 

@@ -57,6 +57,28 @@ def test_robot_types_and_place_can_be_named(mmrs, project, tmp_path):
     assert mmrs("check", alone, "--context", project / "context.xmi", "--robots", project / "robots")[0] == 0
 
 
+def test_a_simulation_by_name_is_the_same_as_without(mmrs, project):
+    assert mmrs("simulate", project, "--backend", "simulation") == mmrs("simulate", project)
+
+
+def test_a_backend_that_nobody_contributed_is_named(mmrs, project):
+    code, _, err = mmrs("simulate", project, "--backend", "simulaton")
+    assert code == 1
+    assert "backend 'simulaton': not known; there are simulation" in err
+
+
+def test_an_option_that_the_backend_does_not_know_is_named(mmrs, project):
+    code, _, err = mmrs("simulate", project, "--backend-option", "rain=1")
+    assert code == 1
+    assert "option 'rain': the simulation has none of that name" in err
+
+
+def test_an_option_of_a_backend_has_a_value(mmrs, project):
+    code, _, err = mmrs("simulate", project, "--backend-option", "rain")
+    assert code == 2
+    assert "'rain' is not written as KEY=VALUE" in err
+
+
 def test_a_simulated_run_replays(mmrs, project):
     code, out, _ = mmrs("simulate", project, "-o", project / "logs")
     assert code == 0

@@ -17,7 +17,7 @@ from mmrs_core.contributions.execution import BackendInput
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.run import assumed, simulate
-from mmrs_core.runtime.simulation import SimulatedRobot
+from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
@@ -34,7 +34,8 @@ FULL = settings(max_examples=600, deadline=None, suppress_health_check=[HealthCh
 
 def run_of(program, answers=None, **options):
     given = assumed(answers or dict.fromkeys(CONDITIONS, True))
-    return simulate(program, types={ROBOT_TYPE: TYPE}, conditions=given, **KINDS, **options)
+    types = {ROBOT_TYPE: TYPE}
+    return simulate(program, backend=SIMULATION, types=types, conditions=given, **KINDS, **options)
 
 
 def terminal_states(program):

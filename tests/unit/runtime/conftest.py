@@ -7,6 +7,7 @@ import pytest
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.runtime.run import simulate
+from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import (
     MOVE_KINDS,
@@ -67,7 +68,7 @@ def fly(kinds):
 
     def run(program, type=None, **options):
         types = {ROBOT_TYPE: type or robot_type()}
-        found = simulate(program, types=types, **kinds, **options)
+        found = simulate(program, backend=SIMULATION, types=types, **kinds, **options)
         result = replay(program, found.records, partial=True)
         assert result.accepted, result.complaints
         if found.ending.outcome.value != "incomplete":

@@ -227,7 +227,7 @@ def test_passing_a_waypoint_saves_the_time_to_brake_and_to_get_going_again(kinds
     def last_time(fluid):
         given = {**kinds, "move_kinds": {**kinds["move_kinds"], name: open_ended}}
         behaviour = program(robot("r", moves, fluid=fluid))
-        return simulate(behaviour, types={"rover": type}, **given).ending.time
+        return simulate(behaviour, backend=SIMULATION, types={"rover": type}, **given).ending.time
 
     assert last_time([]) == pytest.approx(26.0)
     assert last_time(["g"]) == pytest.approx(23.0)
@@ -321,7 +321,7 @@ def test_a_robot_of_a_kind_that_nobody_contributed_is_refused(kinds):
 
 
 def test_an_option_that_the_simulation_does_not_have_is_refused(kinds):
-    with pytest.raises(ValueError, match="option 'rain'"):
+    with pytest.raises(UnsupportedError, match="option 'rain'"):
         SIMULATION.connect(given(program(robot("r", [])), kinds, options={"rain": "1"}))
 
 
@@ -329,7 +329,7 @@ def test_a_robot_type_that_is_missing_is_named(kinds):
     from mmrs_core.runtime.run import simulate
 
     with pytest.raises(UnsupportedError) as caught:
-        simulate(program(robot("r", [])), types={}, **kinds)
+        simulate(program(robot("r", [])), backend=SIMULATION, types={}, **kinds)
     assert caught.value.elements == ("robot 'r': type 'rover'",)
 
 

@@ -1,0 +1,114 @@
+"""Which backend moves the robots of a run is chosen by name, the core's own like any other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import pytest
+
+from mmrs_core import pipeline
+from mmrs_core.contributions.execution import BackendFactory, RobotState
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.hookspecs import hookimpl
+from mmrs_core.plugins import load_plugins
+from mmrs_core.testing.conformance import BackendConformance
+from mmrs_core.testing.small_programs import ROBOT_TYPE, go, program, robot, robot_type
+
+SECONDS = 7.0
+BEHAVIOUR = program(robot("r", [go("there", (30.0, 0.0, 0.0))]))
+PLACE = pipeline.Place({ROBOT_TYPE: robot_type()})
+
+
+class Jumper:
+    """A robot that is where a move leads to after so many seconds, however far that is."""
+
+    def __init__(self, given):
+        unknown = sorted(set(given.options) - {"seconds"})
+        if unknown:
+            raise UnsupportedError(f"option '{unknown[0]}': the jumper has none of that name")
+        self._seconds = float(given.options.get("seconds", SECONDS))
+        self._at, self._to, self._end = given.robot.home, given.robot.home, 0.0
+
+    def begin(self, move, now, *, through=False):
+        self._at = self.state(now).position
+        self._to = move.target.position if move.target else self._at
+        self._end = now + (self._seconds if move.target or "duration" in move.attributes else 0.0)
+
+    def act(self, action, now):
+        self._end = now
+
+    def finished(self, now):
+        return now >= self._end
+
+    def fault(self, now):
+        return None
+
+    def next_event(self, now):
+        return self._end
+
+    def wait(self, now):
+        self._end = float("inf")
+
+    def state(self, now):
+        return RobotState(now, self._to if now >= self._end else self._at, 0.0, 0.0, None)
+
+    def stop(self, now, response="HOLD"):
+        if now < self._end:
+            self._to, self._end = self._at, now
+
+
+JUMPER = BackendFactory("jumper", "Robots that jump", Jumper, simulated=True)
+
+
+@dataclass(frozen=True)
+class Jumping:
+    """A plug-in that contributes backends."""
+
+    backend: BackendFactory = JUMPER
+
+    @hookimpl
+    def mmrs_backends(self):
+        return (self.backend,)
+
+
+def simulated(plugin, **options):
+    contributions = load_plugins(only_core=True, extra={"jumping": plugin}).contributions
+    return pipeline.simulate(BEHAVIOUR, PLACE, contributions, **options)
+
+
+class TestJumper(BackendConformance):
+    plugin = Jumping()
+
+
+def test_a_plugins_backend_is_taken_by_its_name():
+    assert simulated(Jumping(), backend="jumper").ending.time == SECONDS
+
+
+def test_its_options_reach_it():
+    assert simulated(Jumping(), backend="jumper", options={"seconds": "3"}).ending.time == 3.0
+
+
+def test_an_option_that_it_does_not_know_is_refused_by_name():
+    with pytest.raises(UnsupportedError, match="option 'metres'"):
+        simulated(Jumping(), backend="jumper", options={"metres": "3"})
+
+
+def test_a_backend_that_tells_no_way_leaves_none():
+    assert simulated(Jumping(), backend="jumper").tracks == {}
+
+
+def test_without_a_name_the_core_simulates():
+    run = simulated(Jumping())
+    assert run.ending.time != SECONDS
+    assert [sample.position for sample in run.tracks["r"]][-1] == (30.0, 0.0, 0.0)
+
+
+def test_a_name_that_nobody_contributed_is_refused_with_the_nearest():
+    with pytest.raises(UnsupportedError, match=r"'jumpr': not known; there are jumper, simulation; .*jumper"):
+        simulated(Jumping(), backend="jumpr")
+
+
+def test_a_backend_that_drives_robots_is_not_taken_for_a_simulation():
+    real = Jumping(replace(JUMPER, simulated=False))
+    with pytest.raises(UnsupportedError, match="'jumper': does not simulate"):
+        simulated(real, backend="jumper")
