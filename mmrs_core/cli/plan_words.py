@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from mmrs_core.cli.output import counted
-from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.figures import clock, energy, length
 from mmrs_core.cli.tables import table
 from mmrs_core.scene import Branch, Plan, RobotPlan, Scene, Serve, Step
 
-_JOULES_IN_WATT_HOUR = 3600.0
 _MOST_NOTES = 4
 _WIDEST = 44
 
@@ -71,6 +70,6 @@ def _row(scene: Scene, robot: RobotPlan) -> tuple[str, ...]:
     kind = scene.robot(robot.robot).type.name
     if not robot.steps:
         return robot.robot, kind, "none", "", "", "", ""
-    energy = f"{robot.energy / _JOULES_IN_WATT_HOUR:.1f} Wh" if robot.energy else "not known"
     tasks = ", ".join(tasks_of(robot)) or "none"
-    return robot.robot, kind, tasks, length(robot.length), clock(robot.busy), energy, str(robot.sorties)
+    figures = length(robot.length), clock(robot.busy), energy(robot.energy), str(robot.sorties)
+    return robot.robot, kind, tasks, *figures

@@ -36,7 +36,7 @@ def assemble(crew: Crew, jobs: Sequence[Job], schedule: Schedule) -> Plan:
         makespan=max((state.time for state in finished.values()), default=0.0),
         begins={name: begin for name, (begin, _) in spans.items()},
         ends={name: end for name, (_, end) in spans.items()},
-        notes=(*_NOTES, *_of_calm(crew.scene), *_of_no_return(crew, schedule)),
+        notes=(*_of_no_return(crew, schedule), *_of_calm(crew.scene), *_NOTES),
     )
 
 
@@ -68,8 +68,8 @@ def _robot_plan(
         return RobotPlan(name, ())
     end = finished[name]
     kinematics = crew.pilots[name].kinematics
-    power = kinematics.power * kinematics.draw
-    return RobotPlan(name, steps[name], end.length, end.busy, power * end.busy, end.sorties)
+    energy = kinematics.power * kinematics.draw * end.busy if kinematics.power > 0.0 else None
+    return RobotPlan(name, steps[name], end.length, end.busy, energy, end.sorties)
 
 
 def _with_signals(

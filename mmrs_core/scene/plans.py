@@ -112,15 +112,15 @@ class RobotPlan:
 
     Attributes:
         steps: in order; empty for a robot that is not needed.
-        length: metres travelled; busy: seconds from launch to the last recovery; energy: joules;
-            sorties: how many times it leaves home.
+        length: metres travelled; busy: seconds from launch to the last recovery; energy: joules,
+            None where nothing is known of its power; sorties: how many times it leaves home.
     """
 
     robot: str
     steps: tuple[Step, ...]
     length: float = 0.0
     busy: float = 0.0
-    energy: float = 0.0
+    energy: float | None = 0.0
     sorties: int = 0
 
 

@@ -9,6 +9,7 @@ _HOUR = 3600
 _KILOMETRE = 1000.0
 _METRES_WITH_DECIMAL = 100.0
 _MANY_JOULES = 10_000.0
+_JOULES_IN_WATT_HOUR = 3600.0
 
 
 def clock(seconds: float) -> str:
@@ -45,6 +46,15 @@ def quantity(value: float, unit: str) -> str:
         return f"{value / 1000:.0f} kJ"
     shown = f"{value:.0f}" if abs(value) >= _METRES_WITH_DECIMAL else f"{value:.3g}"
     return f"{shown} {unit}".rstrip()
+
+
+def energy(joules: float | None) -> str:
+    """Return an energy in watt hours.
+
+    >>> energy(36_000.0), energy(0.0), energy(None)
+    ('10.0 Wh', '0.0 Wh', 'not known')
+    """
+    return "not known" if joules is None else f"{joules / _JOULES_IN_WATT_HOUR:.1f} Wh"
 
 
 def heights(low: float, high: float) -> str:

@@ -6,15 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
 from mmrs_core.cli.preview.crossings import corners
-from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.preview.figures import clock, energy, length
 from mmrs_core.cli.preview.picture import Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, symbol_of_robot, task_pictures, zones_of
 from mmrs_core.cli.preview.steps import arms_of, bars_of, flat, legs_of
 from mmrs_core.cli.preview.things import things_of
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.scene import Await, Name, Plan, Position, Robot, RobotPlan, Scene, Serve, Signal
-
-_JOULES_IN_WATT_HOUR = 3600.0
 
 
 def picture_of_plan(scene: Scene, plan: Plan, symbols: Mapping[Name, MapSymbol]) -> Picture:
@@ -62,7 +60,7 @@ def _summary(plan: RobotPlan) -> tuple[tuple[str, str], ...]:
         ("tasks", ", ".join(served) or "none"),
         ("way", length(plan.length)),
         ("busy", clock(plan.busy)),
-        ("energy", f"{plan.energy / _JOULES_IN_WATT_HOUR:.1f} Wh" if plan.energy else "not known"),
+        ("energy", energy(plan.energy)),
         ("sorties", str(plan.sorties)),
     )
 

@@ -135,7 +135,7 @@ def plan_named(names: dict[str, str]) -> Plan:
         Recover(65.0, 72.5, "", (-20.0, 10.0, 15.0), 0.0),
     )
     return Plan(
-        (RobotPlan(alba, first, 170.0, 50.0, 36000.0, 1), RobotPlan(brezza, second, 470.0, 72.5, 0.0, 1)),
+        (RobotPlan(alba, first, 170.0, 50.0, 36000.0, 1), RobotPlan(brezza, second, 470.0, 72.5, None, 1)),
         72.5,
         {field: 11.0, "fork": 31.0, road: 31.0},
         {field: 31.0, "fork": 31.0, road: 45.0},

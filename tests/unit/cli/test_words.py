@@ -40,13 +40,14 @@ def test_a_plan_is_told_robot_by_robot(scene, plan):
     lines = list(plan_lines(scene, plan))
     assert lines[0] == "two drones: 3 tasks, 2 robots at work, done after 1:12"
     assert lines[2].split() == ["Alba", "quad", "field", "170", "m", "0:50", "10.0", "Wh", "1"]
-    assert "not known" in lines[3]
+    assert lines[3].split()[-3:] == ["not", "known", "1"]
     assert lines[4] == "  note: terrain is taken as flat"
 
 
 def test_a_plan_is_told_as_values_too(scene, plan):
     told = plan_summary(scene, plan)
     assert told["robots"][0]["tasks"] == ("field",)
+    assert [robot["energy"] for robot in told["robots"]] == [36000.0, None]
     assert told["tasks"][1] == {"name": "fork", "begin": 31.0, "end": 31.0}
 
 

@@ -35,6 +35,16 @@ def test_one_robot_goes_does_it_and_comes_back():
     assert found.robots[0].sorties == 1
 
 
+def test_the_energy_of_a_robot_whose_power_nobody_knows_is_not_known():
+    found = sound(scene([with_kinematics(robot(), power=0.0)], {"a": visit((100.0, 0.0, 20.0))}))
+    assert found.robots[0].energy is None
+
+
+def test_a_robot_without_work_takes_no_energy():
+    found = sound(scene(TWO, {"a": visit((100.0, 0.0, 20.0))}))
+    assert min(each.energy for each in found.robots) == 0.0
+
+
 def test_a_robot_without_work_has_no_steps():
     found = sound(scene(TWO, {"a": visit((100.0, 0.0, 20.0))}))
     assert sorted(len(each.steps) for each in found.robots) == [0, 5]
