@@ -161,6 +161,11 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "an identifier that no other element has",
             "give one of them another",
         ),
+        "ECO013": Code(
+            "two elements of one key among those that their keys tell apart",
+            "one element for each key: in a map, and wherever the metamodel names eKeys",
+            "give one of them another key, or take it away: references would lead to the wrong one",
+        ),
         "MIG001": Code(
             "a model of an older version of its language, migrated while it was read",
             "a model of the installed version",

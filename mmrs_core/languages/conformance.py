@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.codes import explained
-from mmrs_core.languages.element import Element, Unknown, held, label_of, place_of, root_of
+from mmrs_core.languages.element import Element, Unknown, held, label_of, metaclass_of, place_of, root_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.model import Model
@@ -121,6 +121,8 @@ class _Check:
                 yield from _answered(element, feature, value)
         if feature.many and feature.unique:
             yield from _repeated(element, feature, values, id)
+        if feature.many and feature.keys:
+            yield from _doubled(element, feature, values)
 
     def _stands(self, element: Element) -> bool:
         container = element._mmrs_container
@@ -193,6 +195,38 @@ def _repeated(
             yield _fault("ECO006", element, f"{_owner(element)}: {feature.name} holds {what} twice")
             return
         seen.add(mark)
+
+
+def _doubled(element: Element, feature: Feature, values: Sequence[object]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with elements that have the key of an earlier one, as EMF finds it."""
+    first: dict[object, Element] = {}
+    for value in dict.fromkeys(each for each in values if isinstance(each, Element)):
+        if isinstance(value, Unknown):
+            continue
+        key = {name: _stated(value, name) for name in feature.keys}
+        other = first.setdefault(tuple(map(_mark, key.values())), value)
+        if other is not value:
+            said = ", ".join(f"{name} {_key_words(each)}" for name, each in key.items())
+            where = f"{feature.name} of {_owner(element)}; first at {place_of(other)}"
+            message = f"{said}: used twice in {where}"
+            yield _fault("ECO013", value if feature.containment else element, message)
+
+
+def _stated(element: Element, name: str) -> object:
+    """Return the value of a feature, or its default; None where there is neither."""
+    feature = metaclass_of(element).by_name.get(name)
+    if feature is None:
+        return None
+    values = held(element, feature)
+    return values[0] if values else feature.default
+
+
+def _mark(value: object) -> object:
+    return id(value) if isinstance(value, Element) else _as_java(value)
+
+
+def _key_words(value: object) -> str:
+    return _owner(value) if isinstance(value, Element) else "not set" if value is None else repr(value)
 
 
 def _wanted(feature: Feature) -> str:

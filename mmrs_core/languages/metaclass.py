@@ -80,6 +80,7 @@ class Feature:
         nullable: whether None is a value that a file can state, other than the default.
         is_container: whether it names the element that contains its owner.
         linked: whether setting it changes the other end as well.
+        keys: the names of the features by which its elements differ, no two of them having the same values.
         stored: whether files hold it.
         owner: the metaclass that declares it.
     """
@@ -99,6 +100,7 @@ class Feature:
     type: Metaclass | DataType | Enumeration
     default: object
     opposite: Feature | None = None
+    keys: tuple[str, ...] = ()
     many: bool = field(init=False)
     required: bool = field(init=False)
     nullable: bool = field(init=False)
@@ -144,6 +146,7 @@ class Metaclass:
         implementation: the class of its elements; None when it is abstract.
         by_name: the features by their name in the metamodel.
         by_attribute: the features by their name in Python.
+        is_entry: whether its elements are the entries of maps, of which each key has one.
         package: the package that declares it.
     """
 
@@ -159,6 +162,7 @@ class Metaclass:
     by_name: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     package: Package | None = field(repr=False, default=None)
+    is_entry: bool = False
 
     if not TYPE_CHECKING:  # the fields are declared above
 

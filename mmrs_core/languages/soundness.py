@@ -37,7 +37,12 @@ def soundness(metaclass: Metaclass) -> Sound:
 
 def _checks(index: int, feature: Feature, bound: dict[str, object]) -> list[str]:
     """Return the lines that return False unless the value ``v`` of a feature is sound."""
-    if feature.is_id or feature.opposite is not None or (feature.many and not feature.is_reference):
+    if (
+        feature.is_id
+        or feature.keys
+        or feature.opposite is not None
+        or (feature.many and not feature.is_reference)
+    ):
         return [
             "return False" if feature.lower else f"if v{'' if feature.many else ' is not None'}: return False"
         ]

@@ -8,16 +8,13 @@ from typing import Any
 from hypothesis import reject
 from hypothesis import strategies as st
 
-from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element, held, metaclass_of
 from mmrs_core.languages.metaclass import Feature, Metaclass
-from mmrs_core.testing.kinds import Kinds, Step, needed_references
+from mmrs_core.testing.kinds import Kinds, Step, crowds, needed_references
 from mmrs_core.testing.values import Values, values_of, writable
 
 _MOST_ROUNDS = 20
 """Rounds in which elements that a reference needs are made, each of which may need others."""
-
-_MAP_ENTRY = (ECORE, "EStringToStringMapEntry")
 
 
 class Growth:
@@ -73,11 +70,12 @@ class Growth:
         least = most = feature.lower if self._whole else 0
         if room > 0 and choices and feature.stored:
             most += 2 if feature.upper < 0 else min(2, feature.upper - least)
+        most = min(most, max(least, 1)) if crowds(feature) else most
         for _ in range(self._draw(st.integers(least, most)) if choices else 0):
             _put(element, feature, self._grow(self._draw(st.sampled_from(choices)), max(room - 1, 0)))
 
     def _set(self, element: Element, feature: Feature) -> None:
-        is_key = feature.name == "key" and metaclass_of(element).key == _MAP_ENTRY
+        is_key = feature in self._kinds.keys
         must = is_key or (self._whole and feature.required and (feature.many or feature.default is None))
         if not must and not self._draw(st.booleans()):
             return
@@ -160,4 +158,9 @@ def _has_room(element: Element, feature: Feature) -> bool:
 
 def _free(element: Element) -> Iterator[Feature]:
     features = metaclass_of(element).features
-    return (feature for feature in features if feature.containment and _has_room(element, feature))
+    containments = (feature for feature in features if feature.containment)
+    return (
+        feature
+        for feature in containments
+        if _has_room(element, feature) and not (crowds(feature) and held(element, feature))
+    )

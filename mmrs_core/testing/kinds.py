@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
-from mmrs_core.languages.datatypes import ECORE
+from mmrs_core.languages.datatypes import ECORE, DataType
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.registry import Registry
 
@@ -20,12 +20,15 @@ class Kinds:
     Attributes:
         height: levels of containment that an element of the class needs at least, by class; inf for
             those that no finite tree holds.
+        keys: the attributes with many values by which elements differ that a metamodel tells apart by keys.
     """
 
     def __init__(self, concrete: Iterable[Metaclass]) -> None:
         self._concrete = tuple(concrete)
         self._fitting: dict[tuple[Metaclass, str], tuple[Metaclass, ...]] = {}
         self.height: Mapping[Metaclass, float] = self._heights()
+        features = {feature for kind in self._concrete for feature in kind.features}
+        self.keys = frozenset(key for feature in features for key in _keys(feature))
 
     def fitting(self, wanted: Metaclass, near: str = "") -> tuple[Metaclass, ...]:
         """Return the concrete classes whose elements are of a class, lowest first.
@@ -104,6 +107,23 @@ class Kinds:
     def _lowest(self, feature: Feature, heights: Mapping[Metaclass, float]) -> float:
         assert isinstance(feature.type, Metaclass)  # it is a reference
         return min((heights[each] for each in self.fitting(feature.type, feature.owner.ns_uri)), default=inf)
+
+
+def crowds(feature: Feature) -> bool:
+    """Return whether several elements in a feature would need different keys, of which there are few."""
+    return bool(feature.keys) and not any(_keys(feature))
+
+
+def _keys(feature: Feature) -> Iterator[Feature]:
+    """Yield the key attributes of a feature's elements whose type has many values."""
+    if isinstance(feature.type, Metaclass):
+        named = (feature.type.by_name.get(name) for name in feature.keys)
+        yield from (key for key in named if key is not None and _has_many_values(key))
+
+
+def _has_many_values(feature: Feature) -> bool:
+    kind = feature.type
+    return isinstance(kind, DataType) and kind.python is not bool
 
 
 def all_kinds(registry: Registry) -> list[Metaclass]:

@@ -48,12 +48,14 @@ def _class(kind: Any) -> ClassTable:
         _documentation(kind),
         tuple(_uri(above) for above in kind.eSuperTypes),
         tuple(_feature(feature) for feature in kind.eStructuralFeatures),
+        kind.instanceClassName or "",
     )
 
 
 def _feature(feature: Any) -> FeatureTable:
     is_reference = isinstance(feature, ecore.EReference)
     opposite = feature.eOpposite if is_reference else None
+    keys = getattr(feature, "eKeys", ())  # pyecore 0.15 knows none
     return FeatureTable(
         name=feature.name,
         type=_uri(feature.eType),
@@ -68,6 +70,7 @@ def _feature(feature: Any) -> FeatureTable:
         stored=not feature.transient,
         default=feature.defaultValueLiteral,
         opposite=f"{_uri(opposite.eContainer())}/{opposite.name}" if opposite is not None else "",
+        keys=tuple(key.name for key in keys),
     )
 
 

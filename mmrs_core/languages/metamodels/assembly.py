@@ -9,7 +9,7 @@ from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declare
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 from mmrs_core.languages.metamodels.locating import Directory, Located
-from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
+from mmrs_core.languages.metamodels.tables import MAP_ENTRY, ClassTable, FeatureTable, PackageTable
 from mmrs_core.languages.naming import nearest, python_name
 
 DEEPEST_INHERITANCE = 100
@@ -30,6 +30,7 @@ _ECORE_ITSELF = Located(
                     FeatureTable("key", f"{ECORE}#//EString", False),
                     FeatureTable("value", f"{ECORE}#//EString", False),
                 ),
+                java_class=MAP_ENTRY,
             ),
         ),
     ),
@@ -98,7 +99,11 @@ class Assembly:
                 raise PluginError(f"{entry.provider}: {ns_uri}: class {table.name} is declared twice")
             self._tables[ns_uri, table.name] = (table, entry)
             self._metaclasses[ns_uri, table.name] = Metaclass(
-                ns_uri, table.name, table.abstract, table.documentation
+                ns_uri,
+                table.name,
+                table.abstract,
+                table.documentation,
+                is_entry=table.java_class == MAP_ENTRY,
             )
 
     def _inherit(self, key: _Key, table: ClassTable, entry: Located, below: tuple[_Key, ...]) -> None:
@@ -165,6 +170,7 @@ class Assembly:
             stored=row.stored and getattr(kind, "serializable", True),
             owner=owner,
             type=kind,
+            keys=("key",) if isinstance(kind, Metaclass) and kind.is_entry else row.keys,
             default=_default(row, kind, f"{entry.provider}: {entry.table.ns_uri}: {where}"),
         )
         if row.opposite:

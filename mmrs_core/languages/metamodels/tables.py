@@ -11,6 +11,8 @@ from mmrs_core.languages.metaclass import Literal
 from mmrs_core.languages.xmi.events import XSI, Document, read_bytes
 
 GENMODEL = "http://www.eclipse.org/emf/2002/GenModel"
+MAP_ENTRY = "java.util.Map$Entry"
+"""The Java class of an entry of a map."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from mmrs_core.languages.datatypes import ECORE, DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
-from mmrs_core.languages.metamodels.tables import GENMODEL
+from mmrs_core.languages.metamodels.tables import GENMODEL, MAP_ENTRY
 from mmrs_core.languages.xmi.escapes import in_attribute
 from mmrs_core.languages.xmi.events import XMI, XSI
 
@@ -96,6 +96,10 @@ def _feature(feature: Feature, address: Address) -> list[str]:
     if feature.opposite is not None:
         owner = feature.opposite.owner
         attributes.append(("eOpposite", f"{address(owner.ns_uri)}{owner.name}/{feature.opposite.name}"))
+    if feature.keys and isinstance(kind, Metaclass) and not kind.is_entry:
+        owners = ((kind.by_name[name].owner, name) for name in feature.keys)
+        keys = " ".join(f"{address(owner.ns_uri)}{owner.name}/{name}" for owner, name in owners)
+        attributes.append(("eKeys", keys))
     return _element("eStructuralFeatures", attributes, _documentation(feature.documentation))
 
 

@@ -11,6 +11,7 @@ from emf_description import model_lines
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.metamodels.export import export_metamodels, schema_locations
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.registry import MetamodelSource, registry_with
 from mmrs_core.languages.writing import write_model
 
 pytestmark = pytest.mark.peer
@@ -170,6 +171,8 @@ WRONG = {
     "wrong class": '><animals xsi:type="zoo:Keeper"/>',
     "wrong target": 'star="//@keepers.0"><keepers/>',
     "too many": '><animals xsi:type="zoo:Lion" name="l" weights="1 2 3 4"/>',
+    "one key twice": '><notes key="a" value="1"/><notes key="b"/><notes key="a" value="2"/>',
+    "no key twice": "><notes/><notes/>",
     "duplicate id": '><keepers badge="a"/><keepers badge="a"/>',
     "unknown namespace": '><animals xmlns:o="urn:other" xsi:type="o:Cat"/>',
 }
@@ -178,6 +181,7 @@ RIGHT = {
     "nested prefix": '><animals xmlns:w="urn:test:zoo:wing" xsi:type="w:Parrot" name="p"/>',
     "java numbers": '><animals xsi:type="zoo:Lion" name="l" weight="1.5d" speed="NaN" tame="TRUE"/>',
     "attribute list": '><animals xsi:type="zoo:Lion" name="l" tags="a b" moods="is-calm ANGRY"/>',
+    "two keys": '><notes key="a" value="1"/><notes key="b" value="1"/><notes/>',
     "ids": '><keepers badge="a" deputy="b"/><keepers badge="b"/>',
     "nil": '><animals xsi:type="zoo:Lion" name="l"><motto xsi:nil="true"/></animals>',
     "extension": '><xmi:Extension extender="x"><a/></xmi:Extension>',
@@ -195,6 +199,40 @@ def test_emf_and_we_refuse_and_accept_the_same(referee, registry, tmp_path, titl
     ours = [fault for fault in found if fault.severity.value == "error" and fault.code != "ECO009"]
     theirs = referee.ask("check", file).faults
     assert (bool(ours), bool(theirs)) == (title in WRONG, title in WRONG)
+
+
+KEYED = """<?xml version="1.0" encoding="UTF-8"?>
+<m:Root xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:m="urn:test:keyed"
+    linked="//@keyed.0 //@keyed.1">
+  <keyed a="p" b="1"/>
+  <keyed a="p" b="1"/>
+  <keyed a="p" b="2"/>
+  <keyed/>
+  <keyed/>
+  <numbers key="1" value="q"/>
+  <numbers key="1" value="r"/>
+  <numbers key="0"/>
+  <numbers/>
+  <things key="//@keyed.2"/>
+  <things key="//@keyed.2"/>
+  <things key="//@keyed.3"/>
+</m:Root>
+"""
+
+
+def test_emf_and_we_find_the_same_keys_twice(referee, tmp_path):
+    ecore = Path(__file__).parents[2] / "fixtures" / "models" / "keyed.ecore"
+    registry = registry_with([MetamodelSource("urn:test:keyed", ecore, "keyed")])
+    file = tmp_path / "keyed.xmi"
+    file.write_text(KEYED)
+    found = check_conformance(read_model(file, registry), registry)
+    with referee.knowing(ecore) as told:
+        assert told.faults == []
+        theirs = referee.ask("check", file).faults
+    names = [fault.split("'")[1] for fault in theirs]
+    ours = [fault.message.partition(" in ")[2].partition(" ")[0] for fault in found]
+    assert {fault.code for fault in found} == {"ECO013"}
+    assert sorted(ours) == sorted(names) == ["keyed", "keyed", "linked", "numbers", "numbers", "things"]
 
 
 @pytest.mark.parametrize("title", RIGHT)
