@@ -14,9 +14,10 @@ from mmrs_core.migration.building.circling import draw_ring
 from mmrs_core.migration.building.linking import Linker
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Finding
-from mmrs_core.migration.outputs import ROBOT_TYPE, Made, Output, outputs_of
+from mmrs_core.migration.outputs import Made, Output, outputs_of
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import DialectMapping
+from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
 from mmrs_core.migration.sources.documents import Opened, open_document
 from mmrs_core.migration.sources.metamodels import metamodels_for, structure_of
 from mmrs_core.migration.sources.nodes import Document

@@ -13,10 +13,10 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
+from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
 from mmrs_core.migration.sources.nodes import Node
 from mmrs_core.migration.subsets import says_no_more
 
-ROBOT_TYPE = ("urn:mmrs:robot:1.0", "Robot")
 _ROLES = {
     "mission": ("urn:mmrs:mission:1.0", "Mission"),
     "context": ("urn:mmrs:context:1.0", "Context"),

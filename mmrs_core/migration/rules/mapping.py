@@ -120,14 +120,13 @@ class Wait:
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A circular move that becomes way points.
+    """A circular move, whose target is the centre, that becomes way points.
 
     Attributes:
-        centre, radius, height, clockwise: the source features that describe the circle.
+        radius, height, clockwise: the source features that describe the circle.
         points: how many way points there are.
     """
 
-    centre: str
     radius: str
     height: str
     clockwise: str

@@ -183,12 +183,11 @@ def _device(table: Table) -> DeviceLookup:
 
 
 def _ring(table: Table) -> Ring:
-    names = ("centre", "radius", "height", "clockwise")
-    centre, radius, height, clockwise = (table.take(name, str, "") for name in names)
+    radius, height, clockwise = (table.take(name, str, "") for name in ("radius", "height", "clockwise"))
     points = table.take("points", int, 12)
     if points < 3:
         raise table.fault("points: needs at least 3")
-    found = Ring(centre, radius, height, clockwise, points)
+    found = Ring(radius, height, clockwise, points)
     table.done()
     return found
 
