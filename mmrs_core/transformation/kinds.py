@@ -23,13 +23,18 @@ _HEADWAY = 0.1
 def capability_for(robot_type: RobotType, payload: float) -> Capability:
     """Return the capability that was measured with the smallest payload not below this one.
 
+    A type that states no maxPayload carries none.
+
     Raises:
         InfeasibleError: if the robot was never measured with so much, or may not carry it.
     """
-    if robot_type.max_payload is not None and payload > robot_type.max_payload:
+    largest = robot_type.max_payload
+    if payload > (largest or 0.0):
+        carries = (
+            "states no maxPayload and carries none" if largest is None else f"carries at most {largest:g} kg"
+        )
         raise InfeasibleError(
-            f"robot type '{robot_type.name}' carries at most {robot_type.max_payload:g} kg,"
-            f" not {payload:g} kg"
+            f"robot type '{robot_type.name}' {carries}, not the {payload:g} kg that it is to carry"
         )
     for capability in robot_type.capabilities:
         if capability.payload >= payload:
