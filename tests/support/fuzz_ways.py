@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -51,11 +52,25 @@ def ways(contributions: Contributions, folder: Path) -> tuple[Way, ...]:
     )
 
 
-def _widened(named: tuple[str, bytes]) -> tuple[str, bytes]:
-    """Return a text whose root holds everything several times."""
+def large_ways(contributions: Contributions, size: int = 1_000_000) -> tuple[Way, ...]:
+    """Return the ways of single models, with texts of about so many bytes."""
+    registry, reading = contributions.languages, _Reading(contributions)
+    models = [_widened(each, size) for each in sound_texts(EXAMPLES / "mixed-team", "*.xmi")]
+    read = ((name, read_text(text, name, registry)) for name, text in models)
+    documents = [(f"{name}.json", to_json(model.roots, registry)) for name, model in read]
+    return (
+        Way("large XMI", reading.text, tuple(models)),
+        Way("large JSON", reading.text, tuple(documents)),
+    )
+
+
+def _widened(named: tuple[str, bytes], size: int = 40_000) -> tuple[str, bytes]:
+    """Return a text whose root holds everything so often that it has about that size."""
     name, text = named
-    begin, end = text.index(b">", text.index(b":", text.index(b"?>"))) + 1, text.rindex(b"</")
-    return f"wide-{name}", text[:begin] + text[begin:end] * (40_000 // len(text) + 1) + text[end:]
+    root = re.search(rb"<\w[^>]*>", text)
+    assert root is not None, name
+    begin, end = root.end(), text.rindex(b"</")
+    return f"wide-{name}", text[:begin] + text[begin:end] * (size // len(text) + 1) + text[end:]
 
 
 def _ended(faults: Sequence[Diagnostic]) -> str:
