@@ -20,7 +20,7 @@ from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
 from mmrs_core.migration.sources.documents import Opened, open_document
 from mmrs_core.migration.sources.metamodels import metamodels_for, structure_of
-from mmrs_core.migration.sources.nodes import Document
+from mmrs_core.migration.sources.nodes import SourceDocument
 from mmrs_core.migration.sources.reading import Reader
 from mmrs_core.migration.sources.structure import Structure
 
@@ -60,7 +60,7 @@ class Migration:
 
 @dataclass(frozen=True, slots=True)
 class _Settled:
-    document: Document
+    document: SourceDocument
     structure: Structure
     source: Source
 

@@ -14,7 +14,7 @@ from mmrs_core.languages.writing import to_xmi
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.rules_file import ROBOT_TYPE
-from mmrs_core.migration.sources.nodes import Node
+from mmrs_core.migration.sources.nodes import SourceNode
 from mmrs_core.migration.subsets import says_no_more
 
 _ROLES = {
@@ -30,7 +30,7 @@ class Made:
     """A model of ours, the node it was made of, and all files that say the same."""
 
     element: Element
-    node: Node
+    node: SourceNode
     sources: tuple[str, ...]
 
 

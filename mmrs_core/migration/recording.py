@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mmrs_core.migration.findings import Category, Finding
-from mmrs_core.migration.sources.nodes import Link, Node, Text
+from mmrs_core.migration.sources.nodes import Link, SourceNode, Text
 
 
 class Record:
@@ -13,7 +13,7 @@ class Record:
         self.findings: list[Finding] = []
 
     def value(
-        self, category: Category, reason: str, node: Node, feature: str, value: Text | None = None
+        self, category: Category, reason: str, node: SourceNode, feature: str, value: Text | None = None
     ) -> None:
         """Note what happens to a feature of an element, or to one value of it."""
         said = (
@@ -25,25 +25,25 @@ class Record:
         line = value.line if value is not None else _line(node, feature)
         self.findings.append(Finding(category, reason, subject, node.place(line)))
 
-    def element(self, category: Category, reason: str, node: Node) -> None:
+    def element(self, category: Category, reason: str, node: SourceNode) -> None:
         """Note what happens to a whole element; its values are told with it where it is lost."""
         content = _content(node) if category is Category.LOST else ""
         told = content and f" ({content})"
         self.findings.append(Finding(category, reason, f"{node.called()}{told}", node.place()))
 
 
-def _line(node: Node, feature: str) -> int:
+def _line(node: SourceNode, feature: str) -> int:
     return next((value.line for value in node.values.get(feature, ())), 0)
 
 
-def _words(value: Text | Link | Node) -> str:
-    if not isinstance(value, Node):
+def _words(value: Text | Link | SourceNode) -> str:
+    if not isinstance(value, SourceNode):
         return value.text
     content = _content(value, 1)
     return f"{value.called()}{content and f' ({content})'}"
 
 
-def _content(node: Node, depth: int = 0) -> str:
+def _content(node: SourceNode, depth: int = 0) -> str:
     """Return what an element holds; of the elements in it only what they are called, further down."""
     parts = [
         f"{feature} {', '.join(_words(value) if depth == 0 else _name(value) for value in values)}"
@@ -53,5 +53,5 @@ def _content(node: Node, depth: int = 0) -> str:
     return "; ".join(parts)
 
 
-def _name(value: Text | Link | Node) -> str:
-    return value.called() if isinstance(value, Node) else value.text
+def _name(value: Text | Link | SourceNode) -> str:
+    return value.called() if isinstance(value, SourceNode) else value.text

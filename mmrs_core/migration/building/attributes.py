@@ -13,7 +13,7 @@ from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Constant, DeviceLookup, Use
 from mmrs_core.migration.rules.paths import reach
-from mmrs_core.migration.sources.nodes import Node, Text
+from mmrs_core.migration.sources.nodes import SourceNode, Text
 
 _WORD = re.compile(r"\{(\w+)\}")
 
@@ -26,7 +26,7 @@ class Attributes:
         self._types = types
         self._record = record
 
-    def carry_over(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def carry_over(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         """Carry over every text that a feature holds."""
         values = [value for value in node.values[feature] if isinstance(value, Text)]
         several = bool(use.to) and reach(element, use.to[0])[1].many
@@ -38,7 +38,7 @@ class Attributes:
             except ValueError as fault:
                 self._record.value(Category.LOST, str(fault), node, feature, value)
 
-    def default(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def default(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         """Set what a feature gets that the source does not say, if it gets anything."""
         if use.absent is None or use.drop:
             return
@@ -52,7 +52,7 @@ class Attributes:
         reason = use.changed if use.void and use.changed else f"{feature} is not given"
         self._record.value(Category.DEFAULTED, f"{reason}: {said}", node, feature)
 
-    def find_device(self, node: Node, element: Element, lookup: DeviceLookup, use: Use) -> bool:
+    def find_device(self, node: SourceNode, element: Element, lookup: DeviceLookup, use: Use) -> bool:
         """Set the device of the robot's type that does an action; return whether there is one.
 
         Args:
@@ -71,7 +71,7 @@ class Attributes:
         self._record.element(Category.LOST, f"{reason}: add it to the type, and the action to the move", node)
         return False
 
-    def _one(self, node: Node, feature: str, value: Text, element: Element, use: Use) -> None:
+    def _one(self, node: SourceNode, feature: str, value: Text, element: Element, use: Use) -> None:
         if _is_void(value.text, use):
             self._doubt(use.changed or "stands for 'not known'", node, feature, value)
             self.default(node, feature, element, use)
@@ -85,10 +85,10 @@ class Attributes:
             if use.changed and not use.void:
                 self._record.value(Category.CHANGED, use.changed, node, feature, value)
 
-    def _doubt(self, reason: str, node: Node, feature: str, value: Text) -> None:
+    def _doubt(self, reason: str, node: SourceNode, feature: str, value: Text) -> None:
         self._record.value(Category.DOUBTFUL, reason, node, feature, value)
 
-    def _renamed(self, node: Node, feature: str, value: Text, use: Use) -> str:
+    def _renamed(self, node: SourceNode, feature: str, value: Text, use: Use) -> str:
         text = use.values.get(value.text, value.text)
         if text != value.text:
             reason = f"{value.text!r} is called {text!r} here"
@@ -100,7 +100,7 @@ class Attributes:
             self._doubt(told, node, feature, value)
         return name
 
-    def _unique(self, node: Node, feature: str, text: str, element: Element, use: Use) -> str:
+    def _unique(self, node: SourceNode, feature: str, text: str, element: Element, use: Use) -> str:
         """Return a text that no sibling has: the text itself, or with a number behind it."""
         if not use.unique or node.parent is None:
             return text
@@ -116,14 +116,14 @@ class Attributes:
         return found
 
 
-def _paths(node: Node, use: Use) -> tuple[str, ...]:
+def _paths(node: SourceNode, use: Use) -> tuple[str, ...]:
     """Return where a value goes, with the further paths if their condition holds."""
     if use.also is None or not all(is_given(node, feature) for feature in use.also.given):
         return use.to
     return (*use.to, *use.also.to)
 
 
-def is_given(node: Node, feature: str) -> bool:
+def is_given(node: SourceNode, feature: str) -> bool:
     """Return whether a feature holds something other than 0."""
     return any(
         not isinstance(value, Text) or not _is_zero(value.text) for value in node.values.get(feature, ())
@@ -137,7 +137,7 @@ def _is_zero(text: str) -> bool:
         return False
 
 
-def _word(node: Node, name: str) -> str:
+def _word(node: SourceNode, name: str) -> str:
     return str(node.index + 1) if name == "number" else node.text(name)
 
 
@@ -149,6 +149,6 @@ def _is_void(text: str, use: Use) -> bool:
         return text in use.void
 
 
-def _is_below(node: Node, value: Text, use: Use) -> bool:
+def _is_below(node: SourceNode, value: Text, use: Use) -> bool:
     other = node.text(use.below)
     return not other or number_in(value.text) < number_in(other)

@@ -10,12 +10,14 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.shapes import Corner, widened
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
-from mmrs_core.migration.sources.nodes import Node, Text
+from mmrs_core.migration.sources.nodes import SourceNode, Text
 
 
-def without_repeats(node: Node, feature: str, vertices: Sequence[Node], record: Record) -> tuple[Node, ...]:
+def without_repeats(
+    node: SourceNode, feature: str, vertices: Sequence[SourceNode], record: Record
+) -> tuple[SourceNode, ...]:
     """Return vertices without those that equal the one before; the first follows the last."""
-    kept: list[Node] = []
+    kept: list[SourceNode] = []
     for vertex in vertices:
         if not kept or _values(vertex) != _values(kept[-1]):
             kept.append(vertex)
@@ -28,7 +30,7 @@ def without_repeats(node: Node, feature: str, vertices: Sequence[Node], record: 
     return tuple(kept)
 
 
-def _values(vertex: Node) -> tuple[str, dict[str, tuple[str, ...]]]:
+def _values(vertex: SourceNode) -> tuple[str, dict[str, tuple[str, ...]]]:
     return vertex.kind, {feature: vertex.texts(feature) for feature in vertex.values}
 
 
@@ -41,7 +43,12 @@ def _place(vertex: Element) -> Corner | None:
 
 
 def border_around(
-    node: Node, feature: str, vertices: Sequence[Element], metres: float, registry: Registry, record: Record
+    node: SourceNode,
+    feature: str,
+    vertices: Sequence[Element],
+    metres: float,
+    registry: Registry,
+    record: Record,
 ) -> Sequence[Element]:
     """Return the vertices of a border; for one that holds no area, those of a border around it."""
     known = tuple(place for each in vertices if (place := _place(each)) is not None)

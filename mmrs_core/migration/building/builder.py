@@ -15,7 +15,7 @@ from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import DialectMapping, Rule, Use
 from mmrs_core.migration.rules.paths import reach
-from mmrs_core.migration.sources.nodes import STRAY, Link, Node
+from mmrs_core.migration.sources.nodes import STRAY, Link, SourceNode
 from mmrs_core.migration.sources.structure import Sort, Structure
 
 _ORDER = {Sort.ATTRIBUTE: 0, Sort.REFERENCE: 1, Sort.CONTAINED: 2}
@@ -46,9 +46,9 @@ class Builder:
         self._registry = registry
         self._record = record
         self._attributes = Attributes(self.draft, types, record)
-        self._referred: set[Node] = set()
+        self._referred: set[SourceNode] = set()
 
-    def build(self, roots: Sequence[Node]) -> Draft:
+    def build(self, roots: Sequence[SourceNode]) -> Draft:
         """Return what the nodes at the top of a document become, and all in them."""
         self._referred = {
             link.target
@@ -62,7 +62,7 @@ class Builder:
         self.draft.roots += [element for element in made if element is not None]
         return self.draft
 
-    def _element(self, node: Node, variant: str) -> Element | None:
+    def _element(self, node: SourceNode, variant: str) -> Element | None:
         """Return the element that a node becomes; None for one that becomes none, which is recorded."""
         rule = self._mapping.rule(node.kind, variant, self._structure)
         reason = _NO_RULE if rule is None else rule.drop or (node not in self._referred and rule.unreferred)
@@ -82,13 +82,13 @@ class Builder:
             self.draft.rings.append((node, rule))
         return element
 
-    def _has_device(self, node: Node, element: Element, rule: Rule) -> bool:
+    def _has_device(self, node: SourceNode, element: Element, rule: Rule) -> bool:
         if rule.device is None:
             return True
         use = self._mapping.uses(node.kind, rule, self._structure).get(rule.device.action, Use())
         return self._attributes.find_device(node, element, rule.device, use)
 
-    def _fill(self, node: Node, element: Element, rule: Rule) -> None:
+    def _fill(self, node: SourceNode, element: Element, rule: Rule) -> None:
         if rule.changed:
             self._record.element(Category.CHANGED, rule.changed, node)
         for path, value in rule.set.items():
@@ -106,14 +106,14 @@ class Builder:
             else:
                 self._use(node, feature, element, use)
 
-    def _in_order(self, node: Node, uses: Mapping[str, Use]) -> list[str]:
+    def _in_order(self, node: SourceNode, uses: Mapping[str, Use]) -> list[str]:
         """Return the features to go through: attributes first, what is contained last."""
         known = {feature.name: feature.sort for feature in self._structure.features(node.kind)}
         names = [name for name in known if name in uses or name in node.values]
         names.sort(key=lambda name: _ORDER[known[name]])
         return [*names, *(name for name in dict.fromkeys((*uses, *node.values)) if name not in known)]
 
-    def _use(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def _use(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         values = node.values.get(feature, [])
         needed = use.given or use.beside
         if not values:
@@ -132,7 +132,7 @@ class Builder:
 
     # what is contained
 
-    def _contain(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def _contain(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         inner = node.nodes(feature)
         if not inner:
             return
@@ -151,7 +151,9 @@ class Builder:
             made = border_around(node, feature, made, use.widen, self._registry, self._record)
         self._hold(node, feature, element, use, made)
 
-    def _hold(self, node: Node, feature: str, element: Element, use: Use, made: Sequence[Element]) -> None:
+    def _hold(
+        self, node: SourceNode, feature: str, element: Element, use: Use, made: Sequence[Element]
+    ) -> None:
         """Put new elements where they belong; the first is referred to where they belong elsewhere."""
         outermost = [element, *self.draft.around(node)][-1]
         if use.hoist and use.hoist not in metaclass_of(outermost).by_name:

@@ -15,10 +15,10 @@ from mmrs_core.migration.building.headings import towards
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Ring, Rule
-from mmrs_core.migration.sources.nodes import Node
+from mmrs_core.migration.sources.nodes import SourceNode
 
 
-def draw_ring(node: Node, rule: Rule, draft: Draft, registry: Registry, record: Record) -> None:
+def draw_ring(node: SourceNode, rule: Rule, draft: Draft, registry: Registry, record: Record) -> None:
     """Let the move that a node became go round its centre once, over way points that further moves lead to.
 
     The move's target is the centre before, and the first way point, north of the centre, afterwards.
@@ -54,7 +54,7 @@ def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> None:
     robot.moveTransitions[at:at] = between
 
 
-def _offsets(node: Node, ring: Ring, altitude: float) -> list[tuple[float, float, float]]:
+def _offsets(node: SourceNode, ring: Ring, altitude: float) -> list[tuple[float, float, float]]:
     """Return metres east, north and up of the centre, around and back to the first.
 
     Raises:

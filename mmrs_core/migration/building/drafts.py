@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from mmrs_core.languages.element import Element
 from mmrs_core.migration.rules.mapping import Rule, Use
-from mmrs_core.migration.sources.nodes import Node
+from mmrs_core.migration.sources.nodes import SourceNode
 
 
 @dataclass(slots=True, eq=False)
@@ -23,12 +23,12 @@ class Draft:
     """
 
     roots: list[Element] = field(default_factory=list)
-    made: dict[Node, Element] = field(default_factory=dict)
-    later: list[tuple[Node, str, Element, Use]] = field(default_factory=list)
-    waits: list[tuple[Node, Rule]] = field(default_factory=list)
-    rings: list[tuple[Node, Rule]] = field(default_factory=list)
+    made: dict[SourceNode, Element] = field(default_factory=dict)
+    later: list[tuple[SourceNode, str, Element, Use]] = field(default_factory=list)
+    waits: list[tuple[SourceNode, Rule]] = field(default_factory=list)
+    rings: list[tuple[SourceNode, Rule]] = field(default_factory=list)
 
-    def around(self, node: Node) -> Iterator[Element]:
+    def around(self, node: SourceNode) -> Iterator[Element]:
         """Yield the elements made of the nodes around a node, nearest first."""
         above = node.parent
         while above is not None:

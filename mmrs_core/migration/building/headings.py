@@ -11,7 +11,7 @@ from mmrs_core.migration.building.drafts import Draft
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Use
-from mmrs_core.migration.sources.nodes import Node, Text
+from mmrs_core.migration.sources.nodes import SourceNode, Text
 
 
 def towards(angle_degrees: float, metres: float) -> tuple[float, float]:
@@ -25,7 +25,9 @@ def towards(angle_degrees: float, metres: float) -> tuple[float, float]:
     return round(metres * sin(angle), 3) + 0.0, round(metres * cos(angle), 3) + 0.0
 
 
-def set_heading(node: Node, feature: str, element: Element, use: Use, draft: Draft, record: Record) -> None:
+def set_heading(
+    node: SourceNode, feature: str, element: Element, use: Use, draft: Draft, record: Record
+) -> None:
     """Give a move a heading for the angle that a feature holds; what hinders it is recorded."""
     assert use.bearing is not None  # asked before
     value, *further = node.values[feature]

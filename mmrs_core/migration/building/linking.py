@@ -20,7 +20,7 @@ from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Counterpart, Rule, Use
 from mmrs_core.migration.rules.paths import reach
-from mmrs_core.migration.sources.nodes import Link, Node, Text
+from mmrs_core.migration.sources.nodes import Link, SourceNode, Text
 
 
 class Linker:
@@ -48,14 +48,14 @@ class Linker:
 
     # references
 
-    def _refer(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def _refer(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         targets = self._targets(node, feature)
         if use.changed and targets:
             self._record.value(Category.CHANGED, use.changed, node, feature)
         self._set(node, feature, element, use.to, targets)
 
     def _set(
-        self, node: Node, feature: str, element: Element, paths: Iterable[str], targets: list[Element]
+        self, node: SourceNode, feature: str, element: Element, paths: Iterable[str], targets: list[Element]
     ) -> None:
         for path in paths:
             owner, target = reach(element, path)
@@ -70,10 +70,10 @@ class Linker:
             if len(fitting) > 1 and not target.many:
                 self._record.value(Category.LOST, f"{path} refers to one only, the first", node, feature)
 
-    def _targets(self, node: Node, feature: str) -> list[Element]:
+    def _targets(self, node: SourceNode, feature: str) -> list[Element]:
         return [found for link in node.links(feature) if (found := self._target(node, feature, link))]
 
-    def _target(self, node: Node, feature: str, link: Link) -> Element | None:
+    def _target(self, node: SourceNode, feature: str, link: Link) -> Element | None:
         if link.target is None:
             self._lost(node, feature, link, "leads to nothing in this file")
             return None
@@ -83,12 +83,12 @@ class Linker:
             return None
         return target
 
-    def _lost(self, node: Node, feature: str, link: Link, reason: str) -> None:
+    def _lost(self, node: SourceNode, feature: str, link: Link, reason: str) -> None:
         self._record.value(Category.LOST, reason, node, feature, Text(link.text, link.line))
 
     # the element of the same name, elsewhere
 
-    def _counterparts(self, node: Node, feature: str, element: Element, use: Use) -> None:
+    def _counterparts(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         other = use.counterpart
         assert other is not None  # asked before
         named = self._targets(node, feature)
@@ -103,13 +103,13 @@ class Linker:
             self._record.value(Category.CHANGED, use.changed, node, feature)
         self._set(node, feature, element, use.to, same)
 
-    def _owner(self, node: Node, within: str) -> list[Element]:
+    def _owner(self, node: SourceNode, within: str) -> list[Element]:
         """Return the nearest element around a node that has a feature, as a list."""
         around = self._draft.around(node)
         return [each for each in around if within in metaclass_of(each).by_name][:1]
 
     def _same_name(
-        self, node: Node, feature: str, element: Element, owner: Element, other: Counterpart
+        self, node: SourceNode, feature: str, element: Element, owner: Element, other: Counterpart
     ) -> Element | None:
         name = label_of(element)
         kind = metaclass_of(owner).by_name.get(other.within)
@@ -132,7 +132,7 @@ class Linker:
 
     # conditions of transitions
 
-    def _wait(self, node: Node, rule: Rule) -> None:
+    def _wait(self, node: SourceNode, rule: Rule) -> None:
         wait = rule.wait
         assert wait is not None  # asked before
         slots = self._targets(node, wait.slot)

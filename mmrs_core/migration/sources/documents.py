@@ -14,7 +14,7 @@ from mmrs_core.languages.metamodels.tables import parse_tables
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.migration.sources.from_json import CLASS, node_of, text_in
 from mmrs_core.migration.sources.from_xmi import parse_xmi
-from mmrs_core.migration.sources.nodes import Document
+from mmrs_core.migration.sources.nodes import SourceDocument
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Opened:
 
     file: str
     what: str
-    document: Document | None = None
+    document: SourceDocument | None = None
 
 
 def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
@@ -82,8 +82,8 @@ def _json(tree: Tree, known: Iterable[KnownDocument]) -> Opened:
     raise UnreadableError(f"{tree.file}: {message}")
 
 
-def _document(tree: Tree, items: Iterable[Object]) -> Document:
-    return Document(tree.file, tuple(node_of(tree, item) for item in items))
+def _document(tree: Tree, items: Iterable[Object]) -> SourceDocument:
+    return SourceDocument(tree.file, tuple(node_of(tree, item) for item in items))
 
 
 def _items_of(value: object, form: KnownDocument) -> tuple[Object, ...]:

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.json_form.tree import Node as Object
 from mmrs_core.languages.json_form.tree import Tree
-from mmrs_core.migration.sources.nodes import Claim, Link, Node, Text
+from mmrs_core.migration.sources.nodes import DEEPEST_NESTING, Claim, Link, SourceNode, Text, too_deep
 
-DEEPEST_NESTING = 100
 CLASS = "eClass"
 REFERENCE = "$ref"
 NAMESPACES = "@ns"
 
 
-def node_of(tree: Tree, value: Object) -> Node:
+def node_of(tree: Tree, value: Object) -> SourceNode:
     """Return the element that an object describes.
 
     Raises:
@@ -61,18 +59,16 @@ class _Reader:
         self._tree = tree
         self._namespaces = namespaces
 
-    def node(self, value: Object, depth: int) -> Node:
+    def node(self, value: Object, depth: int) -> SourceNode:
         if depth > DEEPEST_NESTING:
-            raise UnreadableError(
-                f"{self._tree.file}:{value.line}: nested deeper than {DEEPEST_NESTING} levels"
-            )
-        node = Node(self._tree.file, value.line, claim_of(text_in(value, CLASS), self._namespaces))
+            raise too_deep(self._tree.file, value.line)
+        node = SourceNode(self._tree.file, value.line, claim_of(text_in(value, CLASS), self._namespaces))
         for key, member in value.members.items():
             if key not in (CLASS, NAMESPACES):
                 self._add(node, key, member, self._tree.line_of(value, key), depth)
         return node
 
-    def _add(self, node: Node, key: str, value: object, line: int, depth: int) -> None:
+    def _add(self, node: SourceNode, key: str, value: object, line: int, depth: int) -> None:
         match value:
             case list():
                 for item in value:

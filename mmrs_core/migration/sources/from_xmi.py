@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
-from mmrs_core.migration.sources.nodes import STRAY, Claim, Link, Node, Text
-from mmrs_core.migration.sources.nodes import Document as SourceDocument
+from mmrs_core.migration.sources.nodes import (
+    DEEPEST_NESTING,
+    STRAY,
+    Claim,
+    Link,
+    SourceDocument,
+    SourceNode,
+    Text,
+    too_deep,
+)
 
-DEEPEST_NESTING = 100
 _LOCATION = f"{XSI} schemaLocation"
 _TYPES = (f"{XSI} type", f"{XMI} type")
 _ID = f"{XMI} id"
@@ -30,19 +36,16 @@ def parse_xmi(data: bytes, file: str) -> SourceDocument:
 class _Listener:
     def __init__(self, document: Document) -> None:
         self._document = document
-        self.roots: list[Node] = []
+        self.roots: list[SourceNode] = []
         self.locations: list[tuple[str, str]] = []
-        self.ids: dict[str, Node] = {}
-        self._open: list[Node] = []
+        self.ids: dict[str, SourceNode] = {}
+        self._open: list[SourceNode] = []
         self._words: list[str] = []
         self._wrapped = False
 
     def start(self, tag: str, attributes: list[str]) -> None:
         if len(self._open) >= DEEPEST_NESTING:
-            line = self._document.line
-            raise UnreadableError(
-                f"{self._document.file}:{line}: nested deeper than {DEEPEST_NESTING} levels"
-            )
+            raise too_deep(self._document.file, self._document.line)
         self._keep_stray(self._said())
         named = dict(zip(attributes[::2], attributes[1::2], strict=True))
         places = named.get(_LOCATION, "").split()
@@ -54,7 +57,7 @@ class _Listener:
 
     def _begin(self, tag: str, attributes: dict[str, str]) -> None:
         ns_uri, _, name = tag.rpartition(" ")
-        node = Node(self._document.file, self._document.line)
+        node = SourceNode(self._document.file, self._document.line)
         if self._open:
             node.claim = self._claim(attributes)
             self._open[-1].add(name, node)
@@ -99,7 +102,7 @@ class _Listener:
             self._open[-1].add(STRAY, Text(words, self._document.line))
 
 
-def _instead(node: Node, value: Text | Link) -> None:
+def _instead(node: SourceNode, value: Text | Link) -> None:
     """Let an element that only spells out a value or a reference be that value."""
     assert node.parent is not None  # the root is never replaced
     node.parent.values[node.feature][node.index] = value

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable, read_tables
-from mmrs_core.migration.sources.nodes import Claim, Document
+from mmrs_core.migration.sources.nodes import Claim, SourceDocument
 from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 
 
@@ -47,7 +47,7 @@ class Found:
     table: PackageTable
 
 
-def candidates(given: Sequence[Path], document: Document) -> Iterator[Path]:
+def candidates(given: Sequence[Path], document: SourceDocument) -> Iterator[Path]:
     """Yield the .ecore files that may describe a document: those given, those it names, those beside it."""
     for path in given:
         yield from sorted(path.glob("*.ecore")) if path.is_dir() else (path,)
@@ -60,7 +60,7 @@ def candidates(given: Sequence[Path], document: Document) -> Iterator[Path]:
         yield from sorted(folder.glob("*.ecore"))
 
 
-def metamodels_for(document: Document, given: Sequence[Path], dialect: Dialect) -> dict[str, Found]:
+def metamodels_for(document: SourceDocument, given: Sequence[Path], dialect: Dialect) -> dict[str, Found]:
     """Return the metamodels at hand by package; of several, the one whose nsURI the document names.
 
     Raises:

@@ -6,9 +6,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from mmrs_core.diagnostics import Place
+from mmrs_core.errors import UnreadableError
 
+DEEPEST_NESTING = 100
+"""Levels of elements in each other that are read, in whichever format."""
 STRAY = "#text"
 """The feature, which no metamodel has, of text where only elements may stand."""
+
+
+def too_deep(file: str, line: int) -> UnreadableError:
+    """Return the error for an element inside more than `DEEPEST_NESTING` others."""
+    return UnreadableError(f"{file}:{line}: nested deeper than {DEEPEST_NESTING} levels")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +38,7 @@ class Link:
 
     text: str
     line: int
-    target: Node | None = None
+    target: SourceNode | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +55,7 @@ class Claim:
 
 
 @dataclass(slots=True, eq=False)
-class Node:
+class SourceNode:
     """One element.
 
     Attributes:
@@ -61,17 +69,17 @@ class Node:
     file: str
     line: int
     claim: Claim | None = None
-    values: dict[str, list[Text | Link | Node]] = field(default_factory=dict)
+    values: dict[str, list[Text | Link | SourceNode]] = field(default_factory=dict)
     kind: str = ""
-    parent: Node | None = None
+    parent: SourceNode | None = None
     feature: str = ""
     index: int = 0
     many: bool = True
 
-    def add(self, feature: str, value: Text | Link | Node) -> None:
+    def add(self, feature: str, value: Text | Link | SourceNode) -> None:
         """Put a value behind those that the feature holds."""
         held = self.values.setdefault(feature, [])
-        if isinstance(value, Node):
+        if isinstance(value, SourceNode):
             value.parent, value.feature, value.index = self, feature, len(held)
         held.append(value)
 
@@ -83,9 +91,9 @@ class Node:
         """Return the first text that a feature holds, or an empty one."""
         return next(iter(self.texts(feature)), "")
 
-    def nodes(self, feature: str) -> tuple[Node, ...]:
+    def nodes(self, feature: str) -> tuple[SourceNode, ...]:
         """Return the elements that a feature contains."""
-        return tuple(value for value in self.values.get(feature, ()) if isinstance(value, Node))
+        return tuple(value for value in self.values.get(feature, ()) if isinstance(value, SourceNode))
 
     def links(self, feature: str) -> tuple[Link, ...]:
         """Return the references that a feature holds."""
@@ -97,7 +105,7 @@ class Node:
         return self.kind.rpartition(".")[2] or (self.claim.name if self.claim else self.feature)
 
     @property
-    def root(self) -> Node:
+    def root(self) -> SourceNode:
         """The outermost element."""
         node = self
         while node.parent is not None:
@@ -122,18 +130,20 @@ class Node:
         label = self.text("name")
         return f"{self.name}{label and f' {label!r}'}"
 
-    def inside(self) -> Iterator[Node]:
+    def inside(self) -> Iterator[SourceNode]:
         """Yield it and all elements in it, outer ones before inner ones."""
         pending = [self]
         while pending:
             node = pending.pop()
             yield node
-            inner = [value for values in node.values.values() for value in values if isinstance(value, Node)]
+            inner = [
+                value for values in node.values.values() for value in values if isinstance(value, SourceNode)
+            ]
             pending.extend(reversed(inner))
 
 
 @dataclass(frozen=True, slots=True)
-class Document:
+class SourceDocument:
     """What one source file holds.
 
     Attributes:
@@ -144,6 +154,6 @@ class Document:
     """
 
     file: str
-    roots: tuple[Node, ...]
+    roots: tuple[SourceNode, ...]
     locations: tuple[tuple[str, str], ...] = ()
-    ids: Mapping[str, Node] = field(default_factory=dict)
+    ids: Mapping[str, SourceNode] = field(default_factory=dict)

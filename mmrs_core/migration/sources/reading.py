@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from mmrs_core.migration.sources.metamodels import Dialect
-from mmrs_core.migration.sources.nodes import Document, Link, Node, Text
+from mmrs_core.migration.sources.nodes import Link, SourceDocument, SourceNode, Text
 from mmrs_core.migration.sources.structure import Sort, Structure
 
 _STEP = re.compile(r"@(?P<name>[^.]+)(?:\.(?P<index>\d{1,9}))?", re.ASCII)
@@ -23,7 +23,7 @@ class Reader:
     structure: Structure
     dialect: Dialect
 
-    def settle(self, document: Document) -> None:
+    def settle(self, document: SourceDocument) -> None:
         """Find the class of every node, split references, and resolve them."""
         for root in document.roots:
             root.kind = root.kind or self.dialect.kind(root.claim)
@@ -38,11 +38,11 @@ class Reader:
                         if isinstance(value, Link):
                             value.target = _target(value.text, document, root)
 
-    def _settle(self, node: Node) -> list[Node]:
+    def _settle(self, node: SourceNode) -> list[SourceNode]:
         """Give what a node holds its classes; return the nodes that are known so far."""
         if not self.structure.has(node.kind):
             return []
-        known: list[Node] = []
+        known: list[SourceNode] = []
         for name in tuple(node.values):
             feature = self.structure.feature(node.kind, name)
             if feature is None:
@@ -56,7 +56,7 @@ class Reader:
         return known
 
 
-def _links(value: Text | Link | Node) -> list[Text | Link | Node]:
+def _links(value: Text | Link | SourceNode) -> list[Text | Link | SourceNode]:
     """Return the references in a text that refers, with the types left out that may stand before them."""
     if not isinstance(value, Text):
         return [value]
@@ -65,7 +65,7 @@ def _links(value: Text | Link | Node) -> list[Text | Link | Node]:
     return [Link(word, value.line) for word in paths or words]
 
 
-def _target(text: str, document: Document, root: Node) -> Node | None:
+def _target(text: str, document: SourceDocument, root: SourceNode) -> SourceNode | None:
     """Return the node that a path means, such as ``//@drones.0/@slots.2``, or an id; None for all else."""
     path = text.partition("#")[2] if "#" in text else text
     if text.partition("#")[0] and "#" in text:
@@ -74,7 +74,7 @@ def _target(text: str, document: Document, root: Node) -> Node | None:
         return document.ids.get(path)
     head, *steps = path.removeprefix("/").split("/")
     roots = document.roots
-    node: Node | None = root
+    node: SourceNode | None = root
     if head:
         node = roots[int(head)] if head.isascii() and head.isdigit() and int(head) < len(roots) else None
     for step in steps:
@@ -84,5 +84,5 @@ def _target(text: str, document: Document, root: Node) -> Node | None:
         inner = node.values.get(match["name"], [])
         index = int(match["index"] or 0)
         found = inner[index] if index < len(inner) else None
-        node = found if isinstance(found, Node) else None
+        node = found if isinstance(found, SourceNode) else None
     return node
