@@ -18,7 +18,9 @@ from mmrs_core.languages.element import (
     metaclass_of,
     path_of,
 )
-from mmrs_core.languages.json_form.unknown import UnknownObject
+from mmrs_core.languages.json_form.unknown import UnknownObject, stated
+from mmrs_core.languages.json_form.values import is_character
+from mmrs_core.languages.metaclass import Feature, Metaclass
 
 _LONGEST = 70
 _ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
@@ -54,7 +56,7 @@ def line_of(element: Element) -> str:
             continue
         found = get(element, feature.name)
         items = list(found) if feature.many and isinstance(found, list | tuple) else [found]
-        shown = [f"→ {_label(item)}" if isinstance(item, Element) else value_words(item) for item in items]
+        shown = [f"→ {_label(e)}" if isinstance(e, Element) else words_for(feature, e) for e in items]
         parts.append(f"{feature.name}={','.join(shown)}")
     return " ".join(parts)
 
@@ -67,6 +69,14 @@ def title_of(element: Element) -> str:
     texts = [get(element, each.name) for each in metaclass.features if isinstance(each.type, DataType)]
     label = label_of(element) or next((text for text in texts if isinstance(text, str) and text), "")
     return f"{metaclass.name}{label and f' {value_words(label)}'}"
+
+
+def words_for(feature: Feature, value: object) -> str:
+    """Return a value of an attribute in words: numbers short, all else as files write it."""
+    kind = feature.type
+    if value is None or isinstance(value, float) or isinstance(kind, Metaclass) or not kind.accepts(value):
+        return value_words(value)
+    return value_words(value if is_character(kind) else kind.render(value))
 
 
 def value_words(value: object) -> str:
@@ -108,6 +118,6 @@ def _unknown(element: Unknown) -> str:
 
 def _name_of(element: Unknown) -> str:
     if isinstance(element, UnknownObject):
-        name = element._mmrs_json.members.get("name")
+        name = stated(element).members.get("name")
         return name if isinstance(name, str) else ""
     return name_of_unknown(element._mmrs_xml)

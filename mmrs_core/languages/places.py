@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from mmrs_core.languages.evolution.migrating import class_of
-from mmrs_core.languages.json_form.reader import LANGUAGES, PLACES, ROOTS
-from mmrs_core.languages.json_form.tree import Node, Tree, is_json
+from mmrs_core.languages.json_form.stream import (
+    END,
+    LANGUAGES,
+    LIST,
+    OBJECT,
+    PLACES,
+    ROOTS,
+    TEXT,
+    TYPE,
+    Event,
+    is_own,
+    skip,
+    texts_in,
+)
+from mmrs_core.languages.json_form.text import Text, is_json
+from mmrs_core.languages.json_form.tree import Node
 from mmrs_core.languages.xmi.events import XMI, XSI, Document, read_bytes
 
 _SCHEMA_LOCATION = f"{XSI} schemaLocation"
@@ -61,12 +75,41 @@ def first_kind(path: Path) -> tuple[str, str]:
     data = read_bytes(path)
     if not is_json(path.name):
         return _top_of(data, str(path)).kind
-    top = Tree(data, str(path)).top
-    listed = top.members.get(ROOTS, [top]) if isinstance(top, Node) else []
-    prefixes = top.members.get(LANGUAGES) if isinstance(top, Node) else None
-    languages = {k: str(v) for k, v in prefixes.members.items()} if isinstance(prefixes, Node) else {}
-    roots = [each for each in listed if isinstance(each, Node)] if isinstance(listed, list) else []
-    return class_of(roots[0], languages) if roots else ("", "")
+    return _kind_in_json(Text(data, str(path)))
+
+
+def _kind_in_json(text: Text) -> tuple[str, str]:
+    """Return the class of the first element of a JSON file, read no further than needed."""
+    claimed, languages = "", dict[str, str]()
+    events = text.events()
+    if next(events)[0] != OBJECT:
+        return "", ""
+    ordered = all(text.late(key) is None for key in (LANGUAGES, ROOTS, TYPE))
+    for event in events:
+        if event[1] == LANGUAGES:
+            languages = texts_in(event, events) or {}
+        elif event[1] == ROOTS and event[0] == LIST:
+            claimed = _first_type(events)
+        elif ordered and not is_own(event[1]):
+            break
+        else:
+            claimed = event[2] if event[:2] == (TEXT, TYPE) else claimed
+            skip(event, events)
+    return class_of(Node({TYPE: claimed}), languages)
+
+
+def _first_type(events: Iterator[Event]) -> str:
+    """Return what the first object of a list says to be, and go to the end of the list."""
+    found: list[str] = []
+    while (event := next(events))[0] != END:
+        if event[0] != OBJECT or found:
+            skip(event, events)
+            continue
+        found = [""]
+        while (member := next(events))[0] != END:
+            found = [member[2]] if member[:2] == (TEXT, TYPE) else found
+            skip(member, events)
+    return found[0] if found else ""
 
 
 def _in_xmi(data: bytes, file: str) -> Mapping[str, str]:
@@ -82,8 +125,13 @@ def _top_of(data: bytes, file: str) -> _Top:
 
 
 def _in_json(data: bytes, file: str) -> Mapping[str, str]:
-    top = Tree(data, file).top
-    places = top.members.get(PLACES) if isinstance(top, Node) else None
-    if not isinstance(places, Node):
+    text = Text(data, file)
+    if f'"{PLACES}"'.encode() not in text.data:
         return {}
-    return {ns_uri: place for ns_uri, place in places.members.items() if isinstance(place, str)}
+    events = text.events()
+    next(events)
+    for event in events:
+        if event[1] == PLACES:
+            return texts_in(event, events) or {}
+        skip(event, events)
+    return {}

@@ -10,7 +10,7 @@ from mmrs_core.languages.codes import explained
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Source
 from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
-from mmrs_core.languages.json_form.tree import is_json
+from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.resolution import resolve, tell_other_ends
@@ -65,7 +65,7 @@ class Reading:
             else:
                 document = Document(data, source.file)
                 document.parse(QuickReader(document, draft, self._registry), counts_depth=True)
-        source.roots = tuple(draft.roots)
+        draft.number_roots()
         self._unresolved.append(draft)
         return draft
 

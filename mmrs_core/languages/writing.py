@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.json_form.tree import is_json
+from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.quick_writer import writer_for

@@ -15,7 +15,7 @@ from mmrs_core.languages.element import (
     path_of,
 )
 from mmrs_core.languages.json_form.layout import formatted
-from mmrs_core.languages.json_form.unknown import UnknownObject
+from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
 Kind = tuple[str, str]
@@ -66,7 +66,7 @@ def attributes_of(element: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
 def raw_text(element: Element) -> str:
     """Return all that is known of an element whose class is not installed; else an empty text."""
     if isinstance(element, UnknownObject):
-        return formatted(element._mmrs_json, 0)
+        return formatted(stated(element), 0)
     return element._mmrs_xml if isinstance(element, Unknown) else ""
 
 

@@ -3,34 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from mmrs_core.diagnostics import Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.evolution.migrating import TYPE, Lost, Migrating, class_of, every_node
 from mmrs_core.languages.evolution.old_xmi import OldXmi
-from mmrs_core.languages.json_form.reader import LANGUAGES, ROOTS, JsonReader
+from mmrs_core.languages.json_form.reader import JsonReader
+from mmrs_core.languages.json_form.stream import LANGUAGES, ROOTS
+from mmrs_core.languages.json_form.text import Text
 from mmrs_core.languages.json_form.tree import Node, Tree
-from mmrs_core.languages.json_form.unknown import XML, xml_of
+from mmrs_core.languages.json_form.tree_stream import TreeStream
+from mmrs_core.languages.json_form.unknown import XML, kept_languages, scope_of, xml_of
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document
 
 _ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be")
 MIGRATED, LOST = "MIG001", "MIG002"
-
-
-@dataclass(frozen=True, slots=True)
-class XmiTree:
-    """A tree that was made of XMI."""
-
-    file: str
-    top: object
-
-    def line_of(self, node: Node, key: str) -> int:
-        """Return the line on which the element begins: XML does not tell that of its attributes."""
-        return node.line
 
 
 def may_be_old(data: bytes, registry: Registry) -> bool:
@@ -49,24 +39,32 @@ def read_old_xmi(data: bytes, draft: Draft, registry: Registry) -> None:
         draft.fault("XMI011", message, line, severity=Severity.WARNING)
     way = Migrating(old.roots, registry, {}, draft.source.file)
     top = Node({ROOTS: list(old.roots)})
-    _read(XmiTree(draft.source.file, top), old.roots, way, draft, registry)
+    # XML does not tell the lines of attributes
+    stream = TreeStream(draft.source.file, top, lambda node, key: node.line)
+    _read(stream, old.roots, way, draft, registry)
 
 
 def read_json(data: bytes, draft: Draft, registry: Registry) -> None:
-    """Read a JSON file, whatever version it is of; errors as in `Tree`."""
-    tree = Tree(data, draft.source.file)
+    """Read a JSON file, whatever version it is of; errors as in `Text` and `Tree`."""
+    file = draft.source.file
+    text = Text(data, file)
+    kept = any(_is_known(registry, ns_uri) for ns_uri in kept_languages(text))
+    if not (kept or may_be_old(data, registry)):
+        JsonReader(text, draft, registry).read()
+        return
+    tree = Tree(data, file)
     top = tree.top
-    kept = f'"{XML}"'.encode() in data
-    if not isinstance(top, Node) or not (kept or may_be_old(data, registry)):
-        JsonReader(tree, draft, registry).read()
+    stream = TreeStream(file, top, tree.line_of)
+    if not isinstance(top, Node):
+        JsonReader(stream, draft, registry).read()
         return
     listed = top.members.get(ROOTS, [top])
     roots = [each for each in (listed if isinstance(listed, list) else [listed]) if isinstance(each, Node)]
     prefixes = top.members.get(LANGUAGES)
     languages = {k: str(v) for k, v in prefixes.members.items()} if isinstance(prefixes, Node) else {}
     if kept:
-        _unpack(roots, registry, languages, draft.source.file)
-    _read(tree, roots, Migrating(roots, registry, languages, tree.file), draft, registry)
+        _unpack(roots, registry, languages, file)
+    _read(stream, roots, Migrating(roots, registry, languages, file), draft, registry)
 
 
 def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, str], file: str) -> None:
@@ -76,7 +74,8 @@ def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, s
         if XML not in node.members or not is_known(class_of(node, languages)[0]):
             continue
         try:
-            document = Document(xml_of(node).encode(), file)
+            xml = xml_of(str(node.members[XML]), scope_of(node))
+            document = Document(xml.encode(), file)
         except ValueError as fault:
             raise UnreadableError(f"{file}:{node.line}: {fault}") from None
         old = OldXmi(document, lambda ns_uri: not ns_uri or is_known(ns_uri))  # its tag is that of a feature
@@ -101,9 +100,9 @@ def _is_known(registry: Registry, ns_uri: str) -> bool:
 
 
 def _read(
-    tree: Tree | XmiTree, roots: Sequence[Node], way: Migrating, draft: Draft, registry: Registry
+    stream: TreeStream, roots: Sequence[Node], way: Migrating, draft: Draft, registry: Registry
 ) -> None:
-    reader = JsonReader(tree, draft, registry)
+    reader = JsonReader(stream, draft, registry)
     reader.read()
     for address, node in way.addresses.items():
         element = reader.made.get(id(node))

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.json_form.reader import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
+from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
 from mmrs_core.languages.json_form.values import quoted
 from mmrs_core.languages.xmi.events import XSI
 from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag
@@ -81,9 +81,9 @@ class JsonMarkup(Markup):
 
     def at(self, path: str, line: int) -> Tag | None:
         """Return the object with that path, if it has that line; as for XMI."""
-        for root in self.models():
+        for number, root in enumerate(self.models()):
             tag: Tag | None = root
-            for match in _STEP.finditer(path):
+            for match in _STEP.finditer(below_root(path, number)):
                 same = tag.named(match[1]) if tag is not None else []
                 tag = same[int(match[2] or 0)] if int(match[2] or 0) < len(same) else None
             if isinstance(tag, Thing) and tag.lines[0] <= line <= tag.lines[2]:

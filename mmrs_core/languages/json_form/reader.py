@@ -1,128 +1,257 @@
-"""From a tree of JSON objects to elements: all faults reported, references left as texts."""
+"""From a stream of JSON to elements: all faults reported, references left as texts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Unknown, label_of
-from mmrs_core.languages.json_form.tree import Node, Words, is_text
-from mmrs_core.languages.json_form.unknown import kept
-from mmrs_core.languages.json_form.values import parsed
-from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
-from mmrs_core.languages.missing import hint_for
-from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.element import Element, Unknown
+from mmrs_core.languages.json_form.members import Members, Usual, usual
+from mmrs_core.languages.json_form.stream import (
+    END,
+    HEAD,
+    LANGUAGES,
+    LIST,
+    NUMBER,
+    OBJECT,
+    REF,
+    ROOTS,
+    TEXT,
+    TYPE,
+    WORD,
+    Event,
+    Place,
+    Stream,
+    is_own,
+    skip,
+    texts_in,
+)
+from mmrs_core.languages.json_form.types import Types
+from mmrs_core.languages.json_form.unknown import DEEPEST_KEPT, SCOPE, XML, Kept, kept
+from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
 
-TYPE, ID, REF, ROOTS, LANGUAGES, PLACES = "$type", "$id", "$ref", "$roots", "$languages", "$schemaLocation"
-_HEAD = frozenset((LANGUAGES, PLACES, ROOTS, "$schema"))
-
-_HELPED_FAULTS = 200
-"""Beyond this many faults nobody reads which name was probably meant, and looking for it takes time."""
-
-_Job = tuple[Node, Element | None, Feature | None]
+_Ways = Mapping[str, tuple[Feature, Usual | None]]
+"""The features of a class, by key, and how their usual values are read."""
 
 
-class Lined(Protocol):
-    """A tree of objects, and the lines on which they say what they say."""
+@dataclass(slots=True)
+class _Open:
+    """An object or a list that is being read.
 
-    @property
-    def file(self) -> str:
-        """What messages call the file."""
+    Attributes:
+        element: that the object is, or that the list's elements go into.
+        metaclass: of the element.
+        ways: of the object; of a list, none.
+        feature: that the list's elements go into; None for an object.
+        line: where the list stands.
+        count: how many values of the list there were.
+        at_top: whether it is the whole file.
+    """
 
-    @property
-    def top(self) -> object:
-        """What stands at the top."""
+    element: Element
+    metaclass: Metaclass
+    ways: _Ways
+    feature: Feature | None = None
+    line: int = 0
+    count: int = 0
+    at_top: bool = False
 
-    def line_of(self, node: Node, key: str) -> int:
-        """Return the line on which an object says something."""
+
+@dataclass(slots=True)
+class _Begun:
+    """An object whose class is still to be found out.
+
+    Attributes:
+        begin: its bracket.
+        line: of that.
+        late: what says its class behind other members.
+        owner: the element that it stands in; None at the top.
+        feature: of the owner.
+        above: the line on which the owner says it.
+        at_top: whether it is the whole file.
+        declares: whether its `$languages` are still to be read.
+        said: what it says of itself, such as `$type`; what stands inside that was passed over.
+        scope: the texts in its `$namespaces`.
+        deepest: levels of objects and lists inside it, as far as they were passed over.
+    """
+
+    begin: Place
+    line: int
+    late: Iterator[Event] | None
+    owner: Element | None = None
+    feature: Feature | None = None
+    above: int = 0
+    at_top: bool = False
+    declares: bool = False
+    said: list[Event] = field(default_factory=list)
+    scope: Mapping[str, str] = field(default_factory=dict)
+    deepest: int = 0
+
+    def type(self) -> Event | None:
+        """Return what it says under `$type`, wherever that stands."""
+        found = next((event for event in self.said if event[1] == TYPE), None)
+        return next(self.late) if found is None and self.late is not None else found
 
 
 class JsonReader:
-    """Reads one tree into a draft.
+    """Reads one stream into a draft.
 
     Attributes:
-        made: the element that was made of each object, by the object's `id`.
+        made: the element that was made of each object of a tree, by its `id`.
     """
 
-    def __init__(self, tree: Lined, draft: Draft, registry: Registry) -> None:
+    def __init__(self, stream: Stream, draft: Draft, registry: Registry) -> None:
         self.made: dict[int, Element] = {}
-        self._tree = tree
+        self._stream = stream
+        self._events = stream.events()
         self._draft = draft
-        self._registry = registry
-        self._languages: Mapping[str, str] = {}
-        self._missing: dict[str, str] = {}
+        self._members = Members(stream, self._events, draft)
+        self._types = Types(stream, draft, registry)
+        self._ways: dict[Metaclass, _Ways] = {}
+        self._open: list[_Open] = []
 
     def read(self) -> None:
         """Make all elements of the file."""
-        top = self._tree.top
-        if isinstance(top, Node):
-            self._languages = self._mapping(top, LANGUAGES)
-        jobs: list[_Job] = [(node, None, None) for node in self._roots(top)]
-        jobs.reverse()
-        while jobs:
-            self._element(*jobs.pop(), jobs)
+        event = next(self._events)
+        if event[0] == OBJECT:
+            self._top(event[4])
+        else:
+            self._draft.fault("XMI015", "the file: no model: its top is not an object", 1)
+        for _ in self._events:  # what is not read must be sound nevertheless
+            pass
 
     # the file
 
-    def _roots(self, top: object) -> Iterator[Node]:
-        if not isinstance(top, Node):
-            self._draft.fault("XMI015", "the file: no model: its top is not an object", 1)
-            return
-        listed = top.members.get(ROOTS, top if TYPE in top.members else None)
-        for key in top.members if ROOTS in top.members else ():
-            if key not in _HEAD:
-                self._draft.fault("XMI004", f"{key}: not beside {ROOTS}", self._tree.line_of(top, key))
-        if listed is None:
-            hint = f"say which class it is of by {TYPE}; 'mmrs migrate' reads the JSON of another platform"
-            self._draft.fault("XMI015", f"the root: no model: it has no {TYPE}", top.line, hint=hint)
-        for node in listed if isinstance(listed, list) else (listed,):
-            if isinstance(node, Node):
-                yield node
-            elif listed is not None:
-                message = f"{ROOTS}: takes a list of objects"
-                self._draft.fault("XMI010", message, self._tree.line_of(top, ROOTS))
+    def _top(self, begin: Place) -> None:
+        languages, several = self._stream.late(LANGUAGES), self._stream.late(ROOTS) is not None
+        start = _Begun(begin, self._stream.line(begin), self._stream.late(TYPE), at_top=True)
+        if languages is not None:
+            self._types.declare(next(languages), languages)
+        start.declares = languages is None
+        event = self._head(start)
+        if several or event[1] == ROOTS:
+            self._several(start, event)
+        elif start.late is not None or start.type() is not None:
+            self._read_on(self._element(start, event))
+        else:
+            self._no_model(start.line)
 
-    def _mapping(self, top: Node, key: str) -> Mapping[str, str]:
-        found = top.members.get(key, Node({}))
-        entries = found.members if isinstance(found, Node) else {"": None}
-        if all(is_text(value) for value in entries.values()):
-            return {name: str(value) for name, value in entries.items()}
-        self._draft.fault("XMI010", f"{key}: takes an object of texts", self._tree.line_of(top, key))
-        return {}
+    def _no_model(self, line: int) -> None:
+        hint = f"say which class it is of by {TYPE}; 'mmrs migrate' reads the JSON of another platform"
+        self._draft.fault("XMI015", f"the root: no model: it has no {TYPE}", line, hint=hint)
+
+    def _several(self, start: _Begun, event: Event) -> None:
+        """Read the object at the top that holds a list of elements; nothing else may stand beside it."""
+        for each in start.said:
+            self._beside(each)
+        while event[0] != END:
+            if event[:3] == (WORD, ROOTS, "null"):
+                self._no_model(start.line)
+            elif event[1] == ROOTS:
+                self._roots(event)
+            else:
+                self._beside(event)
+                skip(event, self._events)
+            event = next(self._events)
+
+    def _beside(self, event: Event) -> None:
+        if event[1] not in HEAD:
+            line = self._stream.line(event[3])
+            self._draft.fault("XMI004", f"{event[1]}: not beside {ROOTS}", line)
+
+    def _roots(self, event: Event) -> None:
+        line = self._stream.line(event[3])
+        each = next(self._events) if event[0] == LIST else event
+        while each[0] != END:
+            if each[0] == OBJECT:
+                self._read_on(self._object(None, None, each[4], line))
+            else:
+                skip(each, self._events)
+                self._draft.fault("XMI010", f"{ROOTS}: takes a list of objects", line)
+            if event[0] != LIST:
+                return
+            each = next(self._events)
 
     # elements
 
-    def _element(self, node: Node, owner: Element | None, feature: Feature | None, jobs: list[_Job]) -> None:
-        metaclass = feature.type if feature is not None and TYPE not in node.members else None
-        claimed = node.members.get(TYPE)
-        if metaclass is None:
-            ns_uri, name = self._claimed(node, owner)
-            if not ns_uri:
-                return
-            if not self._registry.has(ns_uri):
-                self._keep(node, ns_uri, name, owner, feature)
-                return
-            metaclass = self._metaclass(node, ns_uri, name, owner)
-        if not isinstance(metaclass, Metaclass):
-            return
+    def _head(self, start: _Begun) -> Event:
+        """Take what an object says of itself before all else, and return what follows."""
+        while is_own((event := next(self._events))[1]) and not (start.at_top and event[1] == ROOTS):
+            sort, key, _, place, begin = event
+            if key == LANGUAGES and start.declares:
+                self._types.declare(event, self._events)
+            elif key == SCOPE:
+                start.scope = texts_in(event, self._events) or {}
+            else:
+                start.deepest = max(start.deepest, skip(event, self._events))
+            start.said.append(event if sort < OBJECT else (WORD, key, "null", place, begin))
+        return event
+
+    def _element(self, start: _Begun, event: Event) -> Event | None:
+        """Make the element that an object stands for, given what follows its head, and return that."""
+        feature, claimed = start.feature, start.type()
+        if claimed is None and feature is not None:
+            if event[0] == END and [each[1] for each in start.said] == [REF]:
+                self._refer(start, start.said[0], feature)
+                return None
+            metaclass = feature.type
+        else:
+            found = self._types.known(claimed) or self._claimed(start, claimed, event)
+            if found is None:
+                return None
+            metaclass = found
+        if not isinstance(metaclass, Metaclass) or not self._may_be(start, metaclass, claimed is not None):
+            self._pass(event)
+            return None
+        self._begin(start, metaclass)
+        return event
+
+    def _claimed(self, start: _Begun, claimed: Event | None, event: Event) -> Metaclass | None:
+        """Return the class that an object says it is of; None where the object was kept, or passed over."""
+        ns_uri, name = self._types.claimed(claimed, start.line, start.owner)
+        if claimed is not None and ns_uri:
+            if self._types.is_missing(ns_uri, name, claimed, start.owner):
+                self._keep(start, event, f"{ns_uri}#{name}")
+                return None
+            metaclass = self._types.metaclass(ns_uri, name, claimed, start.owner)
+            if metaclass is not None:
+                return metaclass
+        self._pass(event)
+        return None
+
+    def _may_be(self, start: _Begun, metaclass: Metaclass, is_claimed: bool) -> bool:
+        """Return whether an element of a class may stand there; it is a fault otherwise."""
+        feature = start.feature
         if metaclass.implementation is None:
             message = f"{metaclass.name}: abstract; say which kind of it by {TYPE}"
-            self._fault("XMI003", message, node, owner)
-            return
-        if feature is not None and claimed is not None and not _fits(feature, metaclass):
+            self._members.fault("XMI003", message, start.line, start.owner)
+            return False
+        if is_claimed and feature is not None and not _fits(feature, metaclass):
             message = f"{metaclass.name}: not a {feature.type.name}, which {feature.name} takes"
-            self._fault("XMI008", message, node, owner, broken=feature)
-            return
-        element = metaclass.implementation.__new__(metaclass.implementation)
-        self._stands(element, node, owner, feature)
-        self._members(element, metaclass, node, jobs)
+            self._members.fault("XMI008", message, start.line, start.owner, broken=feature)
+            return False
+        return True
 
-    def _stands(self, element: Element, node: Node, owner: Element | None, feature: Feature | None) -> None:
-        self.made[id(node)] = element
-        element._mmrs_line = node.line
+    def _begin(self, start: _Begun, metaclass: Metaclass) -> None:
+        assert metaclass.implementation is not None  # it was asked before
+        element = metaclass.implementation.__new__(metaclass.implementation)
+        self._stands(element, start)
+        ways = self._ways.get(metaclass)
+        if ways is None:
+            ways = self._ways[metaclass] = _ways_of(metaclass)
+        self._open.append(_Open(element, metaclass, ways, at_top=start.at_top))
+        for event in start.said:
+            if event[1] != TYPE:
+                self._members.other(element, metaclass, event, start.at_top)
+
+    def _stands(self, element: Element, start: _Begun) -> None:
+        owner, feature = start.owner, start.feature
+        if not isinstance(start.begin, int):
+            self.made[id(start.begin)] = element
+        element._mmrs_line = start.line
         element._mmrs_source = self._draft.source
         if owner is None or feature is None:
             self._draft.roots.append(element)
@@ -137,169 +266,131 @@ class JsonReader:
         if opposite is not None and not isinstance(element, Unknown):
             type(element)._mmrs_slots[opposite.attribute].__set__(element, owner)
 
-    def _claimed(self, node: Node, owner: Element | None) -> tuple[str, str]:
-        claimed = node.members.get(TYPE)
-        if not is_text(claimed):
-            code = "XMI015" if TYPE not in node.members else "XMI010"
-            message = f"{TYPE}: the name of a class, such as mission:Mission, is needed"
-            self._fault(code, message, node, owner)
-            return "", ""
-        if "#" in claimed:
-            ns_uri, _, name = claimed.rpartition("#")
-            return ns_uri, name.removeprefix("//")
-        prefix, _, name = claimed.rpartition(":")
-        if prefix not in self._languages:
-            hint = nearest(prefix, self._languages) or f"say in {LANGUAGES} which language {prefix!r} is"
-            message = f"{claimed}: the prefix {prefix!r} is not declared"
-            self._fault("XMI014", message, node, owner, hint, key=TYPE)
-        return self._languages.get(prefix, ""), name
+    def _refer(self, start: _Begun, event: Event, feature: Feature) -> None:
+        """Take note that what stands in another file is contained here."""
+        assert start.owner is not None  # there is a feature
+        if event[0] == TEXT:
+            self._draft.pending.append(Pending(start.owner, feature, event[2], start.line))
+        else:
+            self._no_object(start.owner, feature, start.above)
 
-    def _metaclass(self, node: Node, ns_uri: str, name: str, owner: Element | None) -> Metaclass | None:
-        try:
-            return self._registry.metaclass(ns_uri, name)
-        except ValueError as fault:
-            message, _, hint = str(fault).partition("; ")
-            self._fault("XMI002", message, node, owner, hint, key=TYPE)
-            return None
+    def _no_object(self, owner: Element, feature: Feature, line: int) -> None:
+        self._members.fault("XMI010", f"{feature.name}: takes objects", line, owner, broken=feature)
 
-    def _keep(
-        self, node: Node, ns_uri: str, name: str, owner: Element | None, feature: Feature | None
-    ) -> None:
-        if ns_uri not in self._missing:
-            self._missing[ns_uri] = hint_for(ns_uri, self._registry)
-        message = f"{ns_uri}: no such metamodel, needed for {name}"
-        self._fault("XMI001", message, node, owner, self._missing[ns_uri], key=TYPE)
+    def _pass(self, event: Event) -> None:
+        """Go to the end of the object that is open, from an event in it."""
+        while event[0] != END:
+            skip(event, self._events)
+            event = next(self._events)
+
+    def _keep(self, start: _Begun, event: Event, claimed: str) -> None:
+        """Keep an object whose language is not installed, and go to its end."""
+        xml = next((each[2] for each in start.said if each[1] == XML), None)
+        scope = start.scope
+        while event[0] != END:
+            if event[1] == SCOPE:
+                scope = texts_in(event, self._events) or {}
+            else:
+                start.deepest = max(start.deepest, skip(event, self._events))
+            xml = event[2] if event[1] == XML else xml
+            event = next(self._events)
         try:
-            unknown = kept(node, f"{ns_uri}#{name}", self._languages)
+            if start.deepest >= DEEPEST_KEPT:
+                raise ValueError(f"{claimed}: nested deeper than {DEEPEST_KEPT} levels")
+            text = self._stream.source(start.begin, event[4]) if xml is None else ""
+            unknown = kept(Kept(text, xml, scope), claimed, self._types.languages)
         except ValueError as fault:
-            raise UnreadableError(f"{self._tree.file}:{node.line}: {fault}") from None
-        self._stands(unknown, node, owner, feature)
+            raise UnreadableError(f"{self._stream.file}:{start.line}: {fault}") from None
+        self._stands(unknown, start)
 
     # what elements say
 
-    def _members(self, element: Element, metaclass: Metaclass, node: Node, jobs: list[_Job]) -> None:
-        children: list[_Job] = []
-        head = _HEAD if node is self._tree.top else frozenset()
-        for key, value in node.members.items():
-            feature = metaclass.by_name.get(key[1:] if key.startswith("$$") else key)
-            if key.startswith("$") and not key.startswith("$$"):
-                self._own_key(element, metaclass, node, key, head)
-            elif feature is None:
-                label = label_of(element)
-                message = f"{key}: no feature of {metaclass.name}{label and f' {label!r}'}"
-                helps = len(self._draft.diagnostics) < _HELPED_FAULTS
-                hint = nearest(key, metaclass.by_name) if helps else ""
-                self._fault("XMI004", message, node, element, hint, key=key)
-            elif value == [] or (value is None and feature.is_reference):
-                if feature.unsettable:
-                    self._draft.source.blanks.add((element, feature))
-            elif not feature.is_reference:
-                self._values(element, feature, node, key, value)
+    def _read_on(self, event: Event | None) -> None:
+        """Read all that is open to its end, from an event on, or from the next."""
+        opened, members = self._open, self._members
+        while opened:
+            # this runs for every member of a large file
+            event = event or next(self._events)
+            sort, key, text, place, _ = event
+            top = opened[-1]
+            element, way = top.element, top.ways.get(key)
+            following = None
+            if sort == END:
+                self._end(opened.pop())
+            elif top.feature is not None:
+                following = self._item(top, top.feature, event)
+            elif way is None:
+                members.other(element, top.metaclass, event, top.at_top)
             else:
-                self._references(element, feature, node, key, value, children)
-        jobs.extend(reversed(children))
+                feature, usual = way
+                read = None if usual is None else _reading(usual, sort)
+                if usual is not None and read is not None:
+                    try:
+                        usual.put(element, read(text))
+                    except ValueError as fault:
+                        members.unfit(element, feature, str(fault), place)
+                elif feature.containment:
+                    following = self._inside(top, feature, event)
+                elif sort == TEXT and feature.is_reference:
+                    members.link(element, feature, text, place)
+                else:
+                    members.feature(element, feature, event)
+            event = following
 
-    def _own_key(
-        self, element: Element, metaclass: Metaclass, node: Node, key: str, head: frozenset[str]
-    ) -> None:
-        if key == ID:
-            identifier = node.members[ID]
-            if is_text(identifier) and identifier:
-                self._identify(element, node, identifier, own=False)
-            else:
-                self._fault("XMI010", f"{ID}: takes a text", node, element, key=key)
-        elif key != TYPE and key not in head:
-            message = f"{key}: no key of this form, and no feature of {metaclass.name}"
-            self._fault("XMI004", message, node, element, nearest(key, (TYPE, ID, REF)), key=key)
-
-    def _values(self, element: Element, feature: Feature, node: Node, key: str, value: object) -> None:
-        if feature.many:
-            values = value if isinstance(value, list) else _parts(value)
-        elif isinstance(value, list) and len(value) == 1:
-            values = value
-        elif isinstance(value, list):
-            message = f"{feature.name}: a list of {len(value)} values, takes one"
-            self._fault("XMI009", message, node, element, broken=feature, key=key)
-            return
+    def _inside(self, top: _Open, feature: Feature, event: Event) -> Event | None:
+        """Take what stands in a feature that contains elements."""
+        sort, _, text, place, begin = event
+        line = self._stream.line(place)
+        if sort == OBJECT:
+            return self._object(top.element, feature, begin, line)
+        if sort == LIST:
+            self._open.append(_Open(top.element, top.metaclass, {}, feature, line))
+        elif sort == WORD and text == "null":
+            self._members.nothing(top.element, feature)
         else:
-            values = [value]
-        for each in values:
-            self._value(element, feature, node, key, each)
+            self._no_object(top.element, feature, line)
+        return None
 
-    def _value(self, element: Element, feature: Feature, node: Node, key: str, value: object) -> None:
-        kind = feature.type
-        assert not isinstance(kind, Metaclass)  # it is an attribute
-        if is_null(feature, value):
-            getattr(element, feature.attribute).append(None)
-            return
-        if value is None:
-            if feature.many or getattr(kind, "primitive", True):
-                self._fault("XMI005", f"{feature.name}: cannot be null", node, element, "", feature, key)
-            elif feature.default is not None:
-                type(element)._mmrs_slots[feature.attribute].__set__(element, None)
-            elif feature.unsettable:
-                self._draft.source.blanks.add((element, feature))
-            return
-        try:
-            found = parsed(kind, value)
-        except ValueError as fault:
-            self._fault("XMI005", f"{feature.name}: {fault}", node, element, "", feature, key)
-            return
-        if feature.many:
-            getattr(element, feature.attribute).append(found)
-        else:
-            type(element)._mmrs_slots[feature.attribute].__set__(element, found)
-        if feature.is_id:
-            self._identify(element, node, str(value), own=True)
+    def _item(self, top: _Open, feature: Feature, event: Event) -> Event | None:
+        """Take a value of a list of elements; where one is taken only, the first."""
+        top.count += 1
+        if event[0] == OBJECT and (feature.many or top.count == 1):
+            return self._object(top.element, feature, event[4], top.line)
+        skip(event, self._events)
+        if event[0] != OBJECT:
+            self._no_object(top.element, feature, top.line)
+        return None
 
-    def _references(
-        self, element: Element, feature: Feature, node: Node, key: str, value: object, children: list[_Job]
-    ) -> None:
-        values = value if isinstance(value, list) else [] if value is None else [value]
-        if len(values) > 1 and not feature.many:
-            message = f"{feature.name}: a list of {len(values)}, takes one"
-            self._fault("XMI009", message, node, element, broken=feature, key=key)
-            return
-        for each in values:
-            uri = each.members[REF] if isinstance(each, Node) and set(each.members) == {REF} else each
-            if isinstance(uri, Node) and feature.containment:
-                children.append((uri, element, feature))
-            elif is_text(uri) and (uri is not each or not feature.containment):
-                line = each.line if isinstance(each, Node) else self._tree.line_of(node, key)
-                self._draft.pending.append(Pending(element, feature, uri, line))
-            else:
-                wanted = "objects" if feature.containment else "the paths of elements, such as //@tasks.0"
-                self._fault("XMI010", f"{feature.name}: takes {wanted}", node, element, "", feature, key)
+    def _end(self, ended: _Open) -> None:
+        feature = ended.feature
+        if feature is not None and not ended.count:
+            self._members.nothing(ended.element, feature)
+        elif feature is not None and ended.count > 1 and not feature.many:
+            message = f"{feature.name}: a list of {ended.count}, takes one"
+            self._members.fault("XMI009", message, ended.line, ended.element, broken=feature)
 
-    def _identify(self, element: Element, node: Node, identifier: str, own: bool) -> None:
-        other = self._draft.ids.setdefault(identifier, element)
-        if other is not element:
-            message = f"{identifier}: an id used twice; first on line {other._mmrs_line}"
-            self._fault("XMI012", message, node, element)
-        elif not own:
-            self._draft.source.ids[element] = identifier
+    def _object(
+        self, owner: Element | None, feature: Feature | None, begin: Place, above: int
+    ) -> Event | None:
+        """Read an object up to its first feature, which is returned; None where it has ended already."""
+        start = _Begun(begin, self._stream.line(begin), self._stream.late(TYPE), owner, feature, above)
+        return self._element(start, self._head(start))
 
-    def _fault(
-        self,
-        code: str,
-        message: str,
-        node: Node,
-        element: Element | None,
-        hint: str = "",
-        broken: Feature | None = None,
-        key: str = "",
-    ) -> None:
-        line = self._tree.line_of(node, key) if key else node.line
-        self._draft.fault(code, message, line, element, hint)
-        if element is not None and broken is not None:
-            self._draft.broken.add((element, broken.name))
+
+def _reading(usual: Usual, sort: int) -> Callable[[str], object] | None:
+    if sort == TEXT:
+        return usual.text
+    return usual.number if sort == NUMBER else None
+
+
+def _ways_of(metaclass: Metaclass) -> _Ways:
+    return {
+        f"${each.name}" if each.name.startswith("$") else each.name: (each, usual(metaclass, each))
+        for each in metaclass.features
+    }
 
 
 def _fits(feature: Feature, metaclass: Metaclass) -> bool:
     kind, made = feature.type, metaclass.implementation
     # by interface, since every element is an EObject, though no metamodel says so
     return isinstance(kind, Metaclass) and made is not None and issubclass(made, kind.interface)
-
-
-def _parts(value: object) -> list[object]:
-    return list(value.split()) if isinstance(value, Words) else [value]

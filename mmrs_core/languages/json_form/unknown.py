@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from xml.parsers import expat
 
 from mmrs_core.languages.element import Unknown
-from mmrs_core.languages.json_form.tree import Node
+from mmrs_core.languages.json_form.stream import END, LANGUAGES, OBJECT, texts_in
+from mmrs_core.languages.json_form.text import Text
+from mmrs_core.languages.json_form.tree import Node, tree_of
 from mmrs_core.languages.xmi.unknowns import needed, text_of
 
-_TYPE, _SCOPE = "$type", "$namespaces"
-XML = "$xml"
+_TYPE = "$type"
+XML, SCOPE = "$xml", "$namespaces"
 DEEPEST_KEPT = 100
 """Levels of objects and lists that are kept inside an element of an unknown class."""
 
@@ -19,50 +22,85 @@ class UnknownObject(Unknown):
     """An element that stood in JSON, which is kept; no XML can be made of it without its metamodel.
 
     Attributes:
-        _mmrs_json: the object; the types in it are written ``nsURI#Name``.
+        _mmrs_json: its text; the prefixes of the types in it are those of `_mmrs_scope`.
     """
 
     __slots__ = ("_mmrs_json",)
 
-    _mmrs_json: Node
+    _mmrs_json: str
 
 
-def kept(node: Node, claimed: str, languages: Mapping[str, str]) -> Unknown:
+@dataclass(slots=True)
+class Kept:
+    """What an object says of an element that is not read.
+
+    Attributes:
+        text: all of it.
+        xml: what it says under `$xml`; None where it does not.
+        scope: what it says under `$namespaces`.
+    """
+
+    text: str
+    xml: str | None
+    scope: Mapping[str, str]
+
+
+def kept(found: Kept, claimed: str, languages: Mapping[str, str]) -> Unknown:
     """Return the element that an object stands for, of a metamodel that is not installed.
 
     Args:
-        node: the object.
+        found: what the object says.
         claimed: its type, as ``nsURI#Name``.
         languages: the prefixes that types in it may use.
 
     Raises:
-        ValueError: if it nests deeper than anything that is kept, or what it keeps is no XML.
+        ValueError: if what it keeps is no XML.
     """
     element: Unknown
-    if _depth(node) > DEEPEST_KEPT:
-        raise ValueError(f"{claimed}: nested deeper than {DEEPEST_KEPT} levels")
-    if XML in node.members:
+    if found.xml is not None:
         element = Unknown.__new__(Unknown)
-        element._mmrs_xml, element._mmrs_scope = str(node.members[XML]), _scope_of(node)
-        xml_of(node)
+        element._mmrs_xml, element._mmrs_scope = found.xml, found.scope
+        xml_of(found.xml, found.scope)
     else:
         element = UnknownObject.__new__(UnknownObject)
-        element._mmrs_json = _retyped(node, lambda name: _expanded(name, languages))
-        element._mmrs_xml = ""
-        element._mmrs_scope = languages
+        element._mmrs_json, element._mmrs_xml, element._mmrs_scope = found.text, "", languages
     element._mmrs_type = claimed
     return element
 
 
-def xml_of(node: Node) -> str:
+def kept_languages(text: Text) -> frozenset[str]:
+    """Return the nsURIs of the elements that a file keeps as XML; their languages may be installed by now."""
+    if f'"{XML}"'.encode() not in text.data:
+        return frozenset()
+    languages: Mapping[str, str] = {}
+    claims: set[str] = set()
+    opened = [["", ""]]
+    events = text.events()
+    for event in events:
+        sort, key, said, _, _ = event
+        if key == LANGUAGES and len(opened) == 2:
+            languages = texts_in(event, events) or {}
+        elif sort == END:
+            claimed, xml = opened.pop()
+            claims |= {claimed.rpartition("#" if "#" in claimed else ":")[0]} if xml else set()
+        elif sort >= OBJECT:
+            opened.append(["", ""])
+        elif key in (_TYPE, XML):
+            opened[-1][key == XML] = said
+    return frozenset(languages.get(claim, claim) for claim in claims)
+
+
+def xml_of(xml: str, scope: Mapping[str, str]) -> str:
     """Return the XML that an object keeps of an element, with all namespaces that it needs.
 
     Raises:
         ValueError: if it is no element of XML.
     """
+    if not xml.startswith("<"):
+        raise ValueError(f"{XML}: not well-formed XML: no element found")
     element = Unknown.__new__(Unknown)
-    element._mmrs_xml, element._mmrs_scope = str(node.members[XML]), _scope_of(node)
-    element._mmrs_type = "$xml"
+    element._mmrs_xml, element._mmrs_scope = xml, scope
+    element._mmrs_type = XML
     text = text_of(element, lambda prefix, ns_uri: False)
     parser = expat.ParserCreate(None, " ")
     parser.StartDoctypeDeclHandler = _no_doctype
@@ -78,32 +116,19 @@ def _no_doctype(*_: object) -> None:
     raise ValueError(f"{XML}: DOCTYPE is not accepted in a model")
 
 
-def _scope_of(node: Node) -> Mapping[str, str]:
-    scope = node.members.get(_SCOPE)
+def scope_of(node: Node) -> Mapping[str, str]:
+    """Return the namespaces that an object keeps beside its XML, by prefix."""
+    scope = node.members.get(SCOPE)
     return {k: str(v) for k, v in scope.members.items()} if isinstance(scope, Node) else {}
 
 
-def stated(element: Unknown, typed: Callable[[str], str]) -> Node:
+def stated(element: Unknown, typed: Callable[[str], str] = str) -> Node:
     """Return the object that says what is known of an element; `typed` shortens ``nsURI#Name``."""
     if isinstance(element, UnknownObject):
-        return _retyped(element._mmrs_json, typed)
+        top = tree_of(element._mmrs_json)
+        return _retyped(top, lambda name: typed(_expanded(name, element._mmrs_scope)))
     scope = Node(dict(needed(element._mmrs_xml, element._mmrs_scope)))
-    return Node({_TYPE: typed(element._mmrs_type), XML: element._mmrs_xml, _SCOPE: scope})
-
-
-def _depth(node: Node) -> int:
-    level: list[Iterable[object]] = [node.members.values()]
-    depth = 0
-    while level:
-        depth += 1
-        level = [inner for values in level for each in values if (inner := _inside(each)) is not None]
-    return depth
-
-
-def _inside(value: object) -> Iterable[object] | None:
-    if isinstance(value, Node):
-        return value.members.values()
-    return value if isinstance(value, list) else None
+    return Node({_TYPE: typed(element._mmrs_type), XML: element._mmrs_xml, SCOPE: scope})
 
 
 def _expanded(name: str, languages: Mapping[str, str]) -> str:

@@ -8,7 +8,8 @@ from decimal import Decimal
 from json.encoder import encode_basestring
 
 from mmrs_core.languages.datatypes import DataType, shown
-from mmrs_core.languages.json_form.tree import Leaf, Node, Number, Words
+from mmrs_core.languages.json_form.stream import LIST, NUMBER, OBJECT, TEXT, WORD
+from mmrs_core.languages.json_form.tree import Leaf, Words
 from mmrs_core.languages.metaclass import Enumeration
 
 _EXACT = 2**53
@@ -39,25 +40,41 @@ def written(kind: DataType | Enumeration, value: object) -> str:
     return quoted(kind.render(value))
 
 
-def parsed(kind: DataType | Enumeration, value: object) -> object:
+def parsed(kind: DataType | Enumeration, sort: int, text: str) -> object:
     """Return the value that a file states, for an attribute of that type; null is not asked about.
+
+    Args:
+        kind: the type.
+        sort: what comes, such as `TEXT`.
+        text: what it says.
 
     Raises:
         ValueError: if the type does not allow it; the message begins with the value.
     """
-    if isinstance(value, bool):
+    if sort == NUMBER:
+        if isinstance(kind, DataType) and takes_numbers(kind):
+            return kind.parse(text)
+        raise ValueError(f"{shown(text)}: a number, not of the type {kind.name}; write it in quotes")
+    if sort == WORD and text != "null":
         if isinstance(kind, DataType) and kind.python is bool:
-            return value
-        raise ValueError(f"{'true' if value else 'false'}: not of the type {kind.name}")
-    if isinstance(value, Number):
-        return _number(kind, value)
-    if not isinstance(value, str):
-        what = "an object" if isinstance(value, Node) else "a list" if isinstance(value, list) else "null"
+            return text == "true"
+        raise ValueError(f"{text}: not of the type {kind.name}")
+    if sort != TEXT:
+        what = {OBJECT: "an object", LIST: "a list"}.get(sort, "null")
         raise ValueError(f"{what}: not a value of the type {kind.name}")
-    is_character = isinstance(kind, DataType) and kind.java_class in _CHARACTERS
-    if not is_character or isinstance(value, Words | Leaf):
-        return kind.parse(value)
-    return _character(kind, value)
+    if is_character(kind) and not isinstance(text, Words | Leaf):
+        return _character(kind, text)
+    return kind.parse(text)
+
+
+def is_character(kind: DataType | Enumeration) -> bool:
+    """Return whether the values of a type are single characters."""
+    return isinstance(kind, DataType) and kind.java_class in _CHARACTERS
+
+
+def takes_numbers(kind: DataType | Enumeration) -> bool:
+    """Return whether a number in a file, one without quotes, may be a value of a type."""
+    return is_character(kind) or (isinstance(kind, DataType) and kind.python in (int, float, Decimal))
 
 
 def _character(kind: DataType | Enumeration, value: str) -> object:
@@ -65,11 +82,3 @@ def _character(kind: DataType | Enumeration, value: str) -> object:
     if len(value) == 1 and value > _LAST_UNIT:
         raise ValueError(f"{shown(value)}: not one character of 16 bits")
     return value if len(value) == 1 else kind.parse(value)
-
-
-def _number(kind: DataType | Enumeration, value: Number) -> object:
-    if isinstance(kind, DataType) and (
-        kind.python in (int, float, Decimal) or kind.java_class in _CHARACTERS
-    ):
-        return kind.parse(str(value))
-    raise ValueError(f"{shown(str(value))}: a number, not of the type {kind.name}; write it in quotes")

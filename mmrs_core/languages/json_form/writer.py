@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.json_form.layout import formatted, laid_out
-from mmrs_core.languages.json_form.reader import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
+from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.json_form.values import quoted, written
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null

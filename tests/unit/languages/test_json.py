@@ -245,7 +245,7 @@ def test_an_id_used_twice_is_a_fault(faults):
         (b'{"a": "NaN",\n"b": -Infinity}', "a.json:2: not well-formed JSON: -Infinity is no number"),
         (b'{"a": NaN}', 'a.json:1: not well-formed JSON: NaN is no number; write "NaN"'),
         (b"\xff\x00x", "a.json:1: not readable as UTF-8 text"),
-        (b'{"a":\n' * 2000, "a.json: nested deeper than 800 levels"),
+        (b'{"a":\n' * 2000, "a.json:801: nested deeper than 800 levels"),
         (b"[" * 900 + b"]" * 900, "a.json:1: nested deeper than 800 levels"),
     ],
 )
