@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.runtime.run import Run
-    from mmrs_core.scene import Area, Plan, Policy, RobotType, Scene
+    from mmrs_core.scene import Area, Plan, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
 
 Contributed = TypeVar("Contributed")
@@ -157,9 +157,6 @@ def verify(program: Program, place: Place, contributions: Contributions) -> tupl
         move_kinds=contributions.move_kinds,
         areas=place.areas,
         environment=place.environment or {},
-        reserve=program.reserve,
-        position_error=program.position_error,
-        minimum_separation=program.minimum_separation,
     )
     return verified(given, contributions.checks)
 
@@ -178,7 +175,6 @@ def render(
     contributions: Contributions,
     *,
     allow_lossy: bool = False,
-    policies: tuple[Policy, ...] = (),
 ) -> tuple[GeneratedFile, ...]:
     """Return the code of every robot for a target.
 
@@ -195,7 +191,6 @@ def render(
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
         areas=place.areas or (),
-        policies=policies,
     )
     provider = contributions.distribution_of("targets", chosen)
     return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider)

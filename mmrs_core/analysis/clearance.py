@@ -46,7 +46,7 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     if not areas:
         yield safe(NAME, robot, "nothing in the context is forbidden or in the way")
         return
-    straight = half_diagonal_of(type_of(input, robot)) + input.position_error
+    straight = half_diagonal_of(type_of(input, robot)) + input.program.position_error
     try:
         turning = kinematics_of(input, robot).turning_radius
     except MissingFigureError:

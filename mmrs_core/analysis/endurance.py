@@ -65,7 +65,7 @@ def _judge_endurance(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict
     if lifetime is None:
         yield not_checked(ENDURANCE_NAME, robot, "it has no batteries and no lifetime: it is wired")
         return
-    allowed = lifetime * (1.0 - input.reserve)
+    allowed = lifetime * (1.0 - input.program.reserve)
     sorties = _uses(input, robot)
     yield from _judged_uses(ENDURANCE_NAME, robot, sorties, 1.0, allowed, "s")
 
@@ -78,7 +78,7 @@ def _judge_energy(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     lifetime = _lifetime(input, robot)
     if not lifetime:
         raise MissingFigureError(f"{robot.id}: its lifetime, from which its power follows, is not given")
-    allowed = stored * (1.0 - input.reserve)
+    allowed = stored * (1.0 - input.program.reserve)
     power = stored / lifetime * kinematics_of(input, robot).draw
     yield from _judged_uses(ENERGY_NAME, robot, _uses(input, robot), power, allowed, "J")
 

@@ -111,9 +111,9 @@ def kinematics_of(input: CheckInput, robot: RobotProgram) -> Kinematics:
         robots=(actor,),
         areas=input.areas or (),
         environment=input.environment,
-        minimum_separation=input.minimum_separation,
-        reserve=input.reserve,
-        position_error=input.position_error,
+        minimum_separation=input.program.minimum_separation,
+        reserve=input.program.reserve,
+        position_error=input.program.position_error,
     )
     try:
         return kind.kinematics(actor, scene)
@@ -148,7 +148,7 @@ def _as_actor(input: CheckInput, robot: RobotProgram, kind: RobotKind) -> Robot:
         return_home=True,
         payload=robot.payload,
         travel_mode=mode,
-        clearance=half_diagonal_of(robot_type) + input.position_error,
+        clearance=half_diagonal_of(robot_type) + input.program.position_error,
         kind=kind.name,
         place=robot.place,
     )

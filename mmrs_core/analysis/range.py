@@ -25,7 +25,7 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     furthest: dict[int, float] = {}
     for leg, point in points_of(motion):
         # The distance to a point is convex along a leg, so that it is largest at a corner.
-        away = dist(home, point) + leg.radius + input.position_error
+        away = dist(home, point) + leg.radius + input.program.position_error
         furthest[leg.move] = max(away, furthest.get(leg.move, 0.0))
     yield from judged(
         NAME, robot, "m", (_margin(robot, move, away, reach) for move, away in furthest.items()), motion.gaps

@@ -55,7 +55,7 @@ class Encounter:
 
 
 def _run(input: CheckInput) -> Iterator[Verdict]:
-    if input.minimum_separation is None:
+    if input.program.minimum_separation is None:
         yield Verdict(NAME, Status.NOT_CHECKED, message="no minimum separation is asked for")
         return
     occupations: list[Occupation] = []
@@ -70,7 +70,7 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
         for gaps in _gaps(input, robot):
             undecided = True
             yield unknown_moves(NAME, robot, gaps)
-    needed = input.minimum_separation + 2.0 * input.position_error
+    needed = input.program.minimum_separation + 2.0 * input.program.position_error
     encounters = _encounters(input, occupations, needed)
     worst = _worst(encounters)
     yield from (_verdict(input, encounter) for encounter in worst)

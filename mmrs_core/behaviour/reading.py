@@ -14,7 +14,7 @@ from mmrs_core.languages.element import Element, container_of, metaclass_of, pla
 from mmrs_core.languages.grounding.coordinates import ground_of
 from mmrs_core.languages.grounding.frame import fault
 from mmrs_core.languages.grounding.parts import part_of
-from mmrs_core.languages.grounding.scenes import policies_of
+from mmrs_core.languages.grounding.policies import policies_of
 from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Name, Position, Value
 

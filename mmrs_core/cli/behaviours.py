@@ -17,17 +17,19 @@ from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.element import metaclass_of
-from mmrs_core.languages.grounding.parts import names_of
-from mmrs_core.languages.grounding.scenes import area_of, ground_of, part_of, robot_type_of
-from mmrs_core.languages.grounding.values import children, number
+from mmrs_core.languages.grounding.scenes import (
+    areas_of,
+    environment_of,
+    ground_of,
+    part_of,
+    robot_type_of,
+)
+from mmrs_core.languages.grounding.values import children
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import context_in, robot_files_in
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import Place, program_of
 from mmrs_core.scene import Area, Part
-
-_AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,15 +183,14 @@ def _place(
         return Place(types)
     barred = barriers(elements, types.values(), workshop.contributions.robot_kinds)
     areas = (*_areas(behaviour, files.context), *barred)
-    return Place(types, areas, _environment(files.context))
+    return Place(types, areas, environment_of(files.context))
 
 
 def _areas(behaviour: bl.Behaviour, context: contexts.Context) -> tuple[Area, ...]:
     laid = ground_of(behaviour, context)
     if laid.faults:
         raise InvalidModelError("the context has no place beside the behaviour", in_order(laid.faults))
-    areas = names_of(area for feature in _AREAS for area in children(context, feature))
-    return tuple(area_of(area, laid, name) for area, name in areas.items())
+    return areas_of(context, laid)
 
 
 def _elements(behaviour: bl.Behaviour, context: contexts.Context | None) -> tuple[Part, ...]:
@@ -197,12 +198,3 @@ def _elements(behaviour: bl.Behaviour, context: contexts.Context | None) -> tupl
         return ()
     laid = ground_of(behaviour, context)
     return tuple(part_of(element, laid) for element in children(context, "elements"))
-
-
-def _environment(context: contexts.Context) -> Mapping[str, float]:
-    environment = context.environment
-    if environment is None:
-        return {}
-    names = [feature.name for feature in metaclass_of(environment).features]
-    known = ((name, number(environment, name)) for name in names)
-    return {name: value for name, value in known if value is not None}

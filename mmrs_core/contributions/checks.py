@@ -9,7 +9,7 @@ from enum import Enum
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.diagnostics import Place
-from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_core.scene import Area, Name, RobotType
 
 
 class Status(Enum):
@@ -54,8 +54,6 @@ class CheckInput:
         types: robot types by name; a type that a robot names may be missing.
         areas: of the context as drawn; None where no context was given.
         environment: by attribute name; absent where not known.
-        reserve: part of lifetime and energy that must be left; position_error: metres.
-        minimum_separation: metres; None: not asked for.
         shared: what checks of one verification keep for each other, by the function that found it.
     """
 
@@ -65,10 +63,6 @@ class CheckInput:
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] | None = None
     environment: Mapping[str, float] = field(default_factory=dict)
-    reserve: float = 0.2
-    position_error: float = 0.0
-    minimum_separation: float | None = None
-    policies: tuple[Policy, ...] = ()
     shared: dict[Callable[..., object], object] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.rules import MoveKind, RobotKind
-from mmrs_core.scene import Area, Name, Policy, RobotType
+from mmrs_core.scene import Area, Name, RobotType
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,6 @@ class TargetInput:
     Attributes:
         types: robot types by name.
         areas: of the context as drawn, empty where no context was given.
-        policies: of the mission, for robots whose own say nothing about an event.
     """
 
     program: Program
@@ -41,7 +40,6 @@ class TargetInput:
     robot_kinds: Mapping[Name, RobotKind]
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] = ()
-    policies: tuple[Policy, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

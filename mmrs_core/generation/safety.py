@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import inf
-from typing import cast
 
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -18,11 +17,8 @@ from mmrs_core.geometry.clearance import shrink
 from mmrs_core.scene import (
     Area,
     AreaUse,
-    Part,
     Point,
     Policy,
-    PolicyEvent,
-    PolicyResponse,
     Position,
     Ring,
     RobotType,
@@ -80,15 +76,15 @@ def escape_from(
 
 
 def policies_of(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
-    """Return one policy for each event: the robot's, else the mission's, the type's, or the kind's.
+    """Return one policy for each event: the robot's (which hold the mission's), the type's, or the kind's.
 
     Those of single waits go before all of them and stay with their transitions.
     """
     type = input.types.get(robot.type_name)
     kind = robot_kind_of(type, input.robot_kinds) if type is not None else None
-    mission = (*robot.policies, *input.policies)
+    of_type, of_kind = type.policies if type else (), kind.policies if kind else {}
     found: dict[str, Policy] = {}
-    for policy in in_precedence((), mission, _of_type(type), kind.policies if kind else {}):
+    for policy in in_precedence((), robot.policies, of_type, of_kind):
         found.setdefault(policy.event, explicit(policy))
     return tuple(found.values())
 
@@ -97,16 +93,6 @@ def explicit(policy: Policy) -> Policy:
     """Return the policy with the seconds that the fault must last, where there are any."""
     after = AFTER.get(policy.event) if policy.after is None else policy.after
     return replace(policy, after=None if after == inf else after)
-
-
-def _of_type(type: RobotType | None) -> Iterable[Policy]:
-    declared = type.part.attributes.get("policies") if type is not None else None
-    for part in declared if isinstance(declared, tuple) else ():
-        if isinstance(part, Part):
-            event, response = part.attributes.get("event"), part.attributes.get("response")
-            after = part.attributes.get("after")
-            seconds = float(after) if isinstance(after, int | float) else None
-            yield Policy(cast(PolicyEvent, event), cast(PolicyResponse, response), seconds)
 
 
 def _matters(area: Area, height: float, clearance: float) -> bool:

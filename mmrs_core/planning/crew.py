@@ -18,7 +18,7 @@ from mmrs_core.planning.materials import (
 from mmrs_core.planning.sorties import Pilot
 from mmrs_core.planning.strokes import length_of
 from mmrs_core.planning.travel import Spaces, Travel, kinematics_of
-from mmrs_core.scene import Part, Robot, Scene, Task, Value, Work
+from mmrs_core.scene import Robot, Scene, Task, Work
 
 _PORTIONS_PER_ROBOT = 60
 """Portions of a robot's part of the whole mission that are small enough to balance it."""
@@ -198,12 +198,8 @@ def homebound_of(scene: Scene) -> frozenset[str]:
 
 def _response_to_low_battery(scene: Scene, robot: Robot) -> str:
     """Return what the mission or the robot's type declares; RETURN where neither does."""
-    declared: list[Value] = [policy.response for policy in scene.policies if policy.event == _LOW]
-    of_type = robot.type.part.attributes.get("policies")
-    for part in of_type if isinstance(of_type, tuple) else ():
-        if isinstance(part, Part) and part.attributes.get("event") == _LOW:
-            declared.append(part.attributes.get("response"))
-    return str(declared[0]) if declared else "RETURN"
+    declared = (policy.response for policy in (*scene.policies, *robot.type.policies) if policy.event == _LOW)
+    return next(declared, "RETURN")
 
 
 def _seconds_of_all(scene: Scene) -> float:

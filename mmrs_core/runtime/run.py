@@ -22,7 +22,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import Ending, interpret
 from mmrs_core.runtime.slots import InProcessBus
-from mmrs_core.scene import Area, Name, Part, Policy, RobotType
+from mmrs_core.scene import Area, Name, Policy, RobotType
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +80,14 @@ def simulate(
     """
     if not backend.simulated:
         raise UnsupportedError(f"backend '{backend.name}': does not simulate, it drives robots")
-    policies = {robot.id: _policies(types, robot.type_name, robot_kinds) for robot in program.robots}
+    chosen = {robot.id: _type_of(types, robot.id, robot.type_name) for robot in program.robots}
+    policies = {id: _policies(robot_type, robot_kinds) for id, robot_type in chosen.items()}
     robots = {
         robot.id: backend.connect(
             BackendInput(
                 program,
                 robot,
-                _type_of(types, robot.id, robot.type_name),
+                chosen[robot.id],
                 robot_kinds,
                 move_kinds,
                 environment or {},
@@ -124,28 +125,14 @@ def assumed(answers: Mapping[str, bool]) -> dict[str, Condition]:
     return {identifier: Condition(identifier, _always(holds)) for identifier, holds in answers.items()}
 
 
-def type_policies(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> tuple[Policy, ...]:
-    """Return the policies of a robot type, then those of its kind."""
-    declared = robot_type.part.attributes.get("policies")
-    parts = declared if isinstance(declared, tuple) else ()
-    kind = robot_kind_of(robot_type, kinds)
-    own = [_policy(part) for part in parts if isinstance(part, Part)]
-    return in_precedence(robot_type=own, kind=kind.policies if kind else None)
-
-
 def _always(holds: bool) -> Callable[[RobotState], bool]:
     return lambda state: holds
 
 
-def _policy(part: Part) -> Policy:
-    event, response, after = (part.attributes.get(name) for name in ("event", "response", "after"))
-    return Policy(event, response, after)  # type: ignore[arg-type]  # literals by the metamodel
-
-
-def _policies(
-    types: Mapping[str, RobotType], name: str, kinds: Mapping[Name, RobotKind]
-) -> tuple[Policy, ...]:
-    return type_policies(types[name], kinds) if name in types else ()
+def _policies(robot_type: RobotType, kinds: Mapping[Name, RobotKind]) -> tuple[Policy, ...]:
+    """Return the policies of a robot type, then those of its kind."""
+    kind = robot_kind_of(robot_type, kinds)
+    return in_precedence(robot_type=robot_type.policies, kind=kind.policies if kind else None)
 
 
 def _type_of(types: Mapping[str, RobotType], robot: str, name: str) -> RobotType:

@@ -70,6 +70,7 @@ class RobotType:
         half_diagonal: half the diagonal of the robot's outer dimensions, metres.
         capabilities: sorted by payload, at least one.
         part: the whole type, with all attributes that plug-ins add.
+        policies: where a mission says nothing about an event.
     """
 
     name: str
@@ -81,6 +82,7 @@ class RobotType:
     batteries: tuple[Battery, ...]
     devices: Mapping[str, Device]
     part: Part
+    policies: tuple[Policy, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

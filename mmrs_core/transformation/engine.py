@@ -9,7 +9,7 @@ from mmrs_core.contributions.rules import MoveSpec, RobotKind, Rule
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import robot as rl
 from mmrs_core.languages.registry import Registry
-from mmrs_core.scene import Branch, Name, Part, Plan, Policy, Position, Robot, Scene, Signal, Step
+from mmrs_core.scene import Branch, Name, Plan, Policy, Position, Robot, Scene, Signal, Step
 from mmrs_core.transformation.chain import Chain, Deed, Edge, Give, Node, Report, UseDevice
 from mmrs_core.transformation.coordinates import Coordinates
 from mmrs_core.transformation.drafting import draft
@@ -33,10 +33,6 @@ class Trace:
     """What each move of a behaviour is for, robot by robot in the order of the moves."""
 
     links: tuple[TraceLink, ...]
-
-    def moves_for(self, task: str) -> tuple[TraceLink, ...]:
-        """Return the moves that serve or lead to a task."""
-        return tuple(link for link in self.links if link.task == task)
 
 
 def transform(
@@ -226,10 +222,7 @@ def _policies(robot: Robot, scene: Scene) -> tuple[Policy, ...]:
 
     That is, it comes down where it is, unless the mission or its type declares something else.
     """
-    declared = robot.type.part.attributes.get("policies")
-    parts = declared if isinstance(declared, tuple) else ()
-    events = {part.attributes.get("event") for part in parts if isinstance(part, Part)}
-    events |= {policy.event for policy in scene.policies}
+    events = {policy.event for policy in (*scene.policies, *robot.type.policies)}
     if robot.return_home or "BATTERY_LOW" in events:
         return scene.policies
     return (*scene.policies, Policy("BATTERY_LOW", "LAND"))

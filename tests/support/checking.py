@@ -14,6 +14,7 @@ from mmrs_core.testing.small_programs import MOVE, ROBOT_TYPE, program, robot_ty
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 FLYER = ("urn:mmrs:test:1.0", "Flyer")
 ANY = frozenset()
+OF_PROGRAMS = ("minimum_separation", "position_error", "reserve")
 
 
 def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0):
@@ -130,10 +131,11 @@ def rover(**more):
 
 
 def given(*robots, type=None, robot_kind=None, moves=None, surface=0.0, **more):
-    """Return the input of checks on these robots; keywords are fields of `CheckInput`."""
+    """Return the input of checks on these robots; keywords are fields of `Program` or `CheckInput`."""
     made = robot_kind or kind()
+    asked = {name: more.pop(name) for name in list(more) if name in OF_PROGRAMS}
     return CheckInput(
-        program=program(*robots, surface=surface),
+        program=replace(program(*robots, surface=surface), **asked),
         types={ROBOT_TYPE: type or rover()},
         robot_kinds={made.metaclass: made},
         move_kinds=MOVE_KINDS if moves is None else moves,

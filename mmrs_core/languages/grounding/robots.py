@@ -8,6 +8,7 @@ from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages.element import Element, metaclass_of, place_of
 from mmrs_core.languages.grounding.frame import fault
 from mmrs_core.languages.grounding.parts import NO_GROUND, part_of
+from mmrs_core.languages.grounding.policies import policies_of
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.scene import Battery, Capability, Device, DeviceAction, RobotType
 
@@ -37,6 +38,7 @@ def robot_type_of(robot: Element) -> RobotType:
         batteries=tuple(_battery(each) for each in children(robot, "batteries")),
         devices={text(each, "id"): _device(each) for each in children(robot, "devices")},
         part=part_of(robot, NO_GROUND),
+        policies=policies_of(robot),
     )
 
 

@@ -11,6 +11,7 @@ from mmrs_core.languages.element import Element, Unknown, descendants, metaclass
 from mmrs_core.languages.grounding.coordinates import Ground, ground_of
 from mmrs_core.languages.grounding.frame import fault
 from mmrs_core.languages.grounding.parts import area_of, names_of, part_of, position_of
+from mmrs_core.languages.grounding.policies import policies_of
 from mmrs_core.languages.grounding.robots import MISSING, robot_type_of
 from mmrs_core.languages.grounding.values import child, children, literal, number, text, texts, value
 from mmrs_core.languages.metaclass import Enumeration
@@ -18,9 +19,6 @@ from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.scene import (
     Area,
     Dependency,
-    Policy,
-    PolicyEvent,
-    PolicyResponse,
     Robot,
     RobotType,
     Scene,
@@ -28,12 +26,19 @@ from mmrs_core.scene import (
     TravelMode,
 )
 
-__all__ = ["Ground", "area_of", "ground", "ground_of", "part_of", "robot_type_of"]
+__all__ = [
+    "Ground",
+    "area_of",
+    "areas_of",
+    "environment_of",
+    "ground",
+    "ground_of",
+    "part_of",
+    "robot_type_of",
+]
 
 UNKNOWN_TYPE = "GND003"
 NOT_INSTALLED = "GND004"
-EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
-RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
 MODES: tuple[TravelMode, ...] = get_args(TravelMode)
 AREAS = ("forbiddenAreas", "obstacles", "emergencyAreas")
 
@@ -59,27 +64,15 @@ def ground(models: ModelSet) -> Scene:
         tasks=tuple(_task(task, name, laid) for task, name in tasks.items()),
         dependencies=tuple(_dependency(each, tasks) for each in children(mission, "taskDependencies")),
         robots=_robots(models, laid),
-        areas=_areas(context, laid) if context is not None else (),
+        areas=areas_of(context, laid) if context is not None else (),
         elements=tuple(part_of(each, laid) for each in children(context, "elements")),
-        environment=_environment(context) if context is not None else {},
+        environment=environment_of(context) if context is not None else {},
         transit_altitude=number(mission, "transitAltitude"),
         minimum_separation=number(mission, "minimumSeparation"),
         reserve=_or(number(mission, "reserve"), 0.2),
         position_error=_or(number(mission, "positionError"), 0.0),
         policies=policies_of(mission),
         accepted_unknowns=texts(mission, "acceptedUnknowns"),
-    )
-
-
-def policies_of(element: Element) -> tuple[Policy, ...]:
-    """Return the policies that a mission, robot type or transition declares."""
-    return tuple(
-        Policy(
-            literal(each, "event", EVENTS, "LINK_LOST"),
-            literal(each, "response", RESPONSES, "HOLD"),
-            number(each, "after"),
-        )
-        for each in children(element, "policies")
     )
 
 
@@ -130,12 +123,14 @@ def _robot(robot: Element, name: str, robot_type: RobotType, error: float, laid:
     )
 
 
-def _areas(context: Element, laid: Ground) -> tuple[Area, ...]:
+def areas_of(context: Element, laid: Ground) -> tuple[Area, ...]:
+    """Return what a context forbids, what is in the way there, and where robots may flee to."""
     areas = names_of(each for feature in AREAS for each in children(context, feature))
     return tuple(area_of(each, laid, name) for each, name in areas.items())
 
 
-def _environment(context: Element) -> dict[str, float]:
+def environment_of(context: Element) -> dict[str, float]:
+    """Return weather and water of a context by attribute name; absent where it does not say."""
     environment = child(context, "environment")
     if environment is None:
         return {}

@@ -31,8 +31,6 @@ def derived(contributions):
         move_kinds=contributions.move_kinds,
         areas=place.areas,
         environment=place.environment,
-        reserve=program.reserve,
-        position_error=program.position_error,
     )
 
 

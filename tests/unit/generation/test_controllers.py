@@ -202,10 +202,11 @@ def test_policies_are_the_waits_then_the_robots_then_the_types():
         transitions={1: Transition(1, 2, waits=("go",), policies=(Policy("WAIT_TOO_LONG", "LAND", 9.0),))},
     )
     made = program(replace(robot, policies=(Policy("LINK_LOST", "HOLD"),)))
-    given = target_input(made)
-    files = render(MAVLINK_PYTHON, replace(given, policies=(Policy("LINK_LOST", "LAND"),)))
-    source = files[0].content.decode()
-    assert 'policies=(Policy("LINK_LOST", "HOLD", 10.0),),' in source
+    kind = replace(quad(), policies=(Policy("LINK_LOST", "LAND"), Policy("BATTERY_LOW", "LAND")))
+    source = render(MAVLINK_PYTHON, target_input(made, [kind]))[0].content.decode()
+    assert 'Policy("LINK_LOST", "HOLD", 10.0)' in source
+    assert 'Policy("BATTERY_LOW", "LAND")' in source
+    assert 'Policy("LINK_LOST", "LAND"' not in source
     assert 'policies=(Policy("WAIT_TOO_LONG", "LAND", 9.0),)' in source
 
 

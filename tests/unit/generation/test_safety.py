@@ -6,7 +6,7 @@ from math import inf
 import pytest
 
 from mmrs_core.generation.safety import clearance_of, escape_from, fence_of, policies_of, refuges
-from mmrs_core.scene import Area, AreaUse, Part, Policy
+from mmrs_core.scene import Area, AreaUse, Policy
 from mmrs_core.testing.programs import areas, program, quad, robot_program, target_input
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
@@ -53,13 +53,9 @@ def test_an_escape_keeps_clearance_and_safety_distance(north, safe):
 
 
 def test_a_policy_of_the_type_counts_where_mission_and_robot_say_nothing():
-    part = Part((), {"event": "PEER_LOST", "response": "LAND", "after": 7.0})
-    type = replace(quad(), part=Part(quad().part.metaclasses, {"policies": (part,)}))
+    type = replace(quad(), policies=(Policy("PEER_LOST", "LAND", 7.0), Policy("LINK_LOST", "LAND")))
     robot = replace(robot_program("a", []), policies=(Policy("LINK_LOST", "HOLD", 1.0),))
-    given = target_input(program(robot), [type])
-    given = replace(given, policies=(Policy("LINK_LOST", "LAND"), Policy("BATTERY_LOW", "LAND")))
-    assert policies_of(robot, given) == (
+    assert policies_of(robot, target_input(program(robot), [type])) == (
         Policy("LINK_LOST", "HOLD", 1.0),
-        Policy("BATTERY_LOW", "LAND", None),
         Policy("PEER_LOST", "LAND", 7.0),
     )

@@ -320,6 +320,14 @@ def test_a_robot_of_a_kind_that_nobody_contributed_is_refused(kinds):
         SimulatedRobot(given(program(robot("r", [])), kinds, robot_type(metaclass=("urn:x", "Blimp"))))
 
 
+def test_the_policies_of_a_type_count_where_the_behaviour_says_nothing(fly):
+    silent = program(robot("r", [hold("h", before=(use("cam", "shoot"),))]))
+    patient = replace(robot_type(), policies=(Policy("DEVICE_SILENT", "CONTINUE"),))
+    strict = replace(robot_type(), policies=(Policy("DEVICE_SILENT", "HOLD"),))
+    outcomes = [fly(silent, type=each).ending.outcome for each in (patient, strict)]
+    assert outcomes == [Outcome.SUCCESS, Outcome.FAILED]
+
+
 def test_an_option_that_the_simulation_does_not_have_is_refused(kinds):
     with pytest.raises(UnsupportedError, match="option 'rain'"):
         SIMULATION.connect(given(program(robot("r", [])), kinds, options={"rain": "1"}))

@@ -271,7 +271,7 @@ def test_every_move_is_traced_to_its_task_and_rule():
     model, trace = behaviour_of(
         plan_of(transit(HOME, (1.0, 0.0, 0.0)), serve((1.0, 0.0, 0.0), (2.0, 0.0, 0.0)))
     )
-    assert [(link.move, link.rule) for link in trace.moves_for("t")] == [
+    assert [(link.move, link.rule) for link in trace.links if link.task == "t"] == [
         ("goto_001", "transit"),
         ("goto_002", "rule"),
     ]

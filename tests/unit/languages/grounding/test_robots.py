@@ -8,6 +8,7 @@ from grounded import faults, geo, quad, scene, simple
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import robot
 from mmrs_core.languages.grounding.scenes import robot_type_of
+from mmrs_core.scene import Policy
 
 
 def test_clearance_is_half_the_diagonal_and_the_position_error(registry):
@@ -66,6 +67,11 @@ def test_robot_type_sorts_capabilities_and_converts_batteries():
     action = found.devices["cam"].actions["TakePicture"]
     assert (action.duration, action.parameters) == (1.5, ("zoom",))
     assert found.devices["cam"].properties == {"focal.length": "8.8"}
+
+
+def test_robot_type_says_how_it_answers_faults():
+    made = quad(policies=[robot.Policy(event="LINK_LOST", response="RETURN", after=5.0)])
+    assert robot_type_of(made).policies == (Policy("LINK_LOST", "RETURN", 5.0),)
 
 
 @pytest.mark.parametrize("feature", ["size", "movementCapabilities"])
