@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from math import isfinite
 from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.metaclass import Feature
 
 Plain = object
 """None, bool, int, float, str, list of plain values, or dict from str to plain values."""
@@ -63,7 +68,7 @@ def _element(value: object) -> Plain:
 
     An element whose metamodel is not installed keeps its XML.
     """
-    from mmrs_core.languages.element import Element, Unknown, get, is_set, metaclass_of, path_of
+    from mmrs_core.languages.element import Element, Unknown, get, is_set, metaclass_of
 
     if not isinstance(value, Element):
         raise TypeError(f"{type(value).__name__}: no such value passes between stages")
@@ -75,10 +80,30 @@ def _element(value: object) -> Plain:
         if feature.is_container or not is_set(value, feature.name):
             continue
         found = get(value, feature.name)
-        if feature.is_reference and not feature.containment:
-            held = found if feature.many and isinstance(found, Iterable) else (found,)
-            paths = [path_of(each) if isinstance(each, Element) else None for each in held]
-            encoded[feature.name] = list(paths) if feature.many else paths[0]
-        else:
-            encoded[feature.name] = plain(list(found) if isinstance(found, list) else found)
+        values = found if feature.many and isinstance(found, Iterable) else (found,)
+        held = [value_of(feature, each) for each in values]
+        encoded[feature.name] = held if feature.many else held[0]
+    return encoded
+
+
+def value_of(feature: Feature, value: object) -> Plain:
+    """Return a value of a feature: contained elements whole, others by their paths, null as None.
+
+    Values of attributes are as in the JSON form of models: what JSON has no sign for is the text that EMF
+    writes.
+
+    Raises:
+        TypeError: for a value that is not of the feature's type.
+    """
+    from mmrs_core.languages.element import Element, path_of
+    from mmrs_core.languages.json_form.values import written
+    from mmrs_core.languages.metaclass import Metaclass
+
+    if isinstance(value, Element):
+        return _element(value) if feature.containment else path_of(value)
+    if value is None:
+        return None
+    if isinstance(feature.type, Metaclass) or not feature.type.accepts(value):
+        raise TypeError(f"{feature.name}: {value!r} is not of the type {feature.type.name}")
+    encoded: Plain = json.loads(written(feature.type, value))
     return encoded

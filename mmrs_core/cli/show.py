@@ -32,7 +32,8 @@ def show(
     """Print a model as a tree of its elements, or what a path leads to.
 
     Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'.
-    What belongs to a plug-in that is not installed is shown as unknown.
+    Where a file has several roots, '/1' is the second. What belongs to a plug-in that is not installed is
+    shown as unknown.
     """
     from mmrs_core.cli.any_model import faults_in, read_foreign
     from mmrs_core.cli.journey import Workshop
@@ -52,7 +53,7 @@ def show(
     if json:
         _say_as_json(model, found.model.roots, matches if path else None)
     else:
-        _say(matches, depth, with_paths=bool(path))
+        _say(matches, depth, with_paths=bool(path) or len(matches) > 1)
     return 1 if not matches or any(map(is_mistake, faults)) else 0
 
 
@@ -60,12 +61,21 @@ def _say_as_json(file: Path, roots: Sequence[Element], matches: Sequence[Match] 
     if matches is None:
         say_json({"file": file, "roots": roots})
         return
-    found = [{"path": each.path, "line": each.owner._mmrs_line, "value": each.value} for each in matches]
+    from mmrs_core.cli.encoding import value_of
+
+    found = [
+        {
+            "path": each.path,
+            "line": each.owner._mmrs_line,
+            "value": value_of(each.feature, each.value) if each.feature else each.value,
+        }
+        for each in matches
+    ]
     say_json({"file": file, "found": found})
 
 
 def _say(matches: Sequence[Match], depth: int, with_paths: bool) -> None:
-    from mmrs_core.cli.tree_words import tree, value_words
+    from mmrs_core.cli.tree_words import tree, value_words, words_for
     from mmrs_core.languages.element import Element
 
     for match in matches:
@@ -76,4 +86,5 @@ def _say(matches: Sequence[Match], depth: int, with_paths: bool) -> None:
             for line in rest:
                 say(line)
         else:
-            say(f"{lead}{value_words(match.value)}")
+            words = words_for(match.feature, match.value) if match.feature else value_words(match.value)
+            say(f"{lead}{words}")

@@ -248,14 +248,25 @@ def place_of(element: Element) -> Place:
 
 
 def path_of(element: Element) -> str:
-    """Return the features and positions that lead to it from its root, such as ``/tasks[2]/shell[0]``."""
+    """Return the features and positions that lead to it from its root, such as ``/tasks[2]/shell[0]``.
+
+    Where its file has several roots, their number comes first: ``/1/shell[0]``.
+    """
     steps: list[str] = []
     while (container := element._mmrs_container) is not None:
         feature = element._mmrs_feature
         assert feature is not None  # set together with the container
         steps.append(f"/{feature.name}{_index(container, feature, element)}")
         element = container
-    return "".join(reversed(steps)) or "/"
+    return f"{_number_of(element)}{''.join(reversed(steps))}" or "/"
+
+
+def _number_of(root: Element) -> str:
+    """Return what tells a root from the others of its file; nothing if it is the only one."""
+    roots = root._mmrs_source.roots if root._mmrs_source is not None else ()
+    if len(roots) < 2:
+        return ""
+    return next((f"/{number}" for number, each in enumerate(roots) if each is root), "")
 
 
 def _index(container: Element, feature: Feature, element: Element) -> str:

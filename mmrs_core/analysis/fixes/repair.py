@@ -19,7 +19,7 @@ from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
-from mmrs_core.languages.xmi.markup import Markup
+from mmrs_core.languages.xmi.markup import Markup, below_root
 
 _MOST_TRIALS = 100
 """How often a project is diagnosed anew; what takes longer is better looked at by a person."""
@@ -212,9 +212,9 @@ def _markup(file: Path, texts: Mapping[Path, bytes]) -> Markup | None:
 
 def _element(model: Model, path: str) -> Element | None:
     """Return the first element with that path."""
-    for root in model.roots:
+    for number, root in enumerate(model.roots):
         element: Element | None = root
-        for step in _STEP.finditer(path):
+        for step in _STEP.finditer(below_root(path, number)):
             element = _inside(element, step[1], step[2]) if element is not None else None
         if element is not None and not isinstance(element, Unknown):
             return element

@@ -5,9 +5,11 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime
+from decimal import Decimal
+from math import isfinite
 from typing import Any
 
-from mmrs_core.languages.datatypes import parse_date, shown
+from mmrs_core.languages.datatypes import DataType, parse_date, parse_real, shown
 from mmrs_core.languages.element import Element, get, label_of, path_of
 from mmrs_core.languages.metaclass import Enumeration, Feature
 from mmrs_core.languages.naming import nearest
@@ -68,11 +70,14 @@ def _is_so(feature: Feature, value: object, condition: Condition) -> bool:
         return True
     if condition.sign == "=":
         return _equals(feature, value, condition.value)
+    order = _ORDERS[condition.sign]
     if isinstance(value, datetime):
-        return _ORDERS[condition.sign](value, parse_date(condition.value))
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{feature.name}: no number, cannot be compared by {condition.sign}")
-    return _ORDERS[condition.sign](value, _number(condition.value))
+        return order(value, parse_date(condition.value))
+    number = _exact(value)
+    if number is None:
+        raise ValueError(f"{feature.name}: no number and no date, cannot be compared by {condition.sign}")
+    bound = _number(condition.value)
+    return number == number and bound == bound and order(number, bound)  # nothing is beside what is no number
 
 
 def _equals(feature: Feature, value: object, wanted: str) -> bool:
@@ -81,15 +86,32 @@ def _equals(feature: Feature, value: object, wanted: str) -> bool:
     kind = feature.type
     if isinstance(kind, Enumeration):
         return wanted in (value, kind.render(value))
-    if isinstance(value, bool):
-        return wanted == ("true" if value else "false")
-    if isinstance(value, int | float):
-        return value == _number(wanted)
+    if isinstance(value, datetime):
+        return value == parse_date(wanted)
+    number = _exact(value)
+    if number is not None:
+        return number == _number(wanted)
+    if isinstance(kind, DataType) and kind.accepts(value):
+        text = kind.render(value)
+        return wanted in (text, value) or (isinstance(value, bytes) and wanted.upper() == text)
     return str(value) == wanted
 
 
-def _number(text: str) -> float:
+def _exact(value: object) -> Decimal | float | None:
+    """Return a number of any kind in a form that compares without rounding; None for what is no number.
+
+    A whole number beyond 2**53 and a decimal one keep all their digits; what is not finite stays a float.
+    """
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, float):
+        return Decimal(repr(value)) if isfinite(value) else value
+    return Decimal(value) if isinstance(value, int | Decimal) else None
+
+
+def _number(text: str) -> Decimal | float:
     try:
-        return float(text)
-    except ValueError:
+        number = parse_real(text)
+        return Decimal(text.strip().rstrip("fFdD")) if isfinite(number) else number
+    except (ValueError, ArithmeticError):
         raise ValueError(f"{shown(text)}: not a number to compare with") from None

@@ -17,6 +17,7 @@ _CONDITION = re.compile(
     re.VERBOSE,
 )
 _FRAGMENT = re.compile(r"#?/(?P<root>[0-9]{0,9})(?P<steps>(?:/@[^/]+)*)")
+_ROOT = re.compile(r"/(?P<number>[0-9]{1,9})(?=[./]|$)")
 _FRAGMENT_STEP = re.compile(r"/@(?P<name>[^.\[/]+)(?:\.(?P<index>[0-9]{1,9}))?")
 
 
@@ -65,7 +66,7 @@ class Step:
 
 
 def parse_path(text: str) -> tuple[Step, ...]:
-    """Return the steps of a path; none for the roots themselves.
+    """Return the steps of a path; none for the roots themselves, of which ``/1`` is the second.
 
     Raises:
         ValueError: if it is no path; says where it breaks.
@@ -95,6 +96,10 @@ def _fragment(root: str, steps: str, text: str) -> tuple[Step, ...]:
 def _steps(text: str) -> tuple[Step, ...]:
     steps: list[Step] = []
     position = 0
+    root = _ROOT.match(text)
+    if root is not None:
+        steps.append(Step(Axis.ROOT, root["number"], (), root.group()))
+        position = root.end()
     while position < len(text):
         lead = _STEP.match(text, position)
         if lead is None and steps:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from mmrs_core.languages.element import Element, Unknown, descendants, get, holds, path_of
-from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.query.conditions import known_features, meets
 from mmrs_core.languages.query.path import Axis, Condition, Step, parse_path
@@ -24,11 +24,13 @@ class Match:
         value: an element, or the value of an attribute.
         owner: the element itself, or the one that has the value.
         tail: feature and place of a value within its owner; empty for an element.
+        feature: that has the value; None for an element.
     """
 
     value: object
     owner: Element
     tail: str = ""
+    feature: Feature | None = None
 
     @property
     def path(self) -> str:
@@ -91,7 +93,8 @@ def _values(element: Element, name: str) -> Iterator[Match]:
             if isinstance(each, Element):
                 yield Match(each, each)
             elif each is not None:
-                yield Match(each, element, f"{feature.name}{f'[{index}]' if feature.many else ''}")
+                tail = f"{feature.name}{f'[{index}]' if feature.many else ''}"
+                yield Match(each, element, tail, feature)
 
 
 def _below(step: Step, elements: Sequence[Element], roots: Sequence[Element]) -> Iterator[Match]:

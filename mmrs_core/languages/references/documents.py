@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
@@ -46,6 +46,7 @@ class Draft:
     broken: set[tuple[Element, str]] = field(default_factory=set)
     found: dict[str, Element] = field(default_factory=dict)
     lists: dict[str, list[object]] = field(default_factory=dict)
+    _read_below: list[int] = field(default_factory=list)
 
     def fault(
         self,
@@ -68,9 +69,24 @@ class Draft:
             )
             raise UnreadableError(message)
         path = path_of(element) if element is not None else ""
+        self._read_below.append(len(self.roots) - 1)
         self.diagnostics.append(
             Diagnostic(code, severity, message, Place(self.source.file, line, path), hint)
         )
+
+    def number_roots(self) -> None:
+        """Take all roots as read: if there are several, their numbers lead the paths of what was noted.
+
+        While the first is read, nobody knows whether others follow.
+        """
+        self.source.roots = tuple(self.roots)
+        if len(self.roots) < 2:
+            return
+        for index, number in enumerate(self._read_below):
+            place = self.diagnostics[index].place
+            if place.path:
+                path = f"/{number}{place.path.rstrip('/')}"
+                self.diagnostics[index] = replace(self.diagnostics[index], place=replace(place, path=path))
 
     def find(self, fragment: str) -> Element | None:
         """Return the element that a fragment means: a path such as ``//@tasks.2``, or an id."""

@@ -116,11 +116,11 @@ class Markup:
         """Return the tag of the element with that path, on that line; None where they do not agree.
 
         Args:
-            path: such as ``/tasks[2]/shell[0]``.
+            path: such as ``/tasks[2]/shell[0]``, or ``/1/shell[0]`` in the second of several models.
             line: where the tag begins, or a tag directly in it, as a fault of its content says.
         """
-        for root in self.models():
-            tag = _follow(root, path)
+        for number, root in enumerate(self.models()):
+            tag = _follow(root, below_root(path, number))
             if tag is not None and line in (tag.line, *(child.line for child in tag.children)):
                 return tag
         return None
@@ -158,6 +158,16 @@ def _attributes(data: bytes, begin: int, tag: str, values: Mapping[str, str]) ->
             name, values[name], match.start(1), match.end(1), match.start(2) + 1, match.end(2) - 1
         )
         place = match.end()
+
+
+def below_root(path: str, number: int) -> str:
+    """Return a path without the number of the root that it begins at, if it begins with that.
+
+    >>> below_root("/1/shell[0]", 1), below_root("/shell[0]", 1), below_root("/10", 1)
+    ('/shell[0]', '/shell[0]', '/10')
+    """
+    head, _, rest = path.removeprefix("/").partition("/")
+    return f"/{rest}" if head == str(number) else path
 
 
 def _follow(root: Tag, path: str) -> Tag | None:

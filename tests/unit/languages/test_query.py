@@ -10,7 +10,8 @@ ZOO = """
 <animals xsi:type="zoo:Lion" name="Leo" teeth="28" weight="190.5" tame="true" mood="is-hungry">
   <tags>big</tags><tags>loud</tags>
 </animals>
-<animals xsi:type="zoo:Lion" name="Lea O'Neil" mate="//@animals.0" born="2020-01-01T00:00:00.000+0000"/>
+<animals xsi:type="zoo:Lion" name="Lea O'Neil" mate="//@animals.0" born="2020-01-01T00:00:00.000+0000"
+    price="12.50" chip="0AFF" grade="97"/>
 <animals xsi:type="zoo:Otter" name="Ot" depth="0.0"><cubs xsi:type="zoo:Otter" name="Otti"/></animals>
 <animals xsi:type="far:Alien" xmlns:far="urn:far"/>
 <keepers badge="k1" keeps="//@animals.0 //@animals.2"/>
@@ -42,6 +43,15 @@ def roots(read_zoo):
         ("animals[mood=HUNGRY]", ["/animals[0]"]),
         ("animals[mood=is-hungry]", ["/animals[0]"]),
         ("animals[born<2021-01-01]", ["/animals[1]"]),
+        ("animals[born=2020-01-01]", ["/animals[1]"]),
+        ("animals[price>12]", ["/animals[1]"]),
+        ("animals[price<=12.5]", ["/animals[1]"]),
+        ("animals[price=12.5]", ["/animals[1]"]),
+        ("animals[price<1e400]", ["/animals[1]"]),
+        ("animals[weight=190.5]", ["/animals[0]"]),
+        ("animals[weight>=1.905E2]", ["/animals[0]"]),
+        ("animals[chip=0aff]", ["/animals[1]"]),
+        ("animals[grade=a]", ["/animals[1]"]),
         ("animals[mate]", ["/animals[1]"]),
         ("animals[depth]", ["/animals[2]"]),
         ("animals[tags=loud].name", ["/animals[0]/name"]),
@@ -62,6 +72,8 @@ def roots(read_zoo):
         ("//@animals.2/@cubs.0", ["/animals[2]/cubs[0]"]),
         ("#//@keepers.0", ["/keepers[0]"]),
         ("/0", ["/"]),
+        ("/0/animals[1]", ["/animals[1]"]),
+        ("/0//Otter[0]", ["/animals[2]"]),
         ("'animals'[0]", ["/animals[0]"]),
     ],
 )
@@ -92,7 +104,11 @@ def test_an_element_that_several_lead_to_is_found_once(roots):
         ("animals.name.x", "animals.name.x: nothing is below a value"),
         ("animals.name[x=1]", "animals.name[x=1]: values have no features to ask for"),
         ("animals[weight>much]", "animals[weight>much]: 'much': not a number to compare with"),
-        ("animals[name>3]", "animals[name>3]: name: no number, cannot be compared by >"),
+        ("animals[name>3]", "animals[name>3]: name: no number and no date, cannot be compared by >"),
+        (
+            "animals[born>today]",
+            "animals[born>today]: 'today': not a date such as 2024-05-01T10:11:12.123+0200",
+        ),
         ("animals[0", "animals[0: expected [2], [*], [name] or [name=value] here, after 'animals', not '[0'"),
         ("animals[]", "animals[]: expected [2], [*], [name] or [name=value] here, after 'animals', not '[]'"),
         ("animals..name", "animals..name: expected a name here, after 'animals.', not '.name'"),
@@ -116,6 +132,11 @@ def test_a_broken_path_says_where_and_what_would_be_there(roots, path, message):
         ("animals[0].cubs.name", "animals[0].cubs: nothing there"),
         ("animals[name=Le]", "animals[name=Le]: none of 4 elements is so; did you mean Leo?"),
         ("//Lion[teeth>40]", "//Lion[teeth>40]: none of 2 elements is so"),
+        (
+            "animals[price>12.500000000000000001]",
+            "animals[price>12.500000000000000001]: none of 4 elements is so",
+        ),
+        ("animals[weight<NaN]", "animals[weight<NaN]: none of 4 elements is so"),
         ("//Lin", "//Lin: no element of a class Lin in this model; did you mean Lion?"),
         ("/3", "/3: the model has 1 root"),
         ("//@animals.9", "//@animals.9: nothing there; there is animals[0] to animals[3]"),
