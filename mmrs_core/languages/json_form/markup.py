@@ -11,7 +11,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
 from mmrs_core.languages.json_form.values import quoted
 from mmrs_core.languages.xmi.events import XSI
-from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag
+from mmrs_core.languages.xmi.markup import Attribute, Markup, Tag, below_root
 
 _TOKEN = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[{}\[\]:,]|[^\s{}\[\]:,"]+', re.DOTALL)
 _STEP = re.compile(r"([^/\[\]]+)(?:\[([0-9]+)\])?")
