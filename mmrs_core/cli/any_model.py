@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import tell
+from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
@@ -43,6 +44,7 @@ def read_foreign(
     """
     from mmrs_core.languages.foreign import read_any
 
+    refuse_metamodel(file)
     given = tuple(metamodels or ())
     found = read_any(file, workshop.contributions.languages, given, unsaved)
     if unsaved:
@@ -54,6 +56,22 @@ def read_foreign(
     for ns_uri in sorted(_strange(found)):
         tell(f"{file}: note: if you have the .ecore file of {ns_uri}, give it by --metamodel")
     return found
+
+
+def is_metamodel(file: Path) -> bool:
+    """Return whether a file is called a metamodel."""
+    return file.suffix.lower() == ".ecore"
+
+
+def refuse_metamodel(file: Path) -> None:
+    """Do nothing, unless a file is a metamodel.
+
+    Raises:
+        UnreadableError: if it is, with what can be done with one.
+    """
+    if is_metamodel(file):
+        ways = "'mmrs show' prints it, 'mmrs diff' compares it, 'mmrs metamodel' does more"
+        raise UnreadableError(f"{file}: a metamodel, not a model; {ways}, and --metamodel reads models by it")
 
 
 def _strange(found: ForeignModel) -> frozenset[str]:
@@ -76,6 +94,7 @@ def is_foreign(workshop: Workshop, file: Path) -> bool:
 
     if file.is_dir():
         return False
+    refuse_metamodel(file)
     ns_uri, name = first_kind(file)
     registry = workshop.contributions.languages
     if not ns_uri or ns_uri in registry.chains:

@@ -1,69 +1,133 @@
-"""``mmrs convert``: a model from XMI to JSON and back."""
+"""``mmrs convert``: models from XMI to JSON and back."""
 
 from __future__ import annotations
 
-from enum import StrEnum
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mmrs_core.cli.any_model import Metamodels, is_mistake
+from mmrs_core.cli.conversion import Form, form_of, other_form
 from mmrs_core.cli.output import counted, report, say, say_file, say_json, tell
-from mmrs_core.cli.schema_places import SchemaLocation, places_in
+from mmrs_core.cli.schema_places import SchemaLocation
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.errors import InvalidModelError, UnsupportedError
+from mmrs_core.errors import InvalidModelError
 
 if TYPE_CHECKING:
+    from mmrs_core.cli.conversion import Converted
+    from mmrs_core.cli.journey import Workshop
     from mmrs_core.languages.foreign import ForeignModel
-
-
-class Form(StrEnum):
-    """How a model is written down."""
-
-    XMI = "xmi"
-    JSON = "json"
 
 
 def convert(
     call: typer.Context,
-    source: Annotated[Path, typer.Argument(metavar="IN", help="A model, XMI or JSON, of any language.")],
-    target: Annotated[
-        Path | None, typer.Argument(metavar="OUT", help="The file to write; else it is printed.")
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="IN [OUT]",
+            help="A model, XMI or JSON, of any language, and the file to write; else it is printed. "
+            "With -o: any number of models, and of folders with a project.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Convert all files together, into this folder."),
     ] = None,
     to: Annotated[
-        Form | None, typer.Option("--to", help="The form to write; else by OUT's ending, or the other one.")
+        Form | None,
+        typer.Option("--to", help="The form to write; else by OUT's ending, or the one that IN has not."),
     ] = None,
     metamodel: Metamodels = None,
     schema_location: SchemaLocation = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace OUT where it exists.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     json: Json = False,
 ) -> int:
-    """Write a model in its other form: XMI as JSON, JSON as XMI. Nothing is lost on the way.
+    """Write models in their other form: XMI as JSON, JSON as XMI. Nothing is lost on the way.
 
-    Example: mmrs convert field/mission.xmi field-json/mission.json
+    Models that are converted together refer to each other as before; all of them are written, or none.
+
+    Examples: mmrs convert field/mission.xmi mission.json; mmrs convert field -o field-json
     """
-    from mmrs_core.cli.any_model import faults_in, read_foreign
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.protection import ProtectedError, files_of, refuse_inputs
 
-    found = read_foreign(Workshop(settings_of(call)), source, metamodel)
+    workshop = Workshop(settings_of(call))
+    if output is not None:
+        return _together(workshop, files, output, to, metamodel or (), schema_location, force, json)
+    if len(files) > 2:
+        raise typer.BadParameter("several files are converted together by -o DIR, which says where to")
+    target = files[1] if len(files) == 2 else None
+    return _alone(workshop, files[0], target, to, metamodel or (), schema_location, force, json)
+
+
+def _together(
+    workshop: Workshop,
+    given: Sequence[Path],
+    directory: Path,
+    to: Form | None,
+    metamodels: Sequence[Path],
+    exported: Path | None,
+    force: bool,
+    json: bool,
+) -> int:
+    from mmrs_core.cli.conversion import converted_together, refuse_existing, targets_in
+    from mmrs_core.cli.replacing import replace_files
+
+    targets = targets_in(directory, given, to)
+    made, faults = converted_together(workshop, targets, metamodels, exported)
+    report(faults)
+    refuse_existing(list(targets.values()), force)
+    replace_files({each.target: each.text for each in made})
+    if json:
+        say_json({"files": [_as_json(each) for each in made], "diagnostics": faults})
+        return 0
+    for each in made:
+        say(f"written: {each.target} ({counted(each.elements, 'element')})")
+    for file in dict.fromkeys(file for each in made for file in each.beside):
+        tell(f"{file}: note: referred to, and not converted: references lead to where it is")
+    return 0
+
+
+def _as_json(made: Converted) -> dict[str, object]:
+    return {
+        "source": made.source,
+        "file": made.target,
+        "form": made.form.value,
+        "elements": made.elements,
+        "refers_to": made.beside,
+    }
+
+
+def _alone(
+    workshop: Workshop,
+    source: Path,
+    target: Path | None,
+    to: Form | None,
+    metamodels: Sequence[Path],
+    exported: Path | None,
+    force: bool,
+    json: bool,
+) -> int:
+    from mmrs_core.cli.any_model import faults_in, read_foreign
+    from mmrs_core.cli.conversion import refuse_existing, text_of
+    from mmrs_core.cli.protection import files_of, refuse_inputs
+    from mmrs_core.languages.writing import replace_file
+
+    found = read_foreign(workshop, source, metamodels)
     faults = tuple(faults_in(found))
     if any(map(is_mistake, faults)):
         raise InvalidModelError(f"{source}: not converted, since something of it would be lost", faults)
     report(faults)
-    form = to or _form_of(source, target)
+    form = to or (form_of(target) if target is not None else other_form(source))
     if target is not None:
         refuse_inputs([target], files_of([found.model]))
-        if target.exists() and not force:
-            raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
-    text = _text(found, source, target, form, schema_location)
+        refuse_existing([target], force)
+    text = text_of(found.model.roots, found.registry, source, target or source, form, exported)
     count = sum(1 for _ in found.model.elements())
     if target is None:
         say_file(text)
         return 0
-    from mmrs_core.languages.writing import replace_file
-
     replace_file(target, text)
     if json:
         say_json({"file": target, "form": form.value, "elements": count, "diagnostics": faults})
@@ -82,22 +146,3 @@ def _tell_of_kept_links(found: ForeignModel, source: Path, target: Path) -> None
     if any(isinstance(each, Unknown) for each in found.model.elements()):
         words = "elements of languages that are not installed are kept as they are, with their links to files"
         tell(f"{target}: note: {words}; such links still start from {source.parent}")
-
-
-def _form_of(source: Path, target: Path | None) -> Form:
-    if target is not None:
-        return Form.JSON if target.suffix.lower() == ".json" else Form.XMI
-    return Form.XMI if source.suffix.lower() == ".json" else Form.JSON
-
-
-def _text(found: ForeignModel, source: Path, target: Path | None, form: Form, exported: Path | None) -> bytes:
-    from mmrs_core.languages.foreign import kept_places
-    from mmrs_core.languages.writing import to_json, to_xmi
-
-    file = target if target is not None else source
-    places = {**kept_places(source, file), **places_in(exported, found.registry, file)}
-    write = to_json if form is Form.JSON else to_xmi
-    try:
-        return write(found.model.roots, found.registry, schema_location=places, file=file)
-    except ValueError as fault:
-        raise UnsupportedError(f"{source}: {fault}") from None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_mistake
+from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
@@ -35,6 +35,7 @@ def diff(
     """Say what differs between two models: what was added, removed, moved or changed.
 
     Formatting, comments and defaults are no differences, and neither is XMI or JSON.
+    Of two .ecore files, what 'mmrs metamodel diff' says: what changed, and whether old models still load.
     Exit codes: 0 where the models say the same, 1 where they differ, 3 where one cannot be read wholly.
 
     Example: mmrs diff mission.xmi mission-of-yesterday.xmi
@@ -43,6 +44,8 @@ def diff(
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.languages.comparison.changes import changes_between
 
+    if is_metamodel(before) or is_metamodel(after):
+        return _metamodels(call, before, after, json)
     workshop = Workshop(settings_of(call))
     found: list[tuple[str, tuple[Change, ...]]] = []
     for name, *files in _pairs(before, after):
@@ -60,6 +63,16 @@ def diff(
                 say(line, colour_of(line))
         say(summary_line(counts))
     return 1 if counts else 0
+
+
+def _metamodels(call: typer.Context, before: Path, after: Path, json: bool) -> int:
+    """Do what ``mmrs metamodel diff`` does."""
+    from mmrs_core.cli.metamodel import diff as between_metamodels
+
+    if not (is_metamodel(before) and is_metamodel(after)):
+        one, other = (before, after) if is_metamodel(before) else (after, before)
+        raise UnreadableError(f"{one}: a metamodel, which is not compared with the model {other}")
+    return between_metamodels(call, str(before), str(after), json)
 
 
 def _counts(counts: Mapping[str, int]) -> Mapping[str, int]:

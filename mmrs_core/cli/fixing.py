@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from mmrs_core.cli.output import counted, say, tell
+from mmrs_core.cli.replacing import replace_files
 from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
@@ -81,17 +82,7 @@ def write(repair: Repair) -> None:
         UnreadableError: if a file was changed since it was examined; nothing is changed.
         OSError: if a file cannot be written; all are as they were before.
     """
-    from mmrs_core.languages.writing import replace_file
-
     for change in repair.changes:
         if change.file.read_bytes() != change.before:
             raise UnreadableError(f"{change.name}: changed meanwhile by somebody else; nothing is mended")
-    done: list[Change] = []
-    try:
-        for change in repair.changes:
-            replace_file(change.file, change.after)
-            done.append(change)
-    except OSError:
-        for change in done:
-            replace_file(change.file, change.before)
-        raise
+    replace_files({change.file: change.after for change in repair.changes})

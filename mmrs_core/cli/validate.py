@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels
+from mmrs_core.cli.any_model import Metamodels, is_metamodel
+from mmrs_core.cli.metamodel_tree import validate_metamodel
 from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
@@ -38,7 +39,8 @@ def validate(
     """List everything that is wrong with a mission's models, and mend what can only be meant in one way.
 
     Robot types and context are checked with the mission. A behaviour is checked by itself, and so is a model
-    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only.
+    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only. An
+    .ecore file is checked for whether models can be read by it.
 
     Example: mmrs validate field --fix
     """
@@ -47,6 +49,8 @@ def validate(
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.sarif import subject_of, write_sarif
 
+    if is_metamodel(project):
+        return validate_metamodel(call, project, json)
     if (yes or dry_run) and not fix:
         raise typer.BadParameter("--yes and --dry-run go with --fix")
     refuse_two_outputs(sarif, json or fix)

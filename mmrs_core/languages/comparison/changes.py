@@ -107,6 +107,8 @@ class _Comparison:
             return ours is not theirs
         here, there = containing_feature(one), containing_feature(other)
         same = here is not None and there is not None and here.name == there.name
+        if same and id(ours) not in self._old and id(theirs) not in self._new:
+            return False  # both stand at the top of their files, and parts of others contain them
         return not (same and self._matching.second.get(id(ours)) is theirs)
 
     def _said(self, element: Element, feature: Feature | None) -> tuple[str, ...] | None:

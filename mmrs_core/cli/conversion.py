@@ -1,0 +1,190 @@
+"""Turns models into their other form: one, or several that refer to each other and go on doing so."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.cli.any_model import is_mistake, read_foreign
+from mmrs_core.cli.protection import ProtectedError, refuse_inputs
+from mmrs_core.cli.schema_places import places_in
+from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
+
+if TYPE_CHECKING:
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.diagnostics import Diagnostic
+    from mmrs_core.languages.element import Element
+    from mmrs_core.languages.registry import Registry
+
+_ENDINGS = (".xmi", ".json")
+
+
+class Form(StrEnum):
+    """How a model is written down."""
+
+    XMI = "xmi"
+    JSON = "json"
+
+
+@dataclass(frozen=True, slots=True)
+class Converted:
+    """A model in its new form.
+
+    Attributes:
+        target: the file that is to hold it.
+        elements: how many it has.
+        beside: files that it refers to and that are not converted with it.
+    """
+
+    source: Path
+    target: Path
+    form: Form
+    text: bytes
+    elements: int
+    beside: tuple[Path, ...] = ()
+
+
+def form_of(file: Path) -> Form:
+    """Return the form that the name of a file tells."""
+    return Form.JSON if file.suffix.lower() == ".json" else Form.XMI
+
+
+def other_form(file: Path) -> Form:
+    """Return the form that a file has not."""
+    return Form.XMI if form_of(file) is Form.JSON else Form.JSON
+
+
+def targets_in(directory: Path, given: Sequence[Path], form: Form | None) -> dict[Path, Path]:
+    """Return the file that each model is to go to, by the file that holds it.
+
+    They lie to each other as before. Without a form all are written in the form that the first has not, the
+    others too if they have it already.
+
+    Args:
+        directory: where to write.
+        given: files, and folders of projects, whose models are meant.
+        form: of all of them.
+
+    Raises:
+        UnreadableError: if a folder has no model, or two models would go to one file.
+    """
+    files = list(dict.fromkeys(file for each in given for file in _models_at(each)))
+    wanted = form or other_form(files[0])
+    base = Path(os.path.commonpath([file.resolve().parent for file in files]))
+    targets: dict[Path, Path] = {}
+    for file in files:
+        target = directory / (file.resolve().parent.relative_to(base) / file.name).with_suffix(f".{wanted}")
+        twin = next((one for one, other in targets.items() if other == target), None)
+        if twin is not None:
+            raise UnreadableError(f"{file}: would be written to {target}, and so would {twin}")
+        targets[file] = target
+    return targets
+
+
+def _models_at(place: Path) -> Iterator[Path]:
+    if not place.is_dir():
+        yield place
+        return
+    files = sorted([*place.glob("*.*"), *(place / "robots").glob("*.*")])
+    models = [file for file in files if file.suffix.lower() in _ENDINGS and not file.name.startswith(".")]
+    if not models:
+        raise UnreadableError(f"{place}: no model (*.xmi, *.json) in this folder")
+    yield from models
+
+
+def refuse_existing(targets: Sequence[Path], force: bool) -> None:
+    """Do nothing, unless a file exists that is not to be replaced.
+
+    Raises:
+        ProtectedError: if one does.
+    """
+    for target in targets:
+        if target.exists() and not force:
+            raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
+
+
+def converted_together(
+    workshop: Workshop, targets: dict[Path, Path], metamodels: Sequence[Path], exported: Path | None
+) -> tuple[tuple[Converted, ...], tuple[Diagnostic, ...]]:
+    """Return models in their new form, which refer to each other where they will be, and what is wrong.
+
+    Raises:
+        UnreadableError: if a file cannot be read as a model.
+        InvalidModelError: if something of one would be lost.
+        ProtectedError: if a target is one of the models, or a file that one refers to.
+        UnsupportedError: if one cannot be written.
+    """
+    from mmrs_core.diagnostics import in_order
+    from mmrs_core.languages.reading import Reading
+
+    registry = _registry_for(workshop, tuple(targets), metamodels)
+    base = Path(os.path.commonpath([file.resolve().parent for file in targets]))
+    reading = Reading(registry, base)
+    drafts = {file: reading.open(file) for file in targets}
+    reading.follow()
+    models = {file: reading.model(draft) for file, draft in drafts.items()}
+    faults = in_order(fault for model in models.values() for fault in model.diagnostics)
+    everything = next(iter(models.values()))
+    faults = in_order((*faults, *(fault for other in everything.linked for fault in other.diagnostics)))
+    if any(map(is_mistake, faults)):
+        names = ", ".join(str(file) for file in targets)
+        raise InvalidModelError(f"{names}: not converted, since something would be lost", faults)
+    known = {file.resolve() for file in targets}
+    linked = [each.file for each in everything.linked if isinstance(each.file, Path)]
+    beside = [file for file in linked if file.resolve() not in known]
+    refuse_inputs(targets.values(), [*targets, *beside])
+    for file, target in targets.items():
+        drafts[file].source.path = target.resolve()  # what refers to it says from now on where it will be
+    made = []
+    for file, target in targets.items():
+        roots, form = models[file].roots, form_of(target)
+        text = text_of(roots, registry, file, target, form, exported)
+        made.append(
+            Converted(file, target, form, text, sum(1 for _ in models[file].elements()), tuple(beside))
+        )
+    return tuple(made), faults
+
+
+def _registry_for(workshop: Workshop, files: Sequence[Path], metamodels: Sequence[Path]) -> Registry:
+    """Return the metamodels that are installed, and those that were found for some files."""
+    from mmrs_core.languages.metamodels.gathering import gathered
+
+    installed = workshop.contributions.languages
+    found = [each for file in files for each in read_foreign(workshop, file, metamodels).found]
+    return installed.extended(list(gathered(dict.fromkeys(found), installed)))
+
+
+def text_of(
+    roots: Sequence[Element],
+    registry: Registry,
+    source: Path,
+    target: Path,
+    form: Form,
+    exported: Path | None,
+) -> bytes:
+    """Return a model in a form, as it is to stand in a file.
+
+    Args:
+        roots: what it holds.
+        registry: its metamodels.
+        source: the file it was read from.
+        target: the file it is for.
+        form: of the text.
+        exported: the folder of metamodels that it is to point Eclipse to.
+
+    Raises:
+        UnsupportedError: if it cannot be written in that form.
+    """
+    from mmrs_core.languages.foreign import kept_places
+    from mmrs_core.languages.writing import to_json, to_xmi
+
+    places = {**kept_places(source, target), **places_in(exported, registry, target)}
+    write = to_json if form is Form.JSON else to_xmi
+    try:
+        return write(roots, registry, schema_location=places, file=target)
+    except ValueError as fault:
+        raise UnsupportedError(f"{source}: {fault}") from None

@@ -1,0 +1,163 @@
+"""Models that are converted together refer to each other as before, and all are written or none."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.cli import run
+from mmrs_core.cli.replacing import replace_files
+
+ROOT = Path(__file__).parents[3]
+DAM = ROOT / "examples" / "mixed-team"
+ZOO = ROOT / "tests" / "fixtures" / "models" / "zoo.ecore"
+HEAD = (
+    '<xmi:XMI xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:zoo="urn:test:zoo"\n'
+    '    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">\n'
+)
+ONE = """  <zoo:Zoo name="north">
+    <animals xsi:type="zoo:Otter" href="{other}.xmi#/1"/>
+  </zoo:Zoo>
+  <zoo:Otter name="{name}"/>
+</xmi:XMI>
+"""
+
+
+@pytest.fixture
+def zoos(tmp_path, monkeypatch):
+    """Go to a folder with two files, each of which contains a part that stands in the other."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ZOO, tmp_path / "zoo.ecore")
+    (tmp_path / "a.xmi").write_text(HEAD + ONE.format(other="b", name="Olga"), encoding="utf-8")
+    (tmp_path / "b.xmi").write_text(HEAD + ONE.format(other="a", name="Otto"), encoding="utf-8")
+    return tmp_path
+
+
+def refs(file):
+    return [each["$ref"] for each in json.loads(file.read_text(encoding="utf-8"))["$roots"][0]["animals"]]
+
+
+def test_files_that_contain_each_others_parts_go_on_doing_so(zoos):
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "out", "--metamodel", "zoo.ecore"]) == 0
+    assert refs(zoos / "out" / "a.json") == ["b.json#/1"]
+    assert refs(zoos / "out" / "b.json") == ["a.json#/1"]
+
+
+def test_back_again_they_say_the_same(zoos, capsys):
+    known = ["--metamodel", "zoo.ecore"]
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "there", *known]) == 0
+    assert run(["convert", "there/a.json", "there/b.json", "-o", "back", *known]) == 0
+    assert run(["diff", "a.xmi", "back/a.xmi", *known]) == 0
+    assert (zoos / "back" / "a.xmi").read_text(encoding="utf-8").count("b.xmi#/1") == 1
+
+
+def test_a_file_that_is_not_converted_is_referred_to_where_it_is(zoos, capsys):
+    assert run(["convert", "a.xmi", "-o", "out/deep", "--metamodel", "zoo.ecore"]) == 0
+    assert refs(zoos / "out" / "deep" / "a.json") == ["../../b.xmi#/1"]
+    assert "b.xmi: note: referred to, and not converted" in capsys.readouterr().err
+
+
+def test_a_project_is_converted_whole(tmp_path, capsys):
+    assert run(["convert", str(DAM), "-o", str(tmp_path / "dam")]) == 0
+    assert len(list((tmp_path / "dam").rglob("*.json"))) == len(list(DAM.rglob("*.xmi"))) == 5
+    assert run(["validate", str(tmp_path / "dam")]) == 0
+    assert run(["diff", str(DAM), str(tmp_path / "dam")]) == 0
+
+
+def test_a_form_may_be_wanted_that_files_have_already(zoos):
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "out", "--to", "xmi", "--metamodel", "zoo.ecore"]) == 0
+    assert 'href="b.xmi#/1"' in (zoos / "out" / "a.xmi").read_text(encoding="utf-8")
+
+
+def test_nothing_is_written_if_one_model_would_lose_something(zoos, capsys):
+    (zoos / "b.xmi").write_text(HEAD + '  <zoo:Zoo nmae="b"/>\n</xmi:XMI>\n', encoding="utf-8")
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "out", "--metamodel", "zoo.ecore"]) == 1
+    assert not (zoos / "out").exists()
+    assert "b.xmi:3: error: nmae: no feature of Zoo" in capsys.readouterr().err
+
+
+def test_nothing_is_written_if_one_file_exists(zoos, capsys):
+    (zoos / "out").mkdir()
+    (zoos / "out" / "b.json").write_text("mine", encoding="utf-8")
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "out", "--metamodel", "zoo.ecore"]) == 2
+    assert [file.name for file in (zoos / "out").iterdir()] == ["b.json"]
+    assert run(["convert", "a.xmi", "b.xmi", "-o", "out", "--metamodel", "zoo.ecore", "--force"]) == 0
+    assert refs(zoos / "out" / "b.json") == ["a.json#/1"]
+
+
+def test_inputs_are_not_replaced(zoos, capsys):
+    assert run(["convert", "a.xmi", "b.xmi", "-o", ".", "--to", "xmi", "--metamodel", "zoo.ecore"]) == 2
+    assert "is read by this command" in capsys.readouterr().err
+
+
+def test_two_models_do_not_go_to_one_file(tmp_path, capsys):
+    shutil.copytree(DAM, tmp_path / "dam")
+    assert (
+        run(["convert", str(tmp_path / "dam" / "mission.xmi"), str(tmp_path / "dam" / "mission.json")]) == 0
+    )
+    assert run(["convert", str(tmp_path / "dam"), "-o", str(tmp_path / "out")]) == 3
+    assert "and so would" in capsys.readouterr().err
+
+
+def test_three_files_need_a_folder_to_go_to(zoos, capsys):
+    assert run(["convert", "a.xmi", "b.xmi", "c.xmi"]) == 2
+    assert "-o DIR" in capsys.readouterr().err
+
+
+def test_files_that_were_not_there_are_gone_again_if_a_later_one_cannot_be_written(tmp_path):
+    (tmp_path / "old").write_bytes(b"old")
+    (tmp_path / "folder").mkdir()
+    texts = {tmp_path / "new" / "a": b"a", tmp_path / "old": b"new", tmp_path / "folder": b"no file"}
+    with pytest.raises(OSError):
+        replace_files(texts)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["folder", "old"]
+    assert (tmp_path / "old").read_bytes() == b"old"
+
+
+def test_a_metamodel_is_shown_by_its_classes(capsys):
+    assert run(["show", str(ZOO)]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("zoo urn:test:zoo (")
+    assert "├─ abstract class Animal\n│  ├─ name: EString [1..1]\n" in told
+    assert "│  ├─ animals: contains Animal [0..*]\n" in told
+
+
+def test_a_metamodel_is_shown_as_json(capsys):
+    assert run(["show", str(ZOO), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["packages"][0]["classes"][1]["name"] == "Animal"
+    assert told["packages"][0]["classes"][1]["features"][0]["lower"] == 1
+
+
+def test_a_path_into_a_metamodel_is_refused(capsys):
+    assert run(["show", str(ZOO), "--path", "x"]) == 2
+
+
+def test_two_metamodels_are_compared_as_metamodels(tmp_path, capsys):
+    newer = tmp_path / "zoo.ecore"
+    text = ZOO.read_text(encoding="utf-8").replace('name="badge"', 'name="label"')
+    newer.write_text(text, encoding="utf-8")
+    assert run(["diff", str(ZOO), str(newer)]) == 1
+    assert "not all old models load" in capsys.readouterr().out
+
+
+def test_a_metamodel_is_not_compared_with_a_model(capsys):
+    assert run(["diff", str(ZOO), str(DAM / "mission.xmi")]) == 3
+    assert "zoo.ecore: a metamodel, which is not compared with the model" in capsys.readouterr().err
+
+
+def test_a_sound_metamodel_is_said_to_be_one(tmp_path, capsys):
+    assert run(["validate", str(ZOO)]) == 0
+    assert "a sound metamodel (" in capsys.readouterr().out
+    broken = tmp_path / "zoo.ecore"
+    broken.write_text(ZOO.read_text(encoding="utf-8").replace("#//Mood", "#//Mod"), encoding="utf-8")
+    assert run(["validate", str(broken)]) == 1
+    assert "no type Mod" in capsys.readouterr().err
+
+
+def test_a_metamodel_is_not_converted(capsys):
+    assert run(["convert", str(ZOO)]) == 3
+    assert "a metamodel, not a model" in capsys.readouterr().err
