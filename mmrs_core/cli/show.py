@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.any_model import Metamodels, is_mistake
+from mmrs_core.cli.any_model import Metamodels, is_metamodel, is_mistake
+from mmrs_core.cli.metamodel_tree import show_metamodel
 from mmrs_core.cli.output import report, say, say_json, tell
 from mmrs_core.cli.settings import Json, settings_of
 
@@ -21,7 +22,10 @@ _USAGE = 2
 
 def show(
     call: typer.Context,
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="Any model, XMI or JSON, of any language.")],
+    model: Annotated[
+        Path,
+        typer.Argument(metavar="MODEL", help="Any model, XMI or JSON, of any language; or an .ecore file."),
+    ],
     path: Annotated[
         str, typer.Option("--path", metavar="PATH", help="What to show of it, such as 'tasks[2].shell'.")
     ] = "",
@@ -29,7 +33,7 @@ def show(
     depth: Annotated[int, typer.Option("--depth", min=0, help="How deep to go; 0 goes all the way.")] = 0,
     json: Json = False,
 ) -> int:
-    """Print a model as a tree of its elements, or what a path leads to.
+    """Print a model as a tree of its elements, or what a path leads to; of an .ecore file, its classes.
 
     Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'.
     Where a file has several roots, '/1' is the second. What belongs to a plug-in that is not installed is
@@ -39,6 +43,10 @@ def show(
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.languages.query.search import NothingFoundError, find
 
+    if is_metamodel(model):
+        if path:
+            raise typer.BadParameter(f"--path leads into models, and {model} is a metamodel")
+        return show_metamodel(call, model, depth, json)
     found = read_foreign(Workshop(settings_of(call)), model, metamodel)
     faults = tuple(faults_in(found))
     report(faults)
