@@ -12,7 +12,7 @@ from mmrs_core.languages.json_form.stream import LIST, NUMBER, OBJECT, TEXT, WOR
 from mmrs_core.languages.json_form.tree import Leaf, Words
 from mmrs_core.languages.metaclass import Enumeration
 
-_EXACT = 2**53
+EXACT = 2**53
 """Beyond this, many readers of JSON round whole numbers."""
 _CHARACTERS = ("char", "java.lang.Character")
 _LAST_UNIT = "\uffff"
@@ -22,7 +22,7 @@ _LONE = re.compile("[\ud800-\udfff]")
 def quoted(text: str) -> str:
     """Return a text as JSON writes it; halves of surrogate pairs as escapes, since no UTF-8 holds them."""
     written = encode_basestring(text)
-    return _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)
+    return written if written.isascii() else _LONE.sub(lambda match: f"\\u{ord(match.group()):04x}", written)
 
 
 def written(kind: DataType | Enumeration, value: object) -> str:
@@ -35,7 +35,7 @@ def written(kind: DataType | Enumeration, value: object) -> str:
         return "true" if value else "false"
     if kind.python is float and math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
         return repr(float(value))  # type: ignore[arg-type]
-    if kind.python is int and abs(int(value)) < _EXACT:  # type: ignore[call-overload]
+    if kind.python is int and abs(int(value)) < EXACT:  # type: ignore[call-overload]
         return str(value)
     return quoted(kind.render(value))
 

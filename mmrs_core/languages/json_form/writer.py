@@ -7,16 +7,22 @@ from pathlib import Path
 
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.json_form.layout import formatted, laid_out
+from mmrs_core.languages.json_form.rows import Row, rows_of
 from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.json_form.values import quoted, written
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
+from mmrs_core.languages.references.positions import Positions
 from mmrs_core.languages.registry import Registry
 
 _Children = tuple[Feature, tuple[object, ...]]
 _Piece = str | tuple[Element, Feature | None, int]
 """What is still to be written: text, or an element with how deep it stands."""
+
+
+class _UnplacedError(Exception):
+    """More than its position has to be known to refer to an element."""
 
 
 class JsonWriter:
@@ -28,6 +34,12 @@ class JsonWriter:
         self._addresses = Addresses(roots, file)
         self._prefixes: dict[str, str] = {}
         self._pieces: list[str] = []
+        self._rows: dict[Metaclass, tuple[Row, ...]] = {}
+        self._kinds: dict[Metaclass, str] = {}
+        sources = {root._mmrs_source for root in roots}
+        home = sources.pop() if len(sources) == 1 else None
+        placed = () if sources or (home is not None and home.ids) else roots
+        self._places = Positions(placed, home, _UnplacedError)
 
     def document(self, schema_location: Mapping[str, str]) -> str:
         """Return the whole text.
@@ -76,25 +88,49 @@ class JsonWriter:
     def _said(self, element: Element, feature: Feature | None) -> tuple[list[str], list[_Children]]:
         """Return the members that hold plain values, and those that hold elements."""
         metaclass = metaclass_of(element)
-        members: list[str] = []
-        if feature is None or metaclass is not feature.type:
-            prefix = self._prefix(metaclass.ns_uri, self._registry.package(metaclass.ns_uri).prefix)
-            members.append(f'"{TYPE}": {quoted(f"{prefix}:{metaclass.name}")}')
-        identifier = self._addresses.identifier(element)
-        if identifier is not None:
-            members.append(f'"{ID}": {quoted(identifier)}')
+        members = self._own(element, metaclass, feature)
         children: list[_Children] = []
-        for each in metaclass.features:
-            if not each.stored or (each.is_container and not self._addresses.stands_apart(element)):
+        rows = self._rows.get(metaclass)
+        if rows is None:
+            rows = self._rows[metaclass] = rows_of(metaclass)
+        for each, read, key, quiet, usual, text_of in rows:
+            # this runs for every feature of every element
+            try:
+                value = read(element)
+            except AttributeError:
+                value = None
+            if value is None and quiet:
                 continue
-            if not holds(element, each):
+            text = text_of(value) if value.__class__ is usual and value != each.default else None
+            if text is not None:
+                members.append(key + text)
+            elif each.is_container and not self._addresses.stands_apart(element):
+                continue
+            elif not holds(element, each):
                 if each.unsettable and self._addresses.is_blank(element, each):
-                    members.append(f"{_key(each)}: {'[]' if each.many else 'null'}")
+                    members.append(f"{key}{'[]' if each.many else 'null'}")
             elif each.containment:
                 children.append((each, held(element, each)))
             else:
-                members.append(f"{_key(each)}: {self._plain(element, each, held(element, each))}")
+                members.append(key + self._plain(element, each, held(element, each)))
         return members, children
+
+    def _own(self, element: Element, metaclass: Metaclass, feature: Feature | None) -> list[str]:
+        """Return what an element says of itself."""
+        members: list[str] = []
+        if feature is None or metaclass is not feature.type:
+            members.append(f'"{TYPE}": {self._kind(metaclass)}')
+        identifier = self._addresses.identifier(element)
+        if identifier is not None:
+            members.append(f'"{ID}": {quoted(identifier)}')
+        return members
+
+    def _kind(self, metaclass: Metaclass) -> str:
+        found = self._kinds.get(metaclass)
+        if found is None:
+            prefix = self._prefix(metaclass.ns_uri, self._registry.package(metaclass.ns_uri).prefix)
+            found = self._kinds[metaclass] = quoted(f"{prefix}:{metaclass.name}")
+        return found
 
     def _lines(self, members: list[str], children: list[_Children], depth: int) -> list[_Piece]:
         """Return what stands between the braces of an object, a line for each member."""
@@ -138,6 +174,10 @@ class JsonWriter:
         return parts[0] if parts else "null"
 
     def _address(self, element: Element, target: Element, feature: Feature) -> str:
+        try:
+            return self._places[target]
+        except _UnplacedError:
+            pass
         if self._addresses.stands_here(target):
             return self._addresses.fragment(target)
         try:
