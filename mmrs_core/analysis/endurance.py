@@ -39,7 +39,7 @@ ENDURANCE_NAME = "endurance"
 ENERGY_NAME = "energy"
 RECHARGE_NAME = "recharge"
 
-AT_HOME = 1.0
+CHARGER_REACH = 1.0
 """Metres around home within which batteries can be recharged."""
 
 
@@ -156,7 +156,7 @@ def _away_from_home(input: CheckInput, robot: RobotProgram, moves: list[int]) ->
         if leg.move in moves:
             worst[leg.move] = max(worst.get(leg.move, -inf), _away(leg, home))
     for index, away in worst.items():
-        if away > AT_HOME:
+        if away > CHARGER_REACH:
             words = f"'{robot.moves[index].id}' recharges {away:.2f} m away from home"
             yield violated(RECHARGE_NAME, robot, words, index)
 

@@ -75,12 +75,6 @@ def half_diagonal_of(robot_type: RobotType) -> float:
     return sqrt(sum(squares)) / 2 if len(squares) == 3 else robot_type.half_diagonal
 
 
-def number_of(part: Part, attribute: str) -> float | None:
-    """Return an attribute that holds a number; None where it holds none."""
-    value = part.attributes.get(attribute)
-    return float(value) if isinstance(value, int | float) else None
-
-
 def kind_of(input: CheckInput, robot: RobotProgram) -> RobotKind:
     """Return the kind of the robot.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
-from mmrs_core.analysis.figures import kinematics_of, number_of, type_of
+from mmrs_core.analysis.figures import kinematics_of, type_of
 from mmrs_core.analysis.motion import Leg, Motion, motions
 from mmrs_core.analysis.states import states_of
 from mmrs_core.analysis.verdicts import (
@@ -18,6 +18,7 @@ from mmrs_core.analysis.verdicts import (
 )
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.scene.attributes import number
 
 ALTITUDE_NAME = "altitude"
 DEPTH_NAME = "depth"
@@ -57,7 +58,7 @@ def _judge_altitude(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]
 
 def _judge_depth(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     """Check the pressure where robots go below the surface."""
-    allowed = number_of(type_of(input, robot).part, "maxOperatingPressure")
+    allowed = number(type_of(input, robot).part, "maxOperatingPressure")
     motion = motions(input)[robot.id]
     deepest = _deepest(motion, input.program.frame.surface)
     if deepest is None or deepest[0] <= TOLERANCE:

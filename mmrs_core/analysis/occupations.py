@@ -23,8 +23,8 @@ from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.checks import CheckInput
 from mmrs_core.scene import Kinematics, Position
 
-AT_HOME = 0.1
-"""Metres from its home within which a robot stands at home."""
+HOME_SPOT = 0.1
+"""Metres from its home within which a robot that stands takes no room: nobody keeps away from homes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ def _occupations(
 
 
 def _at_home(robot: RobotProgram, place: Position) -> bool:
-    return robot.home is not None and dist(place, robot.home) <= AT_HOME
+    return robot.home is not None and dist(place, robot.home) <= HOME_SPOT
 
 
 def _gone(robot: RobotProgram, move: int, times: Times) -> Span:

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import dist
 
-from mmrs_core.analysis.figures import MissingFigureError, home_of, number_of, type_of
+from mmrs_core.analysis.figures import MissingFigureError, home_of, type_of
 from mmrs_core.analysis.motion import motions, points_of
 from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
+from mmrs_core.scene.attributes import number
 
 NAME = "range"
 
 
 def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
-    reach = number_of(type_of(input, robot).part, "communicationRange")
+    reach = number(type_of(input, robot).part, "communicationRange")
     if reach is None:
         raise MissingFigureError(
             f"{robot.id}: the communicationRange of robot type '{robot.type_name}' is not given"

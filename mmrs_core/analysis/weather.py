@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, number_of, type_of
+from mmrs_core.analysis.figures import MissingFigureError, kinematics_of, type_of
 from mmrs_core.analysis.states import GROUNDED, States, states_of
 from mmrs_core.analysis.verdicts import Margin, for_each_robot, judged, not_checked
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.scene import Part
+from mmrs_core.scene.attributes import number
 
 WIND_NAME = "wind"
 TEMPERATURE_NAME = "temperature"
@@ -17,7 +18,7 @@ TEMPERATURE_NAME = "temperature"
 
 def _judge_wind(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     """Check the wind against positionHold: every flight ends in a landing, in which it must hold."""
-    held = number_of(type_of(input, robot).part, "positionHold")
+    held = number(type_of(input, robot).part, "positionHold")
     if held is None and not kinematics_of(input, robot).launches:
         yield not_checked(WIND_NAME, robot, "it does not fly")
         return
@@ -46,8 +47,8 @@ def _hovers(states: States) -> int | None:
 
 def _judge_temperature(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
     bounds = type_of(input, robot).part.attributes.get("operatingTemperature")
-    least = number_of(bounds, "min") if isinstance(bounds, Part) else None
-    most = number_of(bounds, "max") if isinstance(bounds, Part) else None
+    least = number(bounds, "min") if isinstance(bounds, Part) else None
+    most = number(bounds, "max") if isinstance(bounds, Part) else None
     known = least is not None and most is not None
     operates = f"the robot operates from {least:g} to {most:g} °C" if known else ""
     temperature = input.environment.get("temperature")

@@ -85,9 +85,7 @@ def _sorted(jobs: list[Job]) -> tuple[Job, ...]:
     try:
         sorter.prepare()
     except CycleError as error:
-        raise InfeasibleError(
-            f"tasks wait for each other in a circle: {' → '.join(error.args[1])}"
-        ) from error
+        raise _in_a_circle(error) from error
     order: list[Job] = []
     ready = list(sorter.get_ready())
     while ready:
@@ -97,6 +95,11 @@ def _sorted(jobs: list[Job]) -> tuple[Job, ...]:
         sorter.done(first)
         ready.extend(sorter.get_ready())
     return tuple(order)
+
+
+def _in_a_circle(error: CycleError) -> InfeasibleError:
+    """Return which tasks wait for each other, each before the one that waits for it."""
+    return InfeasibleError(f"tasks wait for each other in a circle: {' → '.join(error.args[1])}")
 
 
 class _Graph:
@@ -123,8 +126,7 @@ class _Graph:
         try:
             TopologicalSorter(before).prepare()
         except CycleError as error:
-            circle = " → ".join(reversed(error.args[1]))
-            raise InfeasibleError(f"tasks wait for each other in a circle: {circle}") from error
+            raise _in_a_circle(error) from error
 
     def _check_conditions(self) -> None:
         reasons = []

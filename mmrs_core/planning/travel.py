@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import hypot, inf
+from math import inf
 
 from mmrs_core.errors import InternalError, UnreachableError
+from mmrs_core.geometry.ground import ground_height
 from mmrs_core.planning.layers import Rates
 from mmrs_core.planning.paths import Space
 from mmrs_core.planning.strokes import length_of, rates_of
 from mmrs_core.scene import Kinematics, Position, Robot, Scene
-
-_NEAR_HOME = 2.0
-"""Metres around a home within which the ground has the home's height; elsewhere it has the origin's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,9 +140,7 @@ class Travel:
         """
         if not self.kinematics.launches:
             return Way((start,), 0.0, 0.0)
-        home = self.robot.home
-        near = hypot(start[0] - home[0], start[1] - home[1]) <= _NEAR_HOME
-        ground = home[2] if near else 0.0
+        ground = ground_height(start, self.robot.home)
         column = (start, (start[0], start[1], ground))
         below = self.space.blockers(column)
         if below:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import inf
 
 from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
@@ -10,11 +10,9 @@ from mmrs_auv.names import AUV_MOVEMENT
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
 from mmrs_core.languages.grounding.coordinates import ground_of
+from mmrs_core.languages.grounding.heights import heights_of_task
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
-from mmrs_core.scene import Position
-
-PLACES = ("points", "shell")
 
 
 def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
@@ -28,7 +26,8 @@ def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
     deepest = max((limit for limit in limits if limit is not None), default=inf)
     ground = ground_of(mission, models.context)
     for task in children(mission, "tasks"):
-        depth = _depth(task, ground.positions, ground.frame.surface)
+        heights = heights_of_task(task, ground)
+        depth = ground.frame.surface - min(heights, default=inf)
         if depth > deepest + 1e-6:
             yield Finding(
                 task,
@@ -59,18 +58,3 @@ def _pressure_depth(robot_type: Element, models: ModelSet) -> float:
     environment = child(models.context, "environment") if models.context is not None else None
     density = number(environment, "waterDensity") if environment is not None else None
     return (pressure - ATMOSPHERE) / ((density or SEA_WATER) * GRAVITY)
-
-
-def _depth(task: Element, positions: Mapping[Element, Position], surface: float) -> float:
-    depth, altitude = number(task, "depth"), number(task, "altitude")
-    if depth is not None:
-        return depth
-    if altitude is not None:
-        return surface - altitude
-    return max((surface - positions[each][2] for each in _places(task) if each in positions), default=-inf)
-
-
-def _places(task: Element) -> Iterator[Element]:
-    point = child(task, "point")
-    yield from (point,) if point is not None else ()
-    yield from (each for name in PLACES for each in children(task, name))

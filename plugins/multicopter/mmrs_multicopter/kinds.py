@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from math import hypot
-
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.geometry.ground import ground_height
 from mmrs_core.scene import Kinematics, Position, Robot, Scene
 from mmrs_core.transformation.kinds import kinematics_for, path_seconds, stopping_seconds
 from mmrs_multicopter import trajectories
@@ -20,9 +19,6 @@ SPIN_UP = 5.0
 
 TOUCH_DOWN = 5.0
 """Seconds from touching the ground until the motors stand still."""
-
-HOME_RADIUS = 2.0
-"""Metres from home within which the ground has the height of home; elsewhere it has the origin's."""
 
 
 def kinematics(robot: Robot, scene: Scene) -> Kinematics:
@@ -66,12 +62,6 @@ def take_off_path(move: Move, here: Position, home: Position | None) -> tuple[Po
 def land_path(move: Move, here: Position, home: Position | None) -> tuple[Position, ...]:
     """Return the way straight down to the ground."""
     return (here, (here[0], here[1], ground_height(here, home)))
-
-
-def ground_height(here: Position, home: Position | None) -> float:
-    """Return the height of the ground: that of home near home, that of the origin elsewhere."""
-    near = home is not None and hypot(here[0] - home[0], here[1] - home[1]) <= HOME_RADIUS
-    return home[2] if home is not None and near else 0.0
 
 
 def take_off_seconds(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import groupby
-from math import isfinite
 
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, container_of, label_of, metaclass_of
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.planning.devices import figure
 from mmrs_survey.camera import CAMERA_KEYS
 from mmrs_survey.names import SURVEY
 
@@ -73,16 +73,8 @@ def camera_unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
     """Yield properties of cameras that are no numbers above zero."""
     for each in children(device, "properties"):
         key, value = text(each, "name"), text(each, "value")
-        if key in CAMERA_KEYS and not _is_figure(value):
+        if key in CAMERA_KEYS and figure({key: value}, key) is None:
             yield Finding(each, f"property '{key}' of device '{text(device, 'id')}' is '{value}'")
-
-
-def _is_figure(value: str) -> bool:
-    try:
-        figure = float(value)
-    except ValueError:
-        return False
-    return isfinite(figure) and figure > 0.0
 
 
 def _is_survey(task: Element) -> bool:

@@ -10,7 +10,7 @@ from hypothesis import assume, settings
 from hypothesis import given as for_all
 from hypothesis import strategies as st
 
-from mmrs_core.analysis.occupations import AT_HOME
+from mmrs_core.analysis.occupations import HOME_SPOT
 from mmrs_core.contributions.checks import Status
 from mmrs_core.testing.small_programs import go, hold, notify, robot
 
@@ -28,7 +28,7 @@ def tours(draw):
     """
     up = draw(st.sampled_from([0.0, 2.0]))
     places = [(e, n, up) for e, n in draw(st.lists(POINTS, min_size=2, max_size=5, unique=True))]
-    assume(all(dist(places[0], place) > AT_HOME for place in places[1:]))
+    assume(all(dist(places[0], place) > HOME_SPOT for place in places[1:]))
     return places, draw(st.lists(st.floats(0.0, 5.0), min_size=len(places), max_size=len(places)))
 
 
