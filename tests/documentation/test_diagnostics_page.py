@@ -9,6 +9,9 @@ import pytest
 from fault_examples import (
     contrast,
     core_examples,
+    judged,
+    judged_cases,
+    judged_examples,
     plugin_examples,
     reading_cases,
     reading_examples,
@@ -17,15 +20,12 @@ from fault_examples import (
 
 from mmrs_core.cli.catalogue import catalogue_of
 from mmrs_core.cli.pages.diagnostics_page import page_of
+from mmrs_core.contributions.checks import Status
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "diagnostics.md"
 PLUGINS = {"mmrs-auv", "mmrs-multicopter", "mmrs-rover", "mmrs-solar", "mmrs-survey"}
 CONFTEST = runpy.run_path(str(ROOT / "tests" / "unit" / "analysis" / "constraints" / "conftest.py"))
-TOLD_ELSEWHERE = {"MIG001", "MIG002", "GND004"}
-"""Faults that need a plug-in of two versions, or the want of one; the pages about these show them."""
-NEVER_BROKEN_ALONE = {"irradiance", "payload", "structure", "temperature"}
-"""Properties that the golden behaviours keep, or that constraints refuse before they are checked."""
 
 
 def fresh_models():
@@ -41,9 +41,10 @@ def entries(contributions):
 
 
 @pytest.fixture(scope="module")
-def examples(tmp_path_factory):
+def examples(tmp_path_factory, contributions):
     reading = reading_examples(tmp_path_factory.mktemp("read"), fresh_models)
-    return reading | core_examples(fresh_models) | plugin_examples() | verdict_examples()
+    verdicts = verdict_examples() | judged_examples(contributions.checks)
+    return reading | core_examples(fresh_models) | plugin_examples() | verdicts
 
 
 def test_the_page_is_what_the_code_makes_of_it(entries, examples, update_golden):
@@ -54,7 +55,7 @@ def test_the_page_is_what_the_code_makes_of_it(entries, examples, update_golden)
 
 
 def test_every_fault_of_a_model_has_an_example(entries, examples):
-    assert {entry.code for entry in entries} - set(examples) == TOLD_ELSEWHERE | NEVER_BROKEN_ALONE
+    assert {entry.code for entry in entries} == set(examples)
 
 
 @pytest.mark.parametrize("code", sorted(reading_cases(ROOT, fresh_models)))
@@ -62,6 +63,13 @@ def test_what_fails_has_the_fault_and_what_passes_has_not(code, tmp_path):
     finder, failing, passing = reading_cases(tmp_path, fresh_models)[code]
     assert code in {fault.code for fault in finder(failing)}
     assert code not in {fault.code for fault in finder(passing)}
+
+
+@pytest.mark.parametrize("name", sorted(judged_cases()))
+def test_what_is_wrong_is_violated_and_what_is_right_is_safe(contributions, name):
+    wrong, right = (judged(contributions.checks, name, case) for case in judged_cases()[name])
+    assert {each.status for each in wrong} == {Status.VIOLATED}
+    assert {each.status for each in right} == {Status.SAFE}
 
 
 def test_every_entry_says_what_is_expected_and_how_to_mend_it(entries):

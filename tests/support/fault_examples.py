@@ -4,28 +4,36 @@ from __future__ import annotations
 
 import re
 import runpy
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
+from checking import given, rover
+
 from mmrs_core.behaviour.log import read_log
+from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.cli.pages.diagnostics_page import Example
+from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import Diagnostic
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.languages import mission, robot
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import read_project
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
+from mmrs_core.scene import Part
 from mmrs_core.testing.conformance import ConstraintConformance
 from mmrs_core.testing.models import breaches
+from mmrs_core.testing.small_programs import go, hold, use
+from mmrs_core.testing.small_programs import robot as robot_with
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "tests" / "fixtures" / "constraints"
@@ -112,6 +120,7 @@ _HEAD = (
     ' xmlns:mission="urn:mmrs:mission:1.0">\n'
 )
 _WHOLE = re.compile(r"<\w+:|<[A-Z]")
+ZOO = ROOT / "tests" / "fixtures" / "models" / "zoo.ecore"
 READING = ROOT / "tests" / "fixtures" / "diagnostics" / "reading_cases.py"
 
 
@@ -126,6 +135,7 @@ def reading_cases(
         "FILES": lambda files: _of_files(files, folder),
         "PROGRAMS": _of_program,
         "GROUNDED": lambda edit: _of_ground(edit, fresh_models()),
+        "VERSIONS": _of_version,
         "LINES": lambda line: _of_log(line, folder),
     }
     for table, finder in finders.items():
@@ -163,8 +173,7 @@ def _zoo() -> Registry:
 
 
 def _fresh_zoo() -> Registry:
-    ecore = ROOT / "tests" / "fixtures" / "models" / "zoo.ecore"
-    return registry_with([MetamodelSource("urn:test:zoo", ecore, "zoo")])
+    return registry_with([MetamodelSource("urn:test:zoo", ZOO, "zoo")])
 
 
 def _of_text(text: str) -> list[Diagnostic]:
@@ -189,8 +198,18 @@ def _of_program(program: str) -> tuple[Diagnostic, ...]:
     return check_conformance(Model("model", (root,)), _zoo())
 
 
+def _of_version(text: str) -> tuple[Diagnostic, ...]:
+    tables = runpy.run_path(str(READING))
+    step = Migration(
+        tables["OLD_ZOO"], "urn:test:zoo", features=tables["RENAMED"], dropped=frozenset(tables["DROPPED"])
+    )
+    registry = registry_with([MetamodelSource("urn:test:zoo", ZOO, "zoo")], [step])
+    return read_text(text.encode(), "zoo.xmi", registry).diagnostics
+
+
 def _of_ground(edit: str, models: object) -> tuple[Diagnostic, ...]:
-    exec(edit, {"m": models})  # noqa: S102  our own fixtures
+    (kite,) = read_text(b'<kites:Kite xmlns:kites="urn:kites:1.0" name="Red"/>', "kite.xmi", _zoo()).roots
+    exec(edit, {"m": models, "mission": mission, "kite": kite})  # noqa: S102  our own fixtures
     try:
         ground(models.as_set)
     except InvalidModelError as error:
@@ -221,6 +240,49 @@ def verdict_examples() -> dict[str, Example]:
         if bad and good:
             found[name] = Example("", bad[0], good[0], "text")
     return found
+
+
+def judged_cases() -> dict[str, tuple[str, str]]:
+    """Return the robots, with their environment, that a check is to find wrong and right, by its name."""
+    return runpy.run_path(str(READING))["JUDGED"]
+
+
+def judged(checks: Iterable[Check], name: str, case: str) -> tuple[Verdict, ...]:
+    """Return what a check says of a case."""
+    names = {
+        "robot": robot_with,
+        "hold": hold,
+        "go": go,
+        "image": _image,
+        "replace": replace,
+        "asked": _asked,
+    }
+    asked = eval(f"asked({case})", names)  # noqa: S307  our own fixtures
+    return tuple(next(check for check in checks if check.name == name).run(asked))
+
+
+def judged_examples(checks: Sequence[Check]) -> dict[str, Example]:
+    """Return, by property, what is said of cases that no golden behaviour breaks."""
+    found = {}
+    for name, cases in judged_cases().items():
+        bad, good = ("\n".join(map(_line, judged(checks, name, case)[:1])) for case in cases)
+        found[name] = Example("", bad, good, "text")
+    return found
+
+
+def _line(verdict: Verdict) -> str:
+    margin = "" if verdict.margin is None else f" {verdict.margin:.3f} {verdict.unit}"
+    return f"{verdict.property}: {verdict.status.value}{margin}\n    {verdict.message}"
+
+
+def _asked(made: RobotProgram, environment: Mapping[str, float] | None = None) -> CheckInput:
+    bounds = Part((), {"min": -10.0, "max": 40.0})
+    type = rover(max_payload=1.0, attributes={"operatingTemperature": bounds})
+    return given(made, type=type, environment=environment or {})
+
+
+def _image(needed: float) -> Action:
+    return replace(use("camera", "shoot"), parameters=(("minimumIrradiance", f"{needed:g}"),))
 
 
 _SAFE = re.compile(r"\w+: safe")
