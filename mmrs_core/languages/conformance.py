@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Iterator, Sequence
+from itertools import islice
 
 from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
 from mmrs_core.languages.element import Element, Unknown, held, label_of, metaclass_of, place_of, root_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.references.documents import MOST_FAULTS
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.soundness import Sound, soundness
 
@@ -25,10 +28,19 @@ def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...
 
     What the reader reported already is not reported again. Models made in memory are checked as well.
     An element whose metamodel is not installed is passed over: reading reported it.
+
+    Raises:
+        UnreadableError: if there are more than anybody would read.
     """
     check = _Check(model, registry)
     doubtful = (element for element in model.elements() if not check.is_sound(element))
-    return tuple(fault for element in doubtful for fault in check.element(element))
+    faults = (fault for element in doubtful for fault in check.element(element))
+    found = tuple(islice(faults, MOST_FAULTS + 1))
+    if len(found) > MOST_FAULTS:
+        raise UnreadableError(
+            f"{model.file}: more than {MOST_FAULTS} faults; the first is: {found[0].message}"
+        )
+    return found
 
 
 class _Check:

@@ -272,10 +272,11 @@ def _number_of(root: Element) -> str:
 def _index(container: Element, feature: Feature, element: Element) -> str:
     if not feature.many:
         return ""
-    for index, value in enumerate(held(container, feature)):
-        if value is element:
-            return f"[{index}]"
-    return "[?]"
+    values = type(container)._mmrs_slots[feature.attribute].__get__(container)
+    try:
+        return f"[{values.position(element)}]"
+    except ValueError:  # it is not in there yet
+        return "[?]"
 
 
 def label_of(element: Element) -> str:

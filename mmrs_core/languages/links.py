@@ -15,7 +15,7 @@ class LinkedList(list[Element]):
     Adding an element takes it from the container it was in; removing it leaves it without one.
     """
 
-    __slots__ = ("_feature", "_owner")
+    __slots__ = ("_feature", "_owner", "_positions")
 
     def __init__(self, owner: Element, feature: Feature) -> None:
         self._owner = owner
@@ -90,6 +90,23 @@ class LinkedList(list[Element]):
                 link(self._owner, self._feature, value)
         super().clear()
         super().extend(wanted)
+
+    def position(self, value: Element) -> int:
+        """Return the index of an element of the list; quick also where many are asked for.
+
+        Raises:
+            ValueError: if it is not in the list.
+        """
+        if self and self[-1] is value:
+            return len(self) - 1
+        known: dict[int, int] = getattr(self, "_positions", {})
+        found = known.get(id(value), len(self))
+        if found >= len(self) or self[found] is not value:
+            self._positions = known = {id(each): index for index, each in enumerate(self)}
+            if id(value) not in known:
+                raise ValueError(f"{self._feature.name}: the element is not in it")
+            found = known[id(value)]
+        return found
 
     def put(self, value: Element) -> None:
         """Add at the end and tell nobody; for whoever sets the other end himself."""

@@ -148,6 +148,7 @@ class Metaclass:
         by_attribute: the features by their name in Python.
         is_entry: whether its elements are the entries of maps, of which each key has one.
         package: the package that declares it.
+        compiled: the functions that were compiled for its elements, by what they do; they live as long as it.
     """
 
     ns_uri: str
@@ -163,6 +164,7 @@ class Metaclass:
     by_attribute: Mapping[str, Feature] = field(repr=False, default_factory=dict)
     package: Package | None = field(repr=False, default=None)
     is_entry: bool = False
+    compiled: dict[str, object] = field(init=False, repr=False, default_factory=dict)
 
     if not TYPE_CHECKING:  # the fields are declared above
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.datatypes import ECORE
@@ -16,6 +17,9 @@ from mmrs_core.languages.metamodels.assembly import Assembly
 from mmrs_core.languages.metamodels.locating import Located, locate_all
 from mmrs_core.languages.naming import nearest
 from mmrs_core.resources import shipped
+
+if TYPE_CHECKING:
+    from mmrs_core.languages.xmi.shapes import Maker
 
 CORE_LANGUAGES = ("robot", "mission", "context", "behaviour")
 
@@ -42,11 +46,13 @@ class Registry:
         packages: in the order in which they were given, a package before those inside it.
         everything: the same, with the part of Ecore itself that models may hold.
         migrations: steps from older versions of them.
+        makers: functions that readers compiled, for the next file.
     """
 
     def __init__(self, packages: Iterable[Package], migrations: Iterable[Migration] = ()) -> None:
         self.everything = tuple(packages)
         self.migrations = tuple(migrations)
+        self.makers: dict[tuple[object, ...], Maker | None] = {}
         self.packages = tuple(package for package in self.everything if package.ns_uri != ECORE)
         self._packages = {package.ns_uri: package for package in self.everything}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {

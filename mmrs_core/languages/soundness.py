@@ -8,22 +8,24 @@ bound.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.metamodels.classes import bare_name
-
-_KEPT = 1024
 
 Stands = Callable[[Element], bool]
 Sound = Callable[[Element, Stands], bool]
 """Whether an element is sound, given a function that tells whether another one stands in a model."""
 
 
-@lru_cache(_KEPT)
 def soundness(metaclass: Metaclass) -> Sound:
     """Return the function for elements of exactly that metaclass."""
+    if "soundness" not in metaclass.compiled:
+        metaclass.compiled["soundness"] = _compiled(metaclass)
+    return metaclass.compiled["soundness"]  # type: ignore[return-value]  # the line above put it there
+
+
+def _compiled(metaclass: Metaclass) -> Sound:
     bound: dict[str, object] = {}
     lines = []
     for index, feature in enumerate(metaclass.features):

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mmrs_core.languages.element import Element, Source, held, holds, metaclass_of, root_of
+from mmrs_core.languages.links import LinkedList, raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.hrefs import relative_href
 
@@ -83,8 +84,9 @@ class Addresses:
             container, feature = element._mmrs_container, element._mmrs_feature
             assert container is not None  # top is above it
             assert feature is not None
-            index = next(i for i, value in enumerate(held(container, feature)) if value is element)
-            steps.append(f"/@{feature.name}.{index}" if feature.many else f"/@{feature.name}")
+            values = raw(container, feature)
+            index = f".{values.position(element)}" if isinstance(values, LinkedList) else ""
+            steps.append(f"/@{feature.name}{index}")
             element = container
         number = str(source.roots.index(top)) if len(source.roots) > 1 else ""
         return f"/{number}{''.join(reversed(steps))}"

@@ -43,8 +43,9 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pendi
 
 def tell_other_ends(draft: Draft, doubled: Iterable[tuple[Pending, Element]]) -> None:
     """Make the other ends of a file's references know of them; a contradiction becomes a fault of it."""
+    known: dict[int, set[int]] = {}
     for reference, target in doubled:
-        _tell_other_end(reference, target, draft)
+        _tell_other_end(reference, target, draft, known)
 
 
 def _left(pending: Iterable[Pending | Quick], draft: Draft) -> Iterator[Pending]:
@@ -173,7 +174,8 @@ def _contain(reference: Pending, target: Element, draft: Draft) -> bool:
     return False
 
 
-def _tell_other_end(reference: Pending, target: Element, draft: Draft) -> None:
+def _tell_other_end(reference: Pending, target: Element, draft: Draft, known: dict[int, set[int]]) -> None:
+    """Tell one other end; what each list held before is `known`, so that no list is searched again."""
     element, opposite = reference.element, reference.feature.opposite
     if opposite is None or opposite.attribute not in type(target)._mmrs_slots:
         return
@@ -182,7 +184,15 @@ def _tell_other_end(reference: Pending, target: Element, draft: Draft) -> None:
         if element._mmrs_container is not target:
             message = f"{reference.feature.name}: leads to an element that does not contain this one"
             _fault("XMI013", message, reference, draft)
-    elif opposite.many or present is None:
+    elif opposite.many:
+        values = getattr(target, opposite.attribute)
+        there = known.get(id(values))
+        if there is None:
+            there = known[id(values)] = set(map(id, values))
+        if id(element) not in there:
+            there.add(id(element))
+            values.put(element)
+    elif present is None:
         store(target, opposite, element)
     elif present is not element:
         message = f"{reference.feature.name}: the other end, {opposite.name}, refers to another element"

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 from mmrs_core.languages.datatypes import DataType, render_real
 from mmrs_core.languages.element import Element
@@ -21,7 +20,6 @@ from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute
 DEEPEST_CALL = 50
 """Elements that stand deeper than this are not written by functions that call each other."""
 
-_KEPT = 1024
 _SUSPICIOUS = re.compile(f'[&<"\n\t\r]|{NO_XML.pattern}')
 
 Emitter = Callable[[Element, int], None]
@@ -51,6 +49,9 @@ class Surroundings:
     slowly: Callable[[Element, Feature, Element, int], None]
 
 
+_Factory = Callable[[str, str, Surroundings], Emitter]
+
+
 def emitter(metaclass: Metaclass, head: str, name: str, surroundings: Surroundings) -> Emitter | None:
     """Return the function for elements of a metaclass, or None where each needs the careful way.
 
@@ -59,12 +60,13 @@ def emitter(metaclass: Metaclass, head: str, name: str, surroundings: Surroundin
         name: their tag.
         surroundings: of the document.
     """
-    make = _factory(metaclass)
+    if "emitter" not in metaclass.compiled:
+        metaclass.compiled["emitter"] = _factory(metaclass)
+    make: _Factory | None = metaclass.compiled["emitter"]  # type: ignore[assignment]  # put there above
     return None if make is None else make(head, f"</{name}>\n", surroundings)
 
 
-@lru_cache(_KEPT)
-def _factory(metaclass: Metaclass) -> Callable[[str, str, Surroundings], Emitter] | None:
+def _factory(metaclass: Metaclass) -> _Factory | None:
     features = [
         (index, feature)
         for index, feature in enumerate(metaclass.features)
@@ -106,7 +108,7 @@ def _factory(metaclass: Metaclass) -> Callable[[str, str, Surroundings], Emitter
         ]
     )
     exec(compile(source, f"<writer of {metaclass.name}>", "exec"), bound)  # noqa: S102  # no foreign text in it
-    made: Callable[[str, str, Surroundings], Emitter] = bound["factory"]  # type: ignore[assignment]
+    made: _Factory = bound["factory"]  # type: ignore[assignment]
     return made
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NoReturn, Protocol
 from xml.parsers import expat
@@ -16,6 +16,7 @@ DEEPEST_NESTING = 400
 MOST_ATTRIBUTES = 10_000
 _SHORTEST_ATTRIBUTE = len(' a=""')
 _TAG = re.compile(rb"<[^\s<>/=]+")
+_WHOLE_TAG = re.compile(rb"""[^>"']*(?:"[^"]*"[^>"']*|'[^']*'[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+[^\s<>/="']+\s*=\s*(?:"[^"<]*"|'[^'<]*')""")
 Start = Callable[[str, list[str]], None]
 Tell = Callable[[str], None]
@@ -63,9 +64,10 @@ class Namespaces:
         stack = self._bindings.get(prefix)
         return stack[-1] if stack else None
 
-    def in_scope(self) -> dict[str, str]:
-        """Return all bindings that hold now."""
-        return {prefix: stack[-1] for prefix, stack in self._bindings.items() if stack}
+    def in_scope(self, prefixes: Iterable[str] | None = None) -> dict[str, str]:
+        """Return the bindings that hold now, of all prefixes or of some."""
+        wanted = self._bindings if prefixes is None else prefixes
+        return {prefix: stack[-1] for prefix in wanted if (stack := self._bindings.get(prefix))}
 
 
 class Document:
@@ -82,6 +84,7 @@ class Document:
     def __init__(self, data: bytes, file: str) -> None:
         self.file = file
         self.data, override = _without_wide_characters(data, file)
+        self._declared = override is None
         self.namespaces = Namespaces()
         self.encoding = override or "UTF-8"
         self._depth = 0
@@ -106,10 +109,10 @@ class Document:
 
     def text_from(self, begin: int) -> str:
         """Return the text of the element that begins at an offset and whose end is the current event."""
-        data, end = self.data, self.offset
-        # the end of an empty element is told at the place where it begins
-        end = _end_of_tag(data, end if data[end : end + 2] == b"</" else begin)
-        return data[begin:end].decode(self.encoding, "replace")
+        end = _end_of_tag(self.data, begin)
+        if self.data[end - 2 : end] != b"/>":  # the end of an empty one is told behind its tag
+            end = _end_of_tag(self.data, self.offset)
+        return self.data[begin:end].decode(self.encoding, "replace")
 
     def parse(self, listener: Listener, counts_depth: bool = False) -> None:
         """Send all events to the listener.
@@ -171,7 +174,8 @@ class Document:
         return uncounted
 
     def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
-        self.encoding = encoding or self.encoding
+        if self._declared:
+            self.encoding = encoding or self.encoding
 
     def _doctype(self, *_: object) -> None:
         raise UnreadableError(f"{self.file}:{self.line}: DOCTYPE is not accepted in a model")
@@ -212,16 +216,8 @@ def _attributes_at(data: bytes, begin: int) -> int:
 
 def _end_of_tag(data: bytes, begin: int) -> int:
     """Return the offset behind the tag that begins there; a ``>`` inside quotes does not end it."""
-    quote = 0
-    for index in range(begin, len(data)):
-        byte = data[index]
-        if quote:
-            quote = 0 if byte == quote else quote
-        elif byte in b"\"'":
-            quote = byte
-        elif byte == ord(">"):
-            return index + 1
-    return len(data)
+    tag = _WHOLE_TAG.match(data, begin)
+    return tag.end() if tag is not None else len(data)
 
 
 def read_bytes(path: Path, largest: int = LARGEST_FILE) -> bytes:

@@ -137,8 +137,12 @@ class QuickReader(XmiReader):
             or "href" in given
         ):
             return None
-        features = tuple(metaclass.by_name.get(name) for name in names)
-        return maker(owner, feature, metaclass, tuple(names), features)
+        key = (owner, feature, metaclass, *names)
+        makers = self._registry.makers
+        if key not in makers and len(makers) < _MOST_SHAPES:
+            features = tuple(metaclass.by_name.get(name) for name in names)
+            makers[key] = maker(owner, feature, metaclass, tuple(names), features)
+        return makers.get(key)
 
     def _known(self, kind: str) -> Metaclass | None:
         prefix, _, name = kind.rpartition(":")

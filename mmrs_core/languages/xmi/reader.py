@@ -10,6 +10,7 @@ from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
+from mmrs_core.languages.xmi.unknowns import prefixes_in
 
 _TYPE = f"{XSI} type"
 _XMI_TYPE = f"{XMI} type"
@@ -321,8 +322,8 @@ class XmiReader:
             return
         element, begin = self._kept
         self._kept = None
-        element._mmrs_xml = self._document.text_from(begin)
-        element._mmrs_scope = self._document.namespaces.in_scope()
+        element._mmrs_xml = text = self._document.text_from(begin)
+        element._mmrs_scope = self._document.namespaces.in_scope(prefixes_in(text))
 
 
 def _value(attributes: list[str], name: str) -> str | None:

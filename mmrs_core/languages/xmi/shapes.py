@@ -8,7 +8,6 @@ asks nothing. No text of a metamodel or a model gets into the source: slots are 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from mmrs_core.languages.datatypes import DataType, parse_real
@@ -30,11 +29,7 @@ if TYPE_CHECKING:
     the owner's place is taken; then it has changed nothing.
     """
 
-_KEPT = 2048
-"""Functions kept for the next file; far more than the languages have shapes."""
 
-
-@lru_cache(_KEPT)
 def maker(
     owner: Metaclass,
     feature: Feature,
@@ -95,9 +90,7 @@ def _unpacking(names: tuple[str, ...], bound: dict[str, object]) -> list[str]:
     return [f"    {parts} = attributes", f"    if {differs}: return False"]
 
 
-def _body(
-    metaclass: Metaclass, features: tuple[Feature | None, ...], bound: dict[str, object]
-) -> list[str]:
+def _body(metaclass: Metaclass, features: tuple[Feature | None, ...], bound: dict[str, object]) -> list[str]:
     """Return the lines that make the element and set its slots, values before anything else can see it."""
     given = {feature: f"v{at}" for at, feature in enumerate(features) if feature is not None}
     lines = ["    e = new(cls)"]

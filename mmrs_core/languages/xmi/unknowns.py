@@ -9,7 +9,7 @@ from mmrs_core.languages.element import Unknown, path_of
 from mmrs_core.languages.xmi.escapes import in_attribute
 
 _BEGIN = re.compile(r"<[^\s/>!?]+")
-_PREFIX = re.compile(r"([\w.-]+):")
+_PREFIX = re.compile(r"(?<![\w.-])([\w.-]+):")
 _OPENING = re.compile(r"""<[^\s/>]+(?:\s+[^\s=>/]+\s*=\s*(?:"[^"]*"|'[^']*'))*""")
 _DECLARED = re.compile(r"""xmlns(?::([\w.-]+))?\s*=""")
 
@@ -41,7 +41,12 @@ def needed(text: str, scope: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Yield the prefixes that a text uses, or may use, and that it does not declare at its beginning."""
     opening = _OPENING.match(text)
     declared = {match[1] or "" for match in _DECLARED.finditer(opening.group() if opening else "")}
-    used = {"", *(match[1] for match in _PREFIX.finditer(text))}
-    for prefix, uri in scope.items():
-        if uri and prefix in used and prefix not in declared and prefix != "xml":
+    for prefix in prefixes_in(text):
+        uri = scope.get(prefix)
+        if uri and prefix not in declared and prefix != "xml":
             yield prefix, uri
+
+
+def prefixes_in(text: str) -> tuple[str, ...]:
+    """Return the prefixes that a text uses, or may use; the empty one stands for the default namespace."""
+    return tuple(dict.fromkeys(("", *(match[1] for match in _PREFIX.finditer(text)))))
