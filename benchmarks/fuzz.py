@@ -17,19 +17,22 @@ from time import perf_counter
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
-from fuzz_ways import ways
+from fuzz_ways import large_ways, ways
 from fuzzing import Tally, fuzz
 
 from mmrs_core.plugins import load_plugins
 
 PROCESSES = 4
+SHARE_LARGE = 250
+"""One text of so many more is about a megabyte long, and each of these is weighed: what a small one takes is
+mostly what any text takes."""
 RESULT = Path(__file__).parent / "results" / "fuzz.txt"
 
 
 def line_of(name: str, tally: Tally) -> str:
     ends = ", ".join(f"{count} {end}" for end, count in sorted(tally.ends.items()))
     return (
-        f"{name:<8} {sum(tally.ends.values()):>7} texts: {ends}; slowest {tally.slowest:.2f} s; "
+        f"{name:<10} {sum(tally.ends.values()):>7} texts: {ends}; slowest {tally.slowest:.2f} s; "
         f"most memory {tally.most_memory / 1e6:.1f} MB, {tally.worst_factor:.1f} times the text"
     )
 
@@ -37,7 +40,9 @@ def line_of(name: str, tally: Tally) -> str:
 def part(cases: int, seed: int) -> tuple[dict[str, Tally], int]:
     """Return what came of some cases, and the most memory of the process, in kB."""
     with tempfile.TemporaryDirectory() as folder:
-        tallies = fuzz(ways(load_plugins().contributions, Path(folder)), cases, seed, weigh_every=50)
+        contributions = load_plugins().contributions
+        tallies = fuzz(ways(contributions, Path(folder)), cases, seed, weigh_every=50)
+        tallies |= fuzz(large_ways(contributions), max(cases // SHARE_LARGE, 2), seed, weigh_every=1)
     return tallies, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
