@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from mmrs_core.languages.element import Element, label_of
@@ -34,27 +34,40 @@ _MOST_WORDS = 500
 """References that wait as one text."""
 
 
-class Usual(NamedTuple):
-    """How the usual values of an attribute are read: one text, or one number.
+class Way(NamedTuple):
+    """How the members of one feature are read.
 
     Attributes:
-        put: sets the bare slot.
-        text: reads a text; None where it takes more than that.
-        number: reads the figures of a number; None where that is a fault.
+        feature: the feature.
+        put: sets its bare slot.
+        usual: for each sort of event, what reads the text of a value; None where that takes more.
+        links: whether a text is a reference.
     """
 
+    feature: Feature
     put: Callable[[Element, object], None]
-    text: Callable[[str], object] | None
-    number: Callable[[str], object] | None
+    usual: tuple[Callable[[str], object] | None, ...]
+    links: bool
 
 
-def usual(metaclass: Metaclass, feature: Feature) -> Usual | None:
-    """Return how to read the usual values of a feature; None where each needs care."""
+def ways_of(metaclass: Metaclass) -> Mapping[str, Way]:
+    """Return how the features of a class that has elements are read, by their keys."""
+    return {
+        f"${each.name}" if each.name.startswith("$") else each.name: _way(metaclass, each)
+        for each in metaclass.features
+    }
+
+
+def _way(metaclass: Metaclass, feature: Feature) -> Way:
+    assert metaclass.implementation is not None  # it has elements
     kind = feature.type
-    if isinstance(kind, Metaclass) or feature.many or feature.is_id or metaclass.implementation is None:
-        return None
+    text = number = None
+    if not (isinstance(kind, Metaclass) or feature.many or feature.is_id):
+        text = None if is_character(kind) else kind.parse
+        number = kind.parse if takes_numbers(kind) else None
     put = metaclass.implementation._mmrs_slots[feature.attribute].__set__
-    return Usual(put, None if is_character(kind) else kind.parse, kind.parse if takes_numbers(kind) else None)
+    links = feature.is_reference and not feature.containment
+    return Way(feature, put, (text, number, None, None, None), links)
 
 
 class Members:
@@ -121,6 +134,10 @@ class Members:
         self._draft.fault(code, message, line, element, hint)
         if element is not None and broken is not None:
             self._draft.broken.add((element, broken.name))
+
+    def no_object(self, element: Element, feature: Feature, line: int) -> None:
+        """Report what stands where only elements can."""
+        self.fault("XMI010", f"{feature.name}: takes objects", line, element, broken=feature)
 
     # attributes
 

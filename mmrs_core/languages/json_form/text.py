@@ -42,19 +42,19 @@ _FOLLOWING = re.compile(_SPACE + rb"([,}\]])")
 _NO_NUMBER = re.compile(rb"NaN|-?Infinity")
 _SOUND = re.compile(rb'"' + _INSIDE)
 
-_HEADED = re.compile(rb'\{\s*+(?:"\$id"\s*+:\s*+"[^"\\]*+"\s*+,\s*+)?"\$type"')
+_LATE_TYPE = re.compile(rb',\s*+"\$type"')
 _TOP = re.compile(
     rb'(?:\xef\xbb\xbf)?\s*+\{\s*+(?:"\$(?:languages|schemaLocation|schema)"\s*+:\s*+'
     rb'(?:"[^"\\]*+"|\{[^{}]*+\})\s*+,\s*+)*+"\$(?:type|roots)"'
 )
-_DISGUISED = re.compile(rb'"\$\w*+\\|\\u0024')
+_DISGUISED = re.compile(rb'"\$\w*+\\')
 
 DEEPEST = 2 * DEEPEST_NESTING
 """An element inside another stands in an object and, mostly, in a list."""
 MOST_MEMBERS = 10_000
 """Of one object: far more than any class has features."""
 _MANY = 10_000
-_SHORTEST_OBJECT = len('{"x":1},')
+_SHORTEST_OBJECT = 10
 _MOST_SHORT, _SHORT = 4096, 40
 """Texts that are kept to be used again, and how long they may be."""
 
@@ -96,13 +96,12 @@ class Text:
         match = _ITEM.match(self.data, self._start)
         if match is None:
             self._refuse_value(self._start)
-        *_, bracket = match.groups()
-        if bracket is not None:
-            yield from self._inside(self._start, inner=False)
-            return
-        end = match.end() if match[4] is None else match.start(4)
+        return self._alone(match) if match[5] is None else self._inside(self._start, inner=False)
+
+    def _alone(self, match: re.Match[bytes]) -> Iterator[Event]:
+        """Yield the only value of the file."""
         yield TEXT if match[1] is not None else WORD, "", "", self._start, 0
-        self._expect_nothing(end)
+        self._expect_nothing(match.end() if match[4] is None else match.start(4))
 
     def late(self, key: str) -> Iterator[Event] | None:
         """Return what the object that began last says late; as `Stream` has it."""
@@ -115,8 +114,10 @@ class Text:
     def line(self, place: Place) -> int:
         """Return the line on which the member or value begins that stands at an offset, or behind blanks."""
         assert isinstance(place, int)  # it comes from here
-        blank = _BLANK.match(self.data, place)
-        offset = blank.end() if blank is not None else place
+        offset = place
+        if self.data[place : place + 1].isspace():
+            blank = _BLANK.match(self.data, place)
+            offset = blank.end() if blank is not None else place
         if offset >= self._offset:  # places are asked for in file order, or nearly so
             self._line += self.data.count(b"\n", self._offset, offset)
         else:
@@ -155,7 +156,10 @@ class Text:
             place, pos = pos, match.end()
             if text is not None:
                 value = short.get(text)
-                yield TEXT, key, text_of(text, place) if value is None else value, place, 0
+                if value is None:
+                    usual = len(short) >= _MOST_SHORT and b"\\" not in text
+                    value = text.decode() if usual else text_of(text, place)
+                yield TEXT, key, value, place, 0
             elif number is not None:
                 yield NUMBER, key, short.get(number) or text_of(number, place), place, 0
             elif word is not None:
@@ -270,12 +274,12 @@ class Text:
 def _is_orderly(data: bytes) -> bool:
     """Return whether every ``$type``, and what the top says of the file, certainly stands before all else."""
     top = _TOP.match(data)
-    if top is None or _DISGUISED.search(data) is not None:
+    if top is None or b"\\u0024" in data or _DISGUISED.search(data) is not None:
         return False
     begin = top.end()
     if any(data.find(f'"{key}"'.encode(), begin) >= 0 for key in (LANGUAGES, ROOTS)):
         return False
-    return data.count(f'"{TYPE}"'.encode(), begin) == sum(1 for _ in _HEADED.finditer(data, begin))
+    return _LATE_TYPE.search(data, begin) is None
 
 
 def _refuse_crowds(data: bytes, file: str, shortest: int) -> None:
