@@ -53,12 +53,15 @@ def diff(
 ) -> int:
     """Say what changed between two versions of a metamodel, and whether old models still load.
 
+    Files that an .ecore file refers to are compared as well; which ones, is told.
+
     Exit codes: 0 where they do, 1 where some do not.
 
     Example: mmrs metamodel diff kites-1.0.ecore kites.ecore
     """
     from mmrs_core.cli.metamodel_words import difference_lines, verdict_line
-    from mmrs_core.languages.evolution.differences import differences, steps_between
+    from mmrs_core.languages.evolution.differences import differences, ways_between
+    from mmrs_core.languages.evolution.pairing import pairs_of
     from mmrs_core.languages.evolution.verdicts import Verdict
     from mmrs_core.languages.evolution.versions import version_of
 
@@ -67,14 +70,21 @@ def diff(
         versions = version_of(old, registry), version_of(new, registry)
     except ValueError as fault:
         raise UnreadableError(f"{fault} (an .ecore file is named by its path)") from None
-    chain = steps_between(*versions, registry.migrations)
-    found = differences(*versions, chain)
+    ways = ways_between(*versions, registry.migrations)
+    chain = [step for way in ways.values() for step in way]
+    found = differences(*versions, ways)
+    files = tuple(pairs_of(*versions).files())
     loads = all(each.verdict is not Verdict.INCOMPATIBLE for each in found)
     if json:
-        say_json({"old_models_load": loads, "differences": found, "migrations": len(chain)})
+        compared = [{"old": before, "new": after} for before, after in files]
+        told = {"old_models_load": loads, "differences": found, "migrations": len(chain)}
+        say_json({**told, "compared": compared})
     else:
         for line, colour in difference_lines(found):
             say(line, colour)
+        for before, after in files:
+            if before != after:
+                say(f"compared: {before} with {after}")
         say(verdict_line(found, chain))
     return 0 if loads else 1
 

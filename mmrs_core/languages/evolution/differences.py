@@ -2,69 +2,81 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 
 from mmrs_core.languages.evolution.feature_rules import feature_differences
 from mmrs_core.languages.evolution.migration import Migration, chains
+from mmrs_core.languages.evolution.pairing import pairs_of
 from mmrs_core.languages.evolution.renaming import Renaming
 from mmrs_core.languages.evolution.verdicts import Difference, Verdict, changed, refused
 from mmrs_core.languages.evolution.versions import Version
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
 
+Ways = Mapping[str, tuple[Migration, ...]]
+"""Migrations that follow each other, by the nsURI where they begin."""
+
+_NO_WAYS: Ways = MappingProxyType({})
 _NO_CLASS = "older models may have such elements"
 _DROPPED = "a migration leaves it out, with a warning"
 _NO_FEATURE = "older models may say it"
 
 
-def differences(old: Version, new: Version, chain: tuple[Migration, ...] = ()) -> tuple[Difference, ...]:
-    """Return what differs between two versions, in the order of the newer one.
+def differences(old: Version, new: Version, ways: Ways = _NO_WAYS) -> tuple[Difference, ...]:
+    """Return what differs between two versions, in the order of the newer one; then, in files referred to.
 
     Args:
         old: the older version.
         new: the newer one.
-        chain: the migrations that lead from one to the other; what they rename counts as the same.
+        ways: the migrations that lead from packages of one to packages of the other, as `ways_between` finds
+            them; what they rename counts as the same.
     """
-    return tuple(_Comparison(old, new, chain).all())
+    return tuple(_Comparison(old, new, ways).all())
 
 
-def steps_between(old: Version, new: Version, migrations: Iterable[Migration]) -> tuple[Migration, ...]:
-    """Return the migrations that lead from one version to another; none if they do not."""
-    start, end = old.packages[0].ns_uri, new.packages[0].ns_uri
-    return chains(migrations, {end}).get(start, ())
+def ways_between(old: Version, new: Version, migrations: Iterable[Migration]) -> Ways:
+    """Return the migrations from older packages to newer ones, by the nsURI where they begin."""
+    steps = tuple(migrations)
+    changed_uris = [(a.ns_uri, b.ns_uri) for a, b in pairs_of(old, new).same if a.ns_uri != b.ns_uri]
+    found = {start: chains(steps, {end}).get(start, ()) for start, end in changed_uris}
+    return {start: chain for start, chain in found.items() if chain}
 
 
 class _Comparison:
-    def __init__(self, old: Version, new: Version, chain: tuple[Migration, ...]) -> None:
-        self._old, self._new, self._chain = old, new, chain
-        self._renaming = Renaming({chain[0].from_uri: chain} if chain else {})
-        inner = {package.name: package.ns_uri for package in new.packages[1:]}
-        self._packages = {old.packages[0].ns_uri: new.packages[0].ns_uri}
-        self._packages |= {p.ns_uri: inner[p.name] for p in old.packages[1:] if p.name in inner}
+    def __init__(self, old: Version, new: Version, ways: Ways) -> None:
+        self._old, self._new, self._ways = old, new, ways
+        self._steps = tuple(step for chain in ways.values() for step in chain)
+        self._renaming = Renaming(ways)
+        self._pairs = pairs_of(old, new)
+        self._packages = {before.ns_uri: now.ns_uri for before, now in self._pairs.same}
 
     def all(self) -> Iterator[Difference]:
-        yield from self._names()
-        for package in self._old.packages:
-            if package.ns_uri not in self._packages:
+        for before, now in self._pairs.same:
+            yield from self._names(before, now)
+        for package in self._pairs.gone:
+            if package in self._old.packages:
                 yield Difference("removed", package.name, Verdict.INCOMPATIBLE, "the package", _NO_CLASS)
-        for package in self._new.packages:
-            before = [p for p in self._old.packages if self._packages.get(p.ns_uri) == package.ns_uri]
-            if before:
-                yield from self._classes(before[0], package)
-                yield from _enumerations(before[0], package)
-            else:
-                yield Difference("added", package.name, Verdict.COMPATIBLE, "the package")
+            else:  # what referred to it has changed, and is told there
+                words = f"the metamodel {package.ns_uri}, to which nothing refers any more"
+                yield Difference("removed", package.name, Verdict.COMPATIBLE, words)
+        for package in self._pairs.come:
+            yield Difference("added", package.name, Verdict.COMPATIBLE, "the package")
+        for before, now in self._pairs.same:
+            lead = "" if now in self._new.packages else f"{now.name}:"
+            for each in (*self._classes(before, now), *_enumerations(before, now)):
+                yield replace(each, what=f"{lead}{each.what}")
 
     def _image(self, key: tuple[str, str]) -> tuple[str, str]:
         """Return what a class or type of the older version is called in the newer one."""
         ns_uri, name = self._renaming.last(key)
         return self._packages.get(ns_uri, ns_uri), name
 
-    def _names(self) -> Iterator[Difference]:
-        old, new = self._old.packages[0], self._new.packages[0]
+    def _names(self, old: Package, new: Package) -> Iterator[Difference]:
         if old.ns_uri == new.ns_uri:
             return
         words = f"its nsURI was {old.ns_uri}, is {new.ns_uri}"
-        if self._chain:
+        if old.ns_uri in self._ways:
             yield changed(new.name, words, Verdict.COMPATIBLE, "a migration leads there")
         else:
             yield refused(new.name, words, "older models name the older one, and no migration leads there")
@@ -108,7 +120,7 @@ class _Comparison:
 
     def _gone(self, old: Metaclass, new: Metaclass, feature: Feature, words: str) -> Difference:
         what = f"{old.name}.{feature.name}"
-        if any(what in step.dropped for step in self._chain):
+        if any(what in step.dropped for step in self._steps):
             return Difference("removed", what, Verdict.MEANING, words, _DROPPED)
         reason = _NO_FEATURE + self._renamed_to(feature, old, new)
         return Difference("removed", what, Verdict.INCOMPATIBLE, words, reason)

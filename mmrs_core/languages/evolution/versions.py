@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,11 +21,14 @@ class Version:
         label: what messages call it.
         packages: it and those inside it, outer ones first.
         registry: these, and what they need.
+        others: those of the files that it refers to, and of those that these refer to; installed ones left
+            out.
     """
 
     label: str
     packages: tuple[Package, ...]
     registry: Registry
+    others: tuple[Package, ...] = ()
 
     def metaclass(self, ns_uri: str, name: str) -> Metaclass | None:
         """Return a class, or None if there is no such class."""
@@ -49,15 +52,23 @@ def version_of(given: str, installed: Registry) -> Version:
     if not given.endswith(".ecore") and not file.is_file():
         return _packed(given, given, installed)
     sources = list(gathered([file], Registry(())))
+    referred = [source.ns_uri for source in sources[1:]]
     sources += _needed(sources, installed)
-    return _packed(given, sources[0].ns_uri, Registry(()).extended(sources))
+    return _packed(given, sources[0].ns_uri, Registry(()).extended(sources), referred)
 
 
-def _packed(label: str, ns_uri: str, registry: Registry) -> Version:
-    packages = [registry.package(ns_uri)]
+def _packed(label: str, ns_uri: str, registry: Registry, referred: Iterable[str] = ()) -> Version:
+    packages = _with_inner([ns_uri], registry)
+    others = _with_inner((each for each in referred if each != ns_uri), registry)
+    return Version(label, packages, registry, others)
+
+
+def _with_inner(ns_uris: Iterable[str], registry: Registry) -> tuple[Package, ...]:
+    """Return packages and those inside them, outer ones first."""
+    packages = [registry.package(ns_uri) for ns_uri in ns_uris]
     for package in packages:
         packages += [inner for inner in registry.packages if inner.parent == package.ns_uri]
-    return Version(label, tuple(packages), registry)
+    return tuple(packages)
 
 
 def _needed(sources: list[MetamodelSource], installed: Registry) -> Iterator[MetamodelSource]:

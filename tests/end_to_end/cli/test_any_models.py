@@ -214,10 +214,22 @@ def test_metamodel_diff_says_whether_old_models_load(town, capsys):
         "- Book.pages: the feature (incompatible: older models may say it; "
         "if it is sheets now, a migration has to say so)",
         "+ Book.sheets: the feature (compatible)",
+        "compared: models/library.ecore with new.ecore",
         "1 incompatible change: not all old models load",
     ]
     assert run(["metamodel", "diff", "urn:mmrs:mission:1.0", "urn:mmrs:mission:1.0", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["old_models_load"] is True
+
+
+def test_metamodel_diff_follows_the_files_that_are_referred_to(town, capsys):
+    (town / "new").mkdir()
+    (town / "new" / "library.ecore").write_text(LIBRARY)
+    (town / "new" / "people.ecore").write_text(PEOPLE.replace('name="name"', 'name="fullName"'))
+    assert run(["metamodel", "diff", "models/library.ecore", "new/library.ecore", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["old_models_load"] is False
+    assert [each["what"] for each in told["differences"]] == ["people:Person.name", "people:Person.fullName"]
+    assert told["compared"][1] == {"old": "models/people.ecore", "new": "new/people.ecore"}
 
 
 def test_metamodel_diff_of_what_is_not_there_is_unreadable(town, capsys):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 from metamodel_edits import EDITS, ZOO, edited
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.evolution.differences import differences, steps_between
+from mmrs_core.languages.evolution.differences import differences, ways_between
 from mmrs_core.languages.evolution.migration import Migration
+from mmrs_core.languages.evolution.pairing import pairs_of
 from mmrs_core.languages.evolution.versions import version_of
 
 
@@ -21,7 +23,7 @@ def between(core, tmp_path):
         new = tmp_path / "new.ecore"
         new.write_text(text, encoding="utf-8")
         versions = version_of(str(ZOO), core), version_of(str(new), core)
-        return differences(*versions, steps_between(*versions, migrations))
+        return differences(*versions, ways_between(*versions, migrations))
 
     return compare
 
@@ -69,6 +71,62 @@ def test_a_new_name_of_the_language_needs_a_migration(between):
     assert difference.reason == "older models name the older one, and no migration leads there"
     (allowed,) = between(text, Migration("urn:test:zoo", "urn:test:zoo:2"))
     assert allowed.verdict.value == "compatible"
+
+
+def test_a_new_name_of_a_package_inside_needs_a_migration_of_its_own(between):
+    text = edited().replace('nsURI="urn:test:zoo:wing"', 'nsURI="urn:test:zoo:wing:2"')
+    (difference,) = between(text)
+    assert (difference.what, difference.verdict.value) == ("wing", "incompatible")
+    (allowed,) = between(text, Migration("urn:test:zoo:wing", "urn:test:zoo:wing:2"))
+    assert allowed.verdict.value == "compatible"
+
+
+_HEAD = """<ecore:EPackage xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
+    xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="{0}" nsURI="urn:test:{0}:1" nsPrefix="{0}">
+  <eClassifiers xsi:type="ecore:EClass" name="{1}">{2}</eClassifiers>
+</ecore:EPackage>
+"""
+_PARTS = '<eStructuralFeatures xsi:type="ecore:EReference" name="parts" eType="ecore:EClass {}#//Part"/>'
+_INT = "ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EInt"
+_SIZE = f'<eStructuralFeatures xsi:type="ecore:EAttribute" name="size" eType="{_INT}"/>'
+
+
+@pytest.fixture
+def part_and_whole(core, tmp_path):
+    """Return a function that reads a metamodel, which refers to a second file for its parts."""
+
+    def read(folder, part, name="part.ecore"):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        whole = tmp_path / folder / "whole.ecore"
+        whole.write_text(_HEAD.format("whole", "Whole", _PARTS.format(name)))
+        (tmp_path / folder / name).write_text(part)
+        return version_of(str(whole), core)
+
+    return read
+
+
+def test_what_is_gone_from_a_file_that_is_referred_to_is_told(part_and_whole):
+    sized = _HEAD.format("part", "Part", _SIZE)
+    old, new = part_and_whole("old", sized), part_and_whole("new", _HEAD.format("part", "Part", ""))
+    (gone,) = differences(old, new)
+    assert (gone.what, gone.verdict.value) == ("part:Part.size", "incompatible")
+    assert differences(old, old) == ()
+
+
+def test_a_new_name_of_a_language_that_is_referred_to_is_told(part_and_whole):
+    part = _HEAD.format("part", "Part", "")
+    old, new = part_and_whole("old", part), part_and_whole("new", part.replace("part:1", "part:2"))
+    (renamed,) = differences(old, new)
+    assert renamed.words == "its nsURI was urn:test:part:1, is urn:test:part:2"
+    assert renamed.verdict.value == "incompatible"
+
+
+def test_files_are_told_with_what_they_were_compared_with(part_and_whole):
+    part = _HEAD.format("part", "Part", "")
+    pairs = pairs_of(part_and_whole("old", part), part_and_whole("new", part, "parts.ecore"))
+    named = [(Path(old).name, Path(new).name) for old, new in pairs.files()]
+    assert named == [("whole.ecore", "whole.ecore"), ("part.ecore", "parts.ecore")]
 
 
 def test_what_a_migration_renames_is_the_same(between):
