@@ -135,4 +135,5 @@ CLEARANCE = Check(
     name=NAME,
     title="Every leg keeps its distance from forbidden areas and obstacles as drawn.",
     run=for_each_robot(NAME, _judge),
+    hint="move the target or the home away from the area, or lead the way around or above it",
 )

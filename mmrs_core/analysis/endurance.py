@@ -169,14 +169,17 @@ ENDURANCE = Check(
     name=ENDURANCE_NAME,
     title="No sortie takes longer than the robot's lifetime with its payload, less the reserve.",
     run=for_each_robot(ENDURANCE_NAME, _judge_endurance),
+    hint="let more robots share the work, recharge in between, or take weight off",
 )
 ENERGY = Check(
     name=ENERGY_NAME,
     title="No sortie takes more energy than the batteries hold, less the reserve.",
     run=for_each_robot(ENERGY_NAME, _judge_energy),
+    hint="let more robots share the work, recharge in between, or take weight off",
 )
 RECHARGE_CHECK = Check(
     name=RECHARGE_NAME,
     title="Robots recharge at home, and long enough for full batteries.",
     run=for_each_robot(RECHARGE_NAME, _judge_recharge),
+    hint="let the robot go home before it recharges, and stay for at least the longest rechargeTime",
 )

@@ -88,14 +88,17 @@ PAYLOAD = Check(
     name=PAYLOAD_NAME,
     title="No robot carries more than its type allows.",
     run=for_each_robot(PAYLOAD_NAME, _judge_payload),
+    hint="take weight off the robot, or choose a type that carries more",
 )
 SPEED = Check(
     name=SPEED_NAME,
     title="Commanded speeds are within what the robot can do with its payload.",
     run=for_each_robot(SPEED_NAME, _judge_speed),
+    hint="ask for a lower speed, or leave it out to go by the travel mode",
 )
 DEVICES = Check(
     name=DEVICES_NAME,
     title="The robot's type has every device, action and parameter that its moves use.",
     run=for_each_robot(DEVICES_NAME, _judge_devices),
+    hint="correct the device, action or parameter, or add it to the robot type",
 )

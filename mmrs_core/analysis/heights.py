@@ -118,9 +118,11 @@ ALTITUDE = Check(
     name=ALTITUDE_NAME,
     title="Robots stay between the floor and the ceiling of their kind.",
     run=for_each_robot(ALTITUDE_NAME, _judge_altitude),
+    hint="give the task or move another height, or choose a robot that flies there",
 )
 DEPTH = Check(
     name=DEPTH_NAME,
     title="Robots dive no deeper than the pressure allows that they operate in.",
     run=for_each_robot(DEPTH_NAME, _judge_depth),
+    hint="lift the task or move, or choose a robot with a larger maxOperatingPressure",
 )

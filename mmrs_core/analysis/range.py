@@ -43,4 +43,5 @@ RANGE = Check(
     name=NAME,
     title="Robots stay within the range of their radio, measured from home.",
     run=for_each_robot(NAME, _judge),
+    hint="move the home nearer, or choose a robot with a larger communicationRange",
 )

@@ -236,4 +236,5 @@ SEPARATION = Check(
     name=NAME,
     title="Robots that are under way at the same time keep the minimum separation.",
     run=_run,
+    hint="let one task wait for the other, move the homes apart, or lower minimumSeparation",
 )

@@ -97,4 +97,5 @@ STATES = Check(
     name=NAME,
     title="Robots are on the ground, in the air or under way when their moves need it.",
     run=for_each_robot(NAME, _judge),
+    hint="put the move that is missing before it, such as a take-off or a landing",
 )

@@ -97,4 +97,5 @@ STRUCTURE = Check(
     name=NAME,
     title="Every robot has one Start and one Stop, and every move is on a way to Stop.",
     run=for_each_robot(NAME, _judge),
+    hint="add the transition that is missing, so that every move leads on to the Stop",
 )

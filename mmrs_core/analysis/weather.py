@@ -69,9 +69,11 @@ WIND = Check(
     name=WIND_NAME,
     title="The wind is no stronger than what flying robots can hold a position in.",
     run=for_each_robot(WIND_NAME, _judge_wind),
+    hint="wait for calmer weather, or choose a robot with a larger positionHold",
 )
 TEMPERATURE = Check(
     name=TEMPERATURE_NAME,
     title="The ambient temperature is one that the robots operate in.",
     run=for_each_robot(TEMPERATURE_NAME, _judge_temperature),
+    hint="go on another day, or choose a robot whose operatingTemperature has room",
 )

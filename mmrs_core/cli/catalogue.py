@@ -12,10 +12,8 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.registry import Contributions
 
 
-VERDICT_HINT = (
-    "change the mission and plan again, or the behaviour by hand; what cannot be known may be named in "
-    "acceptedUnknowns"
-)
+_ANY_VERDICT = "change the mission and plan again, or the behaviour by hand"
+_UNKNOWN = "what cannot be known may be named in acceptedUnknowns"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +59,7 @@ def catalogue_of(contributions: Contributions) -> Mapping[str, Entry]:
             Severity.ERROR,
             _plainly(each.title),
             _plainly(each.title),
-            VERDICT_HINT,
+            f"{each.hint or _ANY_VERDICT}; {_UNKNOWN}",
             "Behaviour",
         )
         for each in contributions.checks

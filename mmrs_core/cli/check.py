@@ -45,15 +45,23 @@ def check(
     verdicts = verdicts_of(workshop, loaded.program, loaded.place)
     against = refusals(verdicts, loaded.program)
     if sarif is not None:
-        write_sarif(sarif, as_faults(verdicts, against), workshop.contributions, subject=subject)
+        write_sarif(
+            sarif,
+            as_faults(verdicts, against, workshop.contributions.checks),
+            workshop.contributions,
+            subject=subject,
+        )
     if json:
         say_json({"safe": not against, "verdicts": verdicts, "against": against})
     elif sarif != STANDARD_OUTPUT:
         for line in verdict_table(verdicts):
             say(line)
         say(f"{file}: {_in_all(verdicts, against)}")
+        hints = {each.name: each.hint for each in workshop.contributions.checks}
         for verdict in against:
             say(f"  - {verdict_line(verdict)}")
+            if hint := hints.pop(verdict.property, ""):  # once for each property
+                say(f"    hint: {hint}")
     return 1 if against else 0
 
 

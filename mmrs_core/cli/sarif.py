@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Proposal
     from mmrs_core.cli.catalogue import Entry
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.contributions.checks import Verdict
+    from mmrs_core.contributions.checks import Check, Verdict
     from mmrs_core.contributions.registry import Contributions
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -109,15 +109,19 @@ def _result(fault: Diagnostic, index: int, places: Places, proposal: Proposal | 
     return result
 
 
-def as_faults(verdicts: Iterable[Verdict], against: Container[Verdict]) -> tuple[Diagnostic, ...]:
+def as_faults(
+    verdicts: Iterable[Verdict], against: Container[Verdict], checks: Iterable[Check] = ()
+) -> tuple[Diagnostic, ...]:
     """Return what stands against a behaviour, and what is not known of it, as faults.
 
     Args:
         verdicts: all of them.
         against: those that make the behaviour unsafe.
+        checks: what says how to mend each.
     """
     from mmrs_core.cli.verdict_words import verdict_line
 
+    hints = {check.name: check.hint for check in checks}
     told = (each for each in verdicts if each in against or each.status.value == "unknown")
     return tuple(
         Diagnostic(
@@ -125,6 +129,7 @@ def as_faults(verdicts: Iterable[Verdict], against: Container[Verdict]) -> tuple
             Severity.ERROR if each in against else Severity.NOTE,
             verdict_line(each),
             each.place,
+            hints.get(each.property, ""),
         )
         for each in told
     )

@@ -74,8 +74,10 @@ class Check:
         name: snake_case, unique; missions accept unknowns by it.
         title: the property as a sentence.
         run: one verdict for each robot, or one for all.
+        hint: how to mend a behaviour that has not got it, or what to say so that it can be known.
     """
 
     name: str
     title: str
     run: Callable[[CheckInput], Iterable[Verdict]]
+    hint: str = ""

@@ -168,4 +168,5 @@ SYNCHRONISATION = Check(
     name=NAME,
     title="Every awaited slot is activated by somebody, and no run leaves a robot waiting for ever.",
     run=_run,
+    hint="let some robot notify the slot on every way it may go, or take the wait away",
 )

@@ -48,4 +48,5 @@ IRRADIANCE_CHECK = Check(
     NAME,
     "Images of panels are taken only in as much sunlight as their tasks ask for.",
     for_each_robot(NAME, _judge),
+    hint="wait for more sun, and state the irradiance that is measured in the plane of the panels",
 )
