@@ -10,7 +10,7 @@ from hashlib import sha256
 from math import inf
 from pathlib import Path
 from types import TracebackType
-from typing import Literal, TextIO
+from typing import TextIO
 from urllib.parse import quote
 
 from mmrs_core.behaviour.steps import StepRecord
@@ -43,25 +43,16 @@ def to_line(record: StepRecord) -> str:
 
 
 class LogWriter:
-    """Appends steps to one log a robot in a folder.
+    """Appends steps to one log a robot in a folder; the first step of a robot replaces an older log.
 
     Every step is flushed; a notify or a fault is on the disk when `write` returns, so that a notify
     written before it is delivered survives whatever happens next.
     """
 
-    def __init__(self, folder: Path, *, append: bool = False, durable: bool = True) -> None:
-        """Open no file yet.
-
-        Args:
-            folder: made where it is missing.
-            append: continue a robot's log that is there already, as after a restart within a run;
-                otherwise the first step written for a robot replaces it.
-            durable: whether to wait for the disk at notifies and faults.
-        """
+    def __init__(self, folder: Path) -> None:
+        """Open no file yet; make the folder where it is missing."""
         folder.mkdir(parents=True, exist_ok=True)
         self._folder = folder
-        self._mode: Literal["a", "w"] = "a" if append else "w"
-        self._durable = durable
         self._files: dict[str, TextIO] = {}
 
     def write(self, record: StepRecord) -> None:
@@ -69,11 +60,10 @@ class LogWriter:
         file = self._files.get(record.robot)
         if file is None:
             path = self._folder / log_name(record.robot)
-            file = path.open(self._mode, encoding="utf-8", newline="\n")
-            self._files[record.robot] = file
+            file = self._files[record.robot] = path.open("w", encoding="utf-8", newline="\n")
         file.write(to_line(record) + "\n")
         file.flush()
-        if self._durable and record.label in ("ntf", "fault"):
+        if record.label in ("ntf", "fault"):
             os.fsync(file.fileno())
 
     def close(self) -> None:
@@ -126,12 +116,6 @@ def read_logs(paths: Iterable[Path], *, partial: bool = False) -> tuple[StepReco
         for file in _logs_in(path):
             records.extend(read_log(file, partial=partial))
     return merge(records)
-
-
-def clear_logs(folder: Path) -> None:
-    """Remove the logs of an earlier run, so that robots of that run leave none behind."""
-    for path in folder.glob(f"*{SUFFIX}"):
-        path.unlink()
 
 
 def merge(records: Iterable[StepRecord]) -> tuple[StepRecord, ...]:

@@ -28,6 +28,10 @@ from mmrs_core.behaviour.steps import StepRecord
 HOLD_POSITION = (BEHAVIOUR, "HoldPosition")
 
 
+_TOLERANCE = 1e-3
+"""Seconds by which a hold may seem shorter than its duration."""
+
+
 class Outcome(Enum):
     """How a run ended."""
 
@@ -94,15 +98,12 @@ class _Robot:
 @dataclass(slots=True)
 class _Replay:
     robots: dict[str, _Robot]
-    tolerance: float
     active: set[SlotId] = field(default_factory=set)
     faults: dict[str, str] = field(default_factory=dict)
     steps: int = 0
 
 
-def replay(
-    program: Program, records: Iterable[StepRecord], *, partial: bool = False, tolerance: float = 1e-3
-) -> ReplayResult:
+def replay(program: Program, records: Iterable[StepRecord], *, partial: bool = False) -> ReplayResult:
     """Return whether the records are a trace of the program, and how it ended.
 
     The first step that the rules do not allow ends the replay: what follows it has no meaning.
@@ -112,11 +113,10 @@ def replay(
         program: what the robots should do.
         records: of all robots; those of one robot in the order of its log.
         partial: accept a log that ends before the run does.
-        tolerance: seconds by which a hold may seem shorter than its duration.
     """
     in_file_order = tuple(records)
     complaints = list(_order_complaints(in_file_order))
-    run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.robots}, tolerance)
+    run = _Replay({robot.id: _Robot(robot, entry(robot, robot.start)) for robot in program.robots})
     if not complaints:
         complaints.extend(_replayed(run, merge(in_file_order)))
     state = State(tuple(robot.point for robot in run.robots.values()), frozenset(run.active))
@@ -191,9 +191,7 @@ def _too_short(run: _Replay, robot: _Robot, record: StepRecord) -> str:
     if not move.is_a(HOLD_POSITION) or not isinstance(duration, int | float):
         return ""
     held = record.time - robot.began
-    return (
-        f"holds for {held:g} s, expected at least {duration:g} s" if held < duration - run.tolerance else ""
-    )
+    return f"holds for {held:g} s, expected at least {duration:g} s" if held < duration - _TOLERANCE else ""
 
 
 def _advance(run: _Replay, robot: _Robot, step: Step, record: StepRecord) -> None:

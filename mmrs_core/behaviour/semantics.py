@@ -4,6 +4,10 @@ Each robot is at a control point; a step of one robot leads it to its next point
 Steps of different robots interleave. Slots are latches: passing a wait leaves them as they are.
 All awaited slots are tested in one state, after the post-actions of the move. A Choice may go either
 way here; an interpreter asks its condition once, at the instant when it fires.
+
+What robots run by are `steps`, `fault` and `missing`. States of all robots together (`initial`, `enabled`,
+`apply`, `is_success`, `is_deadlock`) are the oracle that the interpreter and the check of synchronisation
+are tested against, over every interleaving.
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from enum import Enum
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId
 
 NOTIFY = (BEHAVIOUR, "Notify")
 
@@ -211,8 +215,3 @@ def _ways_on(robot: RobotProgram, point: Point) -> tuple[Step, ...]:
         Step(robot.id, "choose", move, detail, "", entry(robot, way))
         for detail, way in (("true", transition.to), ("false", transition.otherwise))
     )
-
-
-def transition_at(robot: RobotProgram, point: Point) -> Transition | None:
-    """Return the transition by which the robot leaves a move that it has done; None elsewhere."""
-    return robot.transitions[point.move] if point.phase is Phase.OUT else None

@@ -96,7 +96,7 @@ def write_logs(run: Run, program: Program, folder: Path) -> tuple[Path, ...]:
     """Write the log of every robot; logs of other robots that an earlier run left there go away."""
     names = [log_name(robot.id) for robot in program.robots]
     _remove_older(folder, set(names))
-    with LogWriter(folder, durable=False) as writer:
+    with LogWriter(folder) as writer:
         for record in run.records:
             writer.write(record)
     return tuple(folder / name for name in names if (folder / name).exists())

@@ -26,10 +26,10 @@ EPSILON = 1e-3
 """Metres added to every clearance, so that rounding can never undercut it."""
 
 
-def circle_about(distance: float, sides: int = SIDES) -> NDArray[np.float64]:
-    """Return the (sides, 2) corners of a regular polygon about the circle of radius `distance`."""
-    turns = np.arange(sides) * (2 * pi / sides)
-    return np.column_stack([np.cos(turns), np.sin(turns)]) * (distance / cos(pi / sides))
+def circle_about(distance: float) -> NDArray[np.float64]:
+    """Return the (SIDES, 2) corners of a regular polygon about the circle of radius `distance`."""
+    turns = np.arange(SIDES) * (2 * pi / SIDES)
+    return np.column_stack([np.cos(turns), np.sin(turns)]) * (distance / cos(pi / SIDES))
 
 
 def grow(ring: Sequence[Vertex], distance: float, *, margin: float = EPSILON) -> Polygon:

@@ -60,11 +60,6 @@ def signed_area(ring: ArrayLike) -> float:
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def counter_clockwise(ring: Sequence[Vertex]) -> tuple[Vertex, ...]:
-    """Return the ring running counter-clockwise, from the same vertex."""
-    return tuple(ring) if signed_area(ring) >= 0 else (ring[0], *reversed(ring[1:]))
-
-
 def contains(ring: ArrayLike, points: ArrayLike) -> NDArray[np.bool_]:
     """Return which of the (n, 2) points lie inside a ring; on its edge they may count either way.
 

@@ -140,26 +140,3 @@ def _to_lids(begin: Floats, way: Floats, corners: Floats, low: float, high: floa
         better = contains(corners, place[:, :2]) & (gap < best)
         best, best_at = np.where(better, gap, best), np.where(better, at, best_at)
     return best, best_at
-
-
-def closest_approach(
-    first: ArrayLike, second: ArrayLike, begin: ArrayLike, end: ArrayLike
-) -> tuple[Floats, Floats]:
-    """Return the least distance between pairs of points that move at the same time, and when.
-
-    Args:
-        first: (n, 2, 3): where each first point is at `begin` and at `end`; it moves steadily between.
-        second: (n, 2, 3), likewise.
-        begin: (n,) seconds.
-        end: (n,) seconds, not before `begin`.
-    """
-    one, two = (
-        np.asarray(first, np.float64).reshape(-1, 2, 3),
-        np.asarray(second, np.float64).reshape(-1, 2, 3),
-    )
-    start, stop = np.asarray(begin, np.float64).reshape(-1), np.asarray(end, np.float64).reshape(-1)
-    gap, way = one[:, 0] - two[:, 0], (one[:, 1] - two[:, 1]) - (one[:, 0] - two[:, 0])
-    speed2 = (way**2).sum(axis=1)
-    share = np.clip(-(gap * way).sum(axis=1) / np.where(speed2 > 0.0, speed2, 1.0), 0.0, 1.0)
-    distance = np.sqrt(((gap + share[:, None] * way) ** 2).sum(axis=1))
-    return distance, start + share * (stop - start)

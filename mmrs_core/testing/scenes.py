@@ -26,7 +26,6 @@ from mmrs_core.scene import (
 )
 
 ROBOT: Name = ("urn:mmrs:robot:1.0", "Robot")
-SAMPLE_FRAME = Frame("EPSG:4326", 42.0, 13.0)
 FLYER = Kinematics(5.0, 0.0, 10.0, 2.0, 2.0, floor=1.0, ceiling=100.0)
 """A robot that stands still in the air, between 1 and 100 metres."""
 

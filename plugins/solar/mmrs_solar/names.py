@@ -7,7 +7,6 @@ PANEL_GROUP = (SOLAR, "PanelGroup")
 PANEL_TASK = (SOLAR, "PanelTask")
 THERMAL_ROW_TASK = (SOLAR, "ThermalRowTask")
 PANEL_LOOK_TASK = (SOLAR, "PanelLookTask")
-SUSPECTED_PANEL = (SOLAR, "SuspectedPanel")
 
 IRRADIANCE = "minimumIrradiance"
 """Feature of panel tasks, and parameter of the actions that record it: watts per square metre."""

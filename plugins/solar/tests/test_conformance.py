@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from mmrs_solar import plugin
 from mmrs_solar.constraints import CONSTRAINTS
-from mmrs_solar.names import PANEL_GROUP, SOLAR, SUSPECTED_PANEL
+from mmrs_solar.names import PANEL_GROUP, SOLAR
 
 from mmrs_core.languages import context, mission, robot
 from mmrs_core.scene import Device, DeviceAction, Part
@@ -125,7 +125,7 @@ GROUP = Part(
         "columns": 50,
     },
 )
-PANEL = Part((SUSPECTED_PANEL,), {"row": 2, "column": 7, "tier": 1})
+PANEL = Part(((SOLAR, "SuspectedPanel"),), {"row": 2, "column": 7, "tier": 1})
 ON_PANELS = {"group": "south", "distance": 12.0, "minimumIrradiance": 600.0}
 CAPTURE = {"startAction": "StartCapture", "stopAction": "StopCapture"}
 TASKS = {

@@ -3,7 +3,7 @@ from __future__ import annotations
 from math import cos, dist, radians, sin
 
 import pytest
-from mmrs_solar.names import PANEL_LOOK_TASK, SUSPECTED_PANEL
+from mmrs_solar.names import PANEL_LOOK_TASK, SOLAR
 from mmrs_solar.panel_looks import panel_look_work
 
 from mmrs_core.errors import InfeasibleError
@@ -12,7 +12,7 @@ from mmrs_core.testing.scenes import sample_task, square
 
 
 def panel(row, column, tier=1):
-    return Part((SUSPECTED_PANEL,), {"row": row, "column": column, "tier": tier})
+    return Part(((SOLAR, "SuspectedPanel"),), {"row": row, "column": column, "tier": tier})
 
 
 def look(*panels, **more):

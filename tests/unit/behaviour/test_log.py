@@ -10,7 +10,6 @@ import pytest
 from mmrs_core.behaviour.log import (
     SCHEMA,
     LogWriter,
-    clear_logs,
     faults_of,
     log_name,
     merge,
@@ -62,18 +61,11 @@ def test_a_notify_is_on_the_disk_before_the_log_is_closed(tmp_path, monkeypatch)
     log.close()
 
 
-def test_a_log_of_an_earlier_run_is_replaced_unless_it_is_to_go_on(tmp_path):
-    for append, expected in ((False, (FIRST,)), (True, (FIRST, SECOND))):
-        with LogWriter(tmp_path, append=append) as log:
-            log.write(SECOND if append else FIRST)
-        assert read_log(tmp_path / log_name("r")) == expected
-
-
-def test_clearing_removes_logs_only(tmp_path):
-    (tmp_path / "r.jsonl").write_text("")
-    (tmp_path / "notes.txt").write_text("")
-    clear_logs(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+def test_a_log_of_an_earlier_run_is_replaced(tmp_path):
+    for record in (SECOND, FIRST):
+        with LogWriter(tmp_path) as log:
+            log.write(record)
+    assert read_log(tmp_path / log_name("r")) == (FIRST,)
 
 
 @pytest.mark.parametrize(

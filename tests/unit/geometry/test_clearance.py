@@ -8,7 +8,7 @@ SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
 
 
 def test_the_circle_in_pieces_holds_the_true_circle():
-    drawn = shapely.Polygon(circle_about(5.0, 8))
+    drawn = shapely.Polygon(circle_about(5.0))
     assert drawn.exterior.distance(shapely.Point(0.0, 0.0)) == pytest.approx(5.0)
 
 

@@ -2,7 +2,6 @@ import pytest
 
 from mmrs_core.geometry.polygons import (
     contains,
-    counter_clockwise,
     less,
     parts,
     polygon,
@@ -38,12 +37,6 @@ def test_faults_of_a_ring_are_named(ring, fault):
 def test_area_has_the_sign_of_the_direction():
     assert signed_area(SQUARE) == 100.0
     assert signed_area(SQUARE[::-1]) == -100.0
-
-
-def test_a_ring_is_turned_without_losing_its_first_vertex():
-    turned = counter_clockwise(SQUARE[::-1])
-    assert signed_area(turned) > 0
-    assert turned[0] == SQUARE[::-1][0]
 
 
 def test_points_are_inside_or_not():

@@ -3,7 +3,7 @@ from math import inf, sqrt
 import numpy as np
 import pytest
 
-from mmrs_core.geometry.segments import closest_approach, legs_of, nearest_to_prism, prism_distance
+from mmrs_core.geometry.segments import legs_of, nearest_to_prism, prism_distance
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
 
@@ -54,14 +54,3 @@ def test_no_legs_have_no_distances():
 
 def test_a_single_point_is_a_leg_of_no_length():
     assert legs_of([(1, 2, 3)]).tolist() == [[[1, 2, 3], [1, 2, 3]]]
-
-
-def test_points_that_meet_head_on_touch_midway():
-    distance, when = closest_approach([[(0, 0, 0), (10, 0, 0)]], [[(10, 0, 0), (0, 0, 0)]], [100.0], [110.0])
-    assert distance[0] == pytest.approx(0.0)
-    assert when[0] == pytest.approx(105.0)
-
-
-def test_points_that_move_alike_keep_their_distance():
-    distance, when = closest_approach([[(0, 0, 0), (9, 0, 0)]], [[(0, 3, 4), (9, 3, 4)]], [0.0], [1.0])
-    assert (distance[0], when[0]) == (5.0, 0.0)
