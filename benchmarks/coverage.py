@@ -19,7 +19,7 @@ from time import process_time
 import numpy as np
 import shapely
 
-from mmrs_core.planning.coverage import work_over
+from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.scene import (
     Area,
     AreaUse,
@@ -107,11 +107,13 @@ def ratios(field: Field, length: float) -> Ratios:
         scene,
         ROBOT,
         field.shell,
-        altitude=ALTITUDE,
-        width=field.width,
-        rule="cover",
-        length=length,
-        action="TakePicture" if length else None,
+        Sweep(
+            altitude=ALTITUDE,
+            width=field.width,
+            rule="cover",
+            length=length,
+            action="TakePicture" if length else None,
+        ),
     )
     seconds = process_time() - started
     least = _covered(work) / field.width

@@ -241,6 +241,7 @@ def simulate(
         UnsupportedError: if there is no such backend, it does not simulate or know an option, or the
             behaviour holds what nobody contributed.
     """
+    from mmrs_core.runtime.interpreter import Terms
     from mmrs_core.runtime.run import assumed
     from mmrs_core.runtime.run import simulate as simulated
 
@@ -254,7 +255,7 @@ def simulate(
         conditions={**contributions.conditions, **assumed(assume or {})},
         environment=place.environment,
         areas=place.areas or (),
-        observe=observe,
+        terms=Terms(observe=observe),
     )
 
 

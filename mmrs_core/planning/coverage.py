@@ -6,6 +6,7 @@ The entry point for rules is `work_over`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from math import floor
@@ -21,7 +22,7 @@ from mmrs_core.geometry.polygons import parts, polygon, rings
 from mmrs_core.planning.footprints import GRID
 from mmrs_core.planning.lines import Swath
 from mmrs_core.planning.swaths import swaths
-from mmrs_core.scene import ActionAt, Area, Coverage, Look, Point, Ring, Robot, Scene, Stroke, Work
+from mmrs_core.scene import ActionAt, Area, Coverage, Point, Ring, Robot, Scene, Stroke, Work
 
 MOST = 200_000
 """Actions at most that one area may take: more, nobody means, and nobody waits for their planning."""
@@ -39,25 +40,43 @@ _CUTS = 16
 """Places at most at which one stroke may be split."""
 
 
-def work_over(
-    scene: Scene,
-    robot: Robot,
-    shell: Ring,
-    holes: Sequence[Ring] = (),
-    *,
-    altitude: float,
-    width: float,
-    rule: str,
-    length: float = 0.0,
-    action: str | None = None,
-    device: str = "",
-    parameters: tuple[tuple[str, str], ...] = (),
-    speed: float | None = None,
-    slow_down: float | None = None,
-    look: Look | None = None,
-    angle: float | None = None,
-    start: Point | None = None,
-) -> Work:
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """How a polygon is to be covered.
+
+    Attributes:
+        altitude: height above the origin, metres.
+        width: of the strip that a stroke covers, metres, overlap taken off.
+        rule: name of the rule that asks.
+        length: of what one action covers along the stroke, metres, overlap taken off; 0: no actions.
+        action: name of the device action; needs a `length`.
+        device: identifier of its device; empty: the only one that supports the action.
+        parameters: of the action.
+        speed: largest speed on the strokes, metres per second; None: see `Stroke`.
+        slow_down: see `Stroke`.
+        angle: direction of the strokes, radians from east to north; None: the best one.
+        start: where the first stroke should be near, such as the task's initial position; None: anywhere.
+    """
+
+    altitude: float
+    width: float
+    rule: str
+    length: float = 0.0
+    action: str | None = None
+    device: str = ""
+    parameters: tuple[tuple[str, str], ...] = ()
+    speed: float | None = None
+    slow_down: float | None = None
+    angle: float | None = None
+    start: Point | None = None
+
+    @property
+    def along(self) -> float:
+        """Return what an action covers along the stroke, metres; 0 where there is none."""
+        return self.length if self.action is not None else 0.0
+
+
+def work_over(scene: Scene, robot: Robot, shell: Ring, sweep: Sweep, holes: Sequence[Ring] = ()) -> Work:
     """Return the work that covers a polygon at one height: strokes in a good order, and the coverage.
 
     What is covered is the shell less its holes less what the robot's clearance forbids it at that
@@ -71,27 +90,17 @@ def work_over(
         scene: for its areas.
         robot: for its clearance. Robots of one clearance get equal works and so can share them.
         shell: of the polygon, (east, north) in metres.
+        sweep: how it is covered.
         holes: of the polygon.
-        altitude: height above the origin, metres.
-        width: of the strip that a stroke covers, metres, overlap taken off.
-        rule: name of the rule that asks.
-        length: of what one action covers along the stroke, metres, overlap taken off; 0: no actions.
-        action: name of the device action; needs a `length`.
-        device: identifier of its device; empty: the only one that supports the action.
-        parameters: of the action.
-        speed: largest speed on the strokes, metres per second; None: see `Stroke`.
-        slow_down: see `Stroke`.
-        look: see `Stroke`.
-        angle: direction of the strokes, radians from east to north; None: the best one.
-        start: where the first stroke should be near, such as the task's initial position; None: anywhere.
 
     Raises:
         ValueError: a width or length is not positive where it must be, or a ring is unsound.
         InfeasibleError: clearance leaves nothing of the polygon, or it takes more than `MOST` actions.
     """
+    action, width, length = sweep.action, sweep.width, sweep.length
     if action is not None and not length > 0:
         raise ValueError(f"action {action!r} needs a length to cover along the stroke, {length} is none")
-    target = target_of(scene, robot, shell, holes, altitude)
+    target = target_of(scene, robot, shell, holes, sweep.altitude)
     asked = sum(
         part.area for part in parts(shapely.difference(polygon(shell), _union(holes), grid_size=GRID))
     )
@@ -103,23 +112,19 @@ def work_over(
         raise InfeasibleError(
             f"takes about {wanted:,.0f} photos or samples, of which {MOST:,} can be planned"
         )
-    closed = _closed(scene, robot, altitude)
+    closed = _closed(scene, robot, sweep.altitude)
     worth = shapely.to_wkb(GeometryCollection(_worth(target, closed)))
-    along = length if action is not None else 0.0
-    begin = None if start is None else (start[0], start[1])
-    lines = _lines(worth, shapely.to_wkb(closed), width, along, angle, begin)
-    strokes = tuple(
-        _stroke(line, altitude, width, action, device, parameters, speed, slow_down, look) for line in lines
-    )
+    lines = _lines(worth, shapely.to_wkb(closed), width, sweep.along, sweep.angle, sweep.start)
     covered = Coverage(
         shell=tuple(shell),
         holes=tuple(tuple(hole) for hole in holes),
         target=tuple(rings(piece) for piece in target),
         width=width,
-        length=along,
+        length=sweep.along,
         unreachable=max(0.0, asked - area),
     )
-    return Work(strokes=strokes, divisible=True, rule=rule, ordered=False, coverage=covered)
+    strokes = tuple(_stroke(line, sweep) for line in lines)
+    return Work(strokes=strokes, divisible=True, rule=sweep.rule, ordered=False, coverage=covered)
 
 
 def target_of(
@@ -176,25 +181,15 @@ def _lines(
     )
 
 
-def _stroke(
-    line: Swath,
-    altitude: float,
-    width: float,
-    action: str | None,
-    device: str,
-    parameters: tuple[tuple[str, str], ...],
-    speed: float | None,
-    slow_down: float | None,
-    look: Look | None,
-) -> Stroke:
-    at = line.spots
+def _stroke(line: Swath, sweep: Sweep) -> Stroke:
+    at, action = line.spots, sweep.action
+    done = (ActionAt(where, action, sweep.device, sweep.parameters) for where in at) if action else ()
     return Stroke(
-        points=tuple((float(east), float(north), altitude) for east, north in line.points),
-        actions=tuple(ActionAt(where, action, device, parameters) for where in at) if action else (),
-        look=look,
-        speed=speed,
-        slow_down=slow_down,
-        cuts=_between(at) if action is not None else _even(line.length, width),
+        points=tuple((float(east), float(north), sweep.altitude) for east, north in line.points),
+        actions=tuple(done),
+        speed=sweep.speed,
+        slow_down=sweep.slow_down,
+        cuts=_between(at) if action is not None else _even(line.length, sweep.width),
         reversible=True,
     )
 

@@ -38,7 +38,6 @@ class Crew:
     Attributes:
         scene: expanded.
         fine: whether works are divided as finely as can be.
-        stacked: whether robots have transit altitudes of their own.
         homebound: names of the robots that always keep enough to go home.
         pilots: by name of robot, in the scene's order.
         teams: by name of task: robots that may share it, by sort of work; robots of different sorts
@@ -62,7 +61,7 @@ class Crew:
             homebound: names of the robots that always keep enough to go home; None: see `homebound_of`.
             altitudes: of transit, by robot; None: the scene's for all.
         """
-        self.scene, self.fine, self.stacked = scene, fine, altitudes is not None
+        self.scene, self.fine = scene, fine
         self.homebound = homebound_of(scene) if homebound is None else homebound
         spaces, aloft = Spaces(scene), altitudes or {}
         fluid = scene.minimum_separation is None

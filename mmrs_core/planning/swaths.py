@@ -91,7 +91,7 @@ def _best_sweep(
     return min([sweeps[0][0], *shifted], key=lambda lines: _cost(lines, reach, start))
 
 
-def sweep_angles(pieces: Sequence[Polygon], count: int = _ANGLES) -> list[float]:
+def sweep_angles(pieces: Sequence[Polygon]) -> list[float]:
     """Return the most promising directions, radians in [0, pi), best first.
 
     The number of swaths at a direction u is about half the sum of |edge x u| over the width
@@ -108,7 +108,7 @@ def sweep_angles(pieces: Sequence[Polygon], count: int = _ANGLES) -> list[float]
     across = np.abs(
         np.outer(np.sin(directions), edges[:, 0]) - np.outer(np.cos(directions), edges[:, 1])
     ).sum(axis=1)
-    best = directions[np.argsort(across, kind="stable")][: count - 2].tolist()
+    best = directions[np.argsort(across, kind="stable")][: _ANGLES - 2].tolist()
     return list(dict.fromkeys([*best, 0.0, pi / 2]))
 
 

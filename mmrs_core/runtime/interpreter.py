@@ -37,6 +37,29 @@ Observer = Callable[[StepRecord], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Terms:
+    """What a run goes by, whatever its robots do.
+
+    Attributes:
+        run: identifier of the run.
+        incarnation: differs each time that these robots are started within a run.
+        observe: called with each step before it has an effect; a log, for example.
+        seconds: of the run's clock, after which it is cut off.
+        steps: number of them after which it is cut off, since a Choice can go round for ever.
+    """
+
+    run: str = "run-0"
+    incarnation: str = "0"
+    observe: Observer | None = None
+    seconds: float = inf
+    steps: int = 1_000_000
+
+
+TO_THE_END = Terms()
+"""Of a run that nobody is told of and that comes to its end, unless a Choice goes round for ever."""
+
+
+@dataclass(frozen=True, slots=True)
 class Ending:
     """How a run ended.
 
@@ -65,12 +88,8 @@ def interpret(
     bus: Bus,
     clock: Clock,
     conditions: Mapping[str, Condition],
-    run: str = "run-0",
-    incarnation: str = "0",
     policies: Mapping[str, tuple[Policy, ...]] | None = None,
-    observe: Callable[[StepRecord], None] | None = None,
-    seconds: float = inf,
-    steps: int = 1_000_000,
+    terms: Terms = TO_THE_END,
 ) -> Generator[StepRecord, None, Ending]:
     """Yield the steps of the robots that have a backend; return how the run ended.
 
@@ -81,12 +100,8 @@ def interpret(
         program: of all robots, those of other processes included.
         backends: by robot.
         conditions: by identifier; all that Choices of these robots name.
-        run: identifier of the run.
-        incarnation: differs each time that these robots are started within a run.
         policies: by robot: those of its type and kind, which go after the program's own.
-        observe: called with each step before it has an effect; a log, for example.
-        seconds: of the run's clock, after which it is cut off.
-        steps: number of them after which it is cut off, since a Choice can go round for ever.
+        terms: who is told, and what cuts the run off.
 
     Raises:
         ValueError: if a backend is for a robot that the program does not have.
@@ -98,8 +113,7 @@ def interpret(
         for robot in program.robots
         if robot.id in backends
     ]
-    whole = len(robots) == len(program.robots)
-    return _Run(program, robots, bus, clock, run, incarnation, observe, seconds, steps, whole).go()
+    return _Run(program, robots, bus, clock, terms).go()
 
 
 def _refuse_unknown(
@@ -122,22 +136,11 @@ def _refuse_unknown(
 
 class _Run:
     def __init__(
-        self,
-        program: Program,
-        robots: list[RunningRobot],
-        bus: Bus,
-        clock: Clock,
-        run: str,
-        incarnation: str,
-        observe: Observer | None,
-        seconds: float,
-        steps: int,
-        whole: bool,
+        self, program: Program, robots: list[RunningRobot], bus: Bus, clock: Clock, terms: Terms
     ) -> None:
-        self._robots, self._bus, self._clock = robots, bus, clock
+        self._robots, self._bus, self._clock, self._terms = robots, bus, clock, terms
         self._by_id = {robot.id: order for order, robot in enumerate(robots)}
-        self._run, self._incarnation, self._observe = run, incarnation, observe
-        self._seconds, self._limit, self._whole = seconds, steps, whole
+        self._whole = len(robots) == len(program.robots)
         self._peers = Peers(program)
         self._made = 0
         self._ready = list(range(len(robots)))
@@ -152,7 +155,7 @@ class _Run:
                 if not self._deadlock and self._is_quiet():
                     self._deadlock = self._waiting()
                 until = self._next_wake()
-                if self._made >= self._limit or until == inf or until > self._seconds:
+                if self._made >= self._terms.steps or until == inf or until > self._terms.seconds:
                     break
                 self._clock.sleep_until(until)
                 self._wake()
@@ -162,7 +165,7 @@ class _Run:
 
     def _settled(self) -> Iterator[StepRecord]:
         """Make every step that is due now, the program's first robot first."""
-        while self._ready and self._made < self._limit:
+        while self._ready and self._made < self._terms.steps:
             order = heappop(self._ready)
             while self._ready and self._ready[0] == order:
                 heappop(self._ready)
@@ -173,7 +176,7 @@ class _Run:
                 heappush(self._wakes, (robot.wake, order))
 
     def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
-        while not robot.point.is_final and self._made < self._limit:
+        while not robot.point.is_final and self._made < self._terms.steps:
             step = robot.due(self._clock.now(), self._peers)
             if step is None:
                 return
@@ -184,8 +187,8 @@ class _Run:
         clocks = (self._bus.state(slot).lamport for slot in (*step.sets, *waits))
         robot.lamport = max((robot.lamport, *clocks)) + 1
         record = self._record(robot, step)
-        if self._observe is not None:
-            self._observe(record)
+        if self._terms.observe is not None:
+            self._terms.observe(record)
         yield record
         self._bus.passed(waits, robot.lamport)
         robot.follow(step)
@@ -198,7 +201,7 @@ class _Run:
     def _record(self, robot: RunningRobot, step: Step) -> StepRecord:
         time = round(self._clock.now(), 6)
         return StepRecord(
-            self._run,
+            self._terms.run,
             robot.id,
             robot.take_number(),
             robot.lamport,
@@ -210,7 +213,7 @@ class _Run:
         )
 
     def _deliver(self, robot: RunningRobot, step: Step, sequence: int) -> None:
-        id = CommandId(self._run, robot.id, self._incarnation, sequence)
+        id = CommandId(self._terms.run, robot.id, self._terms.incarnation, sequence)
         try:
             self._bus.notify(SlotCommand(id, step.sets, step.active, robot.lamport))
         except LinkLostError as error:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from math import inf
 
 from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import Program
@@ -20,7 +19,7 @@ from mmrs_core.contributions.execution import (
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.clock import SimulatedClock
-from mmrs_core.runtime.interpreter import Ending, interpret
+from mmrs_core.runtime.interpreter import TO_THE_END, Ending, Terms, interpret
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.scene import Area, Name, Policy, RobotType
 
@@ -53,10 +52,7 @@ def simulate(
     conditions: Mapping[str, Condition] | None = None,
     environment: Mapping[str, float] | None = None,
     areas: tuple[Area, ...] = (),
-    run: str = "run-0",
-    observe: Callable[[StepRecord], None] | None = None,
-    seconds: float = inf,
-    steps: int = 1_000_000,
+    terms: Terms = TO_THE_END,
 ) -> Run:
     """Return the simulated run of a behaviour; the same input gives the same run.
 
@@ -69,9 +65,7 @@ def simulate(
         conditions: by identifier; see `assumed` for fixed answers.
         environment: of the context, by attribute name; still air and water where it says nothing.
         areas: of the context as drawn; robots flee to its emergency areas.
-        run: identifier of the run.
-        observe: called with each step before it has an effect, to write a log.
-        seconds, steps: after which the run is cut off.
+        terms: who is told, and what cuts the run off.
 
     Raises:
         UnsupportedError: if a robot type is missing, or robots, moves, actions or conditions are of
@@ -106,11 +100,8 @@ def simulate(
             bus=InProcessBus(program),
             clock=SimulatedClock(),
             conditions=conditions or {},
-            run=run,
             policies=policies,
-            observe=observe,
-            seconds=seconds,
-            steps=steps,
+            terms=terms,
         ),
         made,
     )

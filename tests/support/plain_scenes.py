@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import inf
 
-from mmrs_core.planning.coverage import work_over
+from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.scene import (
     ActionAt,
     Area,
@@ -121,12 +121,8 @@ def field_work(whole, shell, holes=(), *, altitude=20.0, width=20.0, length=0.0)
         whole,
         whole.robots[0],
         shell,
+        Sweep(altitude=altitude, width=width, rule="cover", length=length, action=action),
         holes,
-        altitude=altitude,
-        width=width,
-        rule="cover",
-        length=length,
-        action=action,
     )
 
 

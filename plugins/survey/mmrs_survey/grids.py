@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.coverage import work_over
+from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import Device, Part, Robot, Scene, Task, Work
@@ -34,16 +34,18 @@ def photo_grid_work(task: Task, robot: Robot, scene: Scene) -> Work:
         scene,
         robot,
         ring(part, "shell"),
+        Sweep(
+            altitude=altitude,
+            width=spacing.width,
+            length=spacing.length,
+            rule=RULE,
+            action=action,
+            device=device.id,
+            speed=speed,
+            slow_down=None if speed is None else 1.0,
+            start=(entry[0], entry[1]),
+        ),
         holes(part),
-        altitude=altitude,
-        width=spacing.width,
-        length=spacing.length,
-        rule=RULE,
-        action=action,
-        device=device.id,
-        speed=speed,
-        slow_down=None if speed is None else 1.0,
-        start=(entry[0], entry[1]),
     )
     return replace(work, entry=entry)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.coverage import work_over
+from mmrs_core.planning.coverage import Sweep, work_over
 from mmrs_core.planning.devices import device_for
 from mmrs_core.planning.places import refuse_blocked, refuse_heights
 from mmrs_core.scene import ActionAt, Part, Position, Robot, Scene, Stroke, Task, Work
@@ -69,13 +69,15 @@ def _grid(part: Part, robot: Robot, scene: Scene, spacing: float | None, up: flo
         scene,
         robot,
         ring(part, "shell"),
-        altitude=height,
-        width=spacing,
-        length=spacing,
-        rule=RULE,
-        action=action.action,
-        device=action.device,
-        parameters=action.parameters,
+        Sweep(
+            altitude=height,
+            width=spacing,
+            length=spacing,
+            rule=RULE,
+            action=action.action,
+            device=action.device,
+            parameters=action.parameters,
+        ),
     )
 
 

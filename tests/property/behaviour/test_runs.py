@@ -15,7 +15,7 @@ from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock, is_success
 from mmrs_core.contributions.execution import BackendInput
 from mmrs_core.runtime.clock import SimulatedClock
-from mmrs_core.runtime.interpreter import interpret
+from mmrs_core.runtime.interpreter import Terms, interpret
 from mmrs_core.runtime.run import assumed, simulate
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
@@ -55,7 +55,7 @@ def terminal_states(program):
 
 
 def check_that_the_log_replays(program, decided):
-    run = run_of(program, decided, steps=500)
+    run = run_of(program, decided, terms=Terms(steps=500))
     result = replay(program, run.records, partial=True)
     assert result.accepted, result.complaints
     assert result.steps == len(run.records)
@@ -200,7 +200,7 @@ def test_a_track_is_continuous_in_time_and_never_faster_than_the_robot(program, 
 @settings(FAST, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 def test_a_log_on_the_disk_replays_like_the_run(tmp_path_factory, program, decided):
     folder = tmp_path_factory.mktemp("logs")
-    with LogWriter(folder, durable=False) as log:
-        run = run_of(program, decided, observe=log.write)
+    with LogWriter(folder) as log:
+        run = run_of(program, decided, terms=Terms(observe=log.write))
     assert set(read_logs([folder])) == set(run.records)
     assert replay(program, read_logs([folder])).outcome is run.ending.outcome

@@ -4,7 +4,7 @@ import pytest
 import shapely
 
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.coverage import target_of, work_over
+from mmrs_core.planning.coverage import Sweep, target_of, work_over
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Part, Robot, RobotType, Scene
 
 SQUARE = ((0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0))
@@ -56,7 +56,7 @@ def seen(stroke, side):
 
 
 def test_a_free_square_is_covered_whole_by_as_few_strokes_as_fit():
-    work = work_over(scene(), robot(), SQUARE, altitude=20.0, width=20.0, rule="test")
+    work = work_over(scene(), robot(), SQUARE, Sweep(altitude=20.0, width=20.0, rule="test"))
     assert len(work.strokes) == 5
     assert covered(work) == pytest.approx(1.0)
     assert work.coverage.unreachable == 0.0
@@ -65,12 +65,14 @@ def test_a_free_square_is_covered_whole_by_as_few_strokes_as_fit():
 
 
 def test_strokes_are_at_the_altitude():
-    work = work_over(scene(), robot(), SQUARE, altitude=33.0, width=20.0, rule="test")
+    work = work_over(scene(), robot(), SQUARE, Sweep(altitude=33.0, width=20.0, rule="test"))
     assert {point[2] for stroke in work.strokes for point in stroke.points} == {33.0}
 
 
 def test_an_obstacle_takes_its_grown_shape_away():
-    work = work_over(scene(box((40, 40), (60, 60))), robot(), SQUARE, altitude=20.0, width=10.0, rule="test")
+    work = work_over(
+        scene(box((40, 40), (60, 60))), robot(), SQUARE, Sweep(altitude=20.0, width=10.0, rule="test")
+    )
     drawn = shapely.box(40, 40, 60, 60)
     lines = [shapely.LineString([p[:2] for p in stroke.points]) for stroke in work.strokes]
     assert min(line.distance(drawn) for line in lines) >= 3.0
@@ -80,7 +82,10 @@ def test_an_obstacle_takes_its_grown_shape_away():
 
 def test_an_obstacle_that_ends_below_is_flown_over():
     work = work_over(
-        scene(box((40, 40), (60, 60), top=10.0)), robot(), SQUARE, altitude=20.0, width=10.0, rule="test"
+        scene(box((40, 40), (60, 60), top=10.0)),
+        robot(),
+        SQUARE,
+        Sweep(altitude=20.0, width=10.0, rule="test"),
     )
     assert work.coverage.unreachable == 0.0
 
@@ -98,7 +103,7 @@ def test_an_emergency_area_takes_nothing_away():
 
 def test_holes_are_not_covered_and_not_reported_as_unreachable():
     hole = ((30.0, 30.0), (70.0, 30.0), (70.0, 70.0), (30.0, 70.0))
-    work = work_over(scene(), robot(), SQUARE, (hole,), altitude=20.0, width=10.0, rule="test")
+    work = work_over(scene(), robot(), SQUARE, Sweep(altitude=20.0, width=10.0, rule="test"), (hole,))
     inside = shapely.box(30.01, 30.01, 69.99, 69.99)
     assert not any(
         shapely.LineString([p[:2] for p in stroke.points]).intersects(inside) for stroke in work.strokes
@@ -112,11 +117,7 @@ def test_actions_tile_the_target():
         scene(box((40, 40), (60, 60))),
         robot(),
         SQUARE,
-        altitude=20.0,
-        width=12.0,
-        length=12.0,
-        action="sample",
-        rule="test",
+        Sweep(altitude=20.0, width=12.0, length=12.0, action="sample", rule="test"),
     )
     tiles = [each for stroke in work.strokes for each in seen(stroke, 12.0)]
     target = shapely.union_all([shapely.Polygon(*piece) for piece in work.coverage.target], grid_size=1e-6)
@@ -127,7 +128,7 @@ def test_actions_tile_the_target():
 
 def test_cuts_lie_between_actions():
     work = work_over(
-        scene(), robot(), SQUARE, altitude=9.0, width=20.0, length=10.0, action="photo", rule="test"
+        scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, length=10.0, action="photo", rule="test")
     )
     for stroke in work.strokes:
         at = [action.at for action in stroke.actions]
@@ -138,33 +139,35 @@ def test_cuts_lie_between_actions():
 def test_a_polygon_within_a_forbidden_area_is_refused():
     area = box((-10, -10), (110, 110), use=AreaUse.FORBIDDEN)
     with pytest.raises(InfeasibleError, match=r"10000\.0 m²"):
-        work_over(scene(area), robot(), SQUARE, altitude=20.0, width=10.0, rule="test")
+        work_over(scene(area), robot(), SQUARE, Sweep(altitude=20.0, width=10.0, rule="test"))
 
 
 def test_an_action_without_a_length_is_a_mistake():
     with pytest.raises(ValueError, match="photo"):
-        work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, action="photo", rule="test")
+        work_over(scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, action="photo", rule="test"))
 
 
 @pytest.mark.parametrize("width", [0.0, -1.0, float("nan")])
 def test_a_width_that_is_not_positive_is_a_mistake(width):
     with pytest.raises(ValueError, match="swath width"):
-        work_over(scene(), robot(), SQUARE, altitude=9.0, width=width, rule="test")
+        work_over(scene(), robot(), SQUARE, Sweep(altitude=9.0, width=width, rule="test"))
 
 
 def test_the_direction_can_be_given():
-    work = work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, rule="test", angle=0.0)
+    work = work_over(scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, rule="test", angle=0.0))
     assert all(abs(s.points[0][1] - s.points[-1][1]) < 1e-9 for s in work.strokes)
 
 
 def test_the_first_stroke_is_near_the_start():
-    work = work_over(scene(), robot(), SQUARE, altitude=9.0, width=20.0, rule="test", start=(100.0, 100.0))
+    work = work_over(
+        scene(), robot(), SQUARE, Sweep(altitude=9.0, width=20.0, rule="test", start=(100.0, 100.0))
+    )
     assert abs(work.strokes[0].points[0][0] - 100) + abs(work.strokes[0].points[0][1] - 100) <= 10.01
 
 
 def test_a_sliver_narrower_than_the_strip_gets_one_stroke():
     work = work_over(
-        scene(), robot(), ((0, 0), (80, 0), (80, 1.5), (0, 1.5)), altitude=9.0, width=20.0, rule="test"
+        scene(), robot(), ((0, 0), (80, 0), (80, 1.5), (0, 1.5)), Sweep(altitude=9.0, width=20.0, rule="test")
     )
     assert len(work.strokes) == 1
     assert covered(work) == pytest.approx(1.0)

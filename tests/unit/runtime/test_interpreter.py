@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from math import inf
 
 import pytest
@@ -10,8 +11,8 @@ from mmrs_core.behaviour.program import Action
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import BackendInput, Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import RealClock, SimulatedClock
-from mmrs_core.runtime.interpreter import interpret
+from mmrs_core.runtime.clock import SimulatedClock
+from mmrs_core.runtime.interpreter import Terms, interpret
 from mmrs_core.runtime.run import assumed
 from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
@@ -164,13 +165,13 @@ def test_a_slot_that_was_reset_after_a_wait_was_passed_replays(fly):
 
 def test_a_loop_without_duration_is_cut_off_at_the_limit(fly):
     behaviour = program(robot("r", [hold("h", 0.0)], choices={"h": ("c", "h", "stop")}))
-    run = fly(behaviour, conditions=assumed({"c": True}), steps=1000)
+    run = fly(behaviour, conditions=assumed({"c": True}), terms=Terms(steps=1000))
     assert run.ending.outcome is Outcome.INCOMPLETE
     assert len(run.records) == 1000
 
 
 def test_a_run_is_cut_off_at_its_time(fly):
-    run = fly(program(robot("r", [hold("h", 100.0)])), seconds=50.0)
+    run = fly(program(robot("r", [hold("h", 100.0)])), terms=Terms(seconds=50.0))
     assert run.ending.outcome is Outcome.INCOMPLETE
     assert run.records[-1].label == "begin"
 
@@ -185,7 +186,12 @@ def test_every_step_is_observed_before_it_is_yielded_and_notifies_before_deliver
             assert not bus.state(("r", "s")).active
 
     steps = interpret(
-        behaviour, {"r": Instant()}, bus=bus, clock=SimulatedClock(), conditions={}, observe=observe
+        behaviour,
+        {"r": Instant()},
+        bus=bus,
+        clock=SimulatedClock(),
+        conditions={},
+        terms=Terms(observe=observe),
     )
     for record in steps:
         assert seen[-1] == record
@@ -322,7 +328,9 @@ def test_some_of_the_robots_can_run_here_and_the_others_elsewhere():
         robot("elsewhere", [hold("h", 0.0, after=(notify("here.s"),))]),
     )
     bus, clock = InProcessBus(behaviour), SimulatedClock()
-    here = interpret(behaviour, {"here": Instant()}, bus=bus, clock=clock, conditions={}, seconds=60.0)
+    here = interpret(
+        behaviour, {"here": Instant()}, bus=bus, clock=clock, conditions={}, terms=Terms(seconds=60.0)
+    )
     begun = [next(here) for _ in range(5)]
     there = list(interpret(behaviour, {"elsewhere": Instant()}, bus=bus, clock=clock, conditions={}))
     rest = list(here)
@@ -346,6 +354,19 @@ def test_many_robots_run_much_faster_than_real_time(fly):
     assert run.ending.time == pytest.approx(200 * 60.0)
 
 
+class FastWorld:
+    """The world's time, a hundred times as fast."""
+
+    def __init__(self):
+        self._start = time.monotonic()
+
+    def now(self):
+        return (time.monotonic() - self._start) * 100.0
+
+    def sleep_until(self, when):
+        time.sleep(max(0.0, when - self.now()) / 100.0)
+
+
 def test_a_run_can_follow_the_worlds_time(kinds):
     behaviour = program(
         robot("a", [go("g", (12, 0, 0), after=(notify("b.s"),))]),
@@ -355,7 +376,7 @@ def test_a_run_can_follow_the_worlds_time(kinds):
     for each in behaviour.robots:
         given = BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
         backends[each.id] = SimulatedRobot(given)
-    clock = RealClock(rate=100.0)
+    clock = FastWorld()
     records = list(interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=clock, conditions={}))
     result = replay(behaviour, records)
     assert result.accepted
