@@ -19,7 +19,18 @@ NAMES = {MISSION: "mission", FENCE: "fence", RALLY: "rally points"}
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT
 NO_FRAME = mavlink.MAV_FRAME_MISSION
 ANSWER_SECONDS = 1.5
-_SAME_FRAME = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: RELATIVE}
+HEIGHTS_ABOVE = {
+    mavlink.MAV_FRAME_GLOBAL: "sea level",
+    mavlink.MAV_FRAME_GLOBAL_INT: "sea level",
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT: "home",
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: "home",
+    mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT: "the terrain",
+    mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: "the terrain",
+}
+"""What heights count from in a frame: ArduPilot gives back another number of the same frame."""
+
+HEIGHT_STEP = {MISSION: 0.02, RALLY: 1.0}
+"""Metres that heights may lose: ArduPilot keeps centimetres, of rally points whole metres only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +81,9 @@ def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
 def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
     """Read back what was uploaded; the home item of a mission is the vehicle's own and is not compared.
 
+    Heights of fences are not compared either: they have none, and ArduPilot gives them back as 0
+    above sea level.
+
     Raises:
         Refused: the vehicle has kept something else.
     """
@@ -77,7 +91,7 @@ def verify(link: Link, items: Sequence[Item], kind: int = MISSION) -> None:
     if len(kept) != len(items) and (items or len(kept) > 1):
         raise Refused(f"{NAMES[kind]}: the vehicle has {len(kept)} items instead of {len(items)}")
     for seq, (wanted, found) in enumerate(zip(items, kept, strict=False)):
-        if not (seq == 0 and kind == MISSION) and not _alike(wanted, found):
+        if not (seq == 0 and kind == MISSION) and not _alike(wanted, found, kind):
             raise Refused(f"{NAMES[kind]}: item {seq} is {found} on the vehicle instead of {wanted}")
 
 
@@ -115,8 +129,7 @@ def _fetch(link: Link, inbox: deque[Message], seq: int, kind: int) -> Item:
         link, ask, inbox, lambda m: m.get_type() == "MISSION_ITEM_INT" and m.seq == seq and _of(m, kind)
     )
     params = (wanted.param1, wanted.param2, wanted.param3, wanted.param4)
-    frame = _SAME_FRAME.get(wanted.frame, wanted.frame)
-    return Item(wanted.command, params, wanted.x, wanted.y, wanted.z, frame)
+    return Item(wanted.command, params, wanted.x, wanted.y, wanted.z, wanted.frame)
 
 
 def _asked(link: Link, ask: Message, inbox: deque[Message], fits: Callable[[Message], bool]) -> Message:
@@ -157,12 +170,21 @@ def _message(link: Link, seq: int, item: Item, kind: int) -> Message:
     )
 
 
-def _alike(wanted: Item, found: Item) -> bool:
+def _alike(wanted: Item, found: Item, kind: int) -> bool:
     close = all(
         abs(a - b) <= 1e-3 * max(1.0, abs(a)) for a, b in zip(wanted.params, found.params, strict=True)
     )
-    here = abs(wanted.x - found.x) <= 1 and abs(wanted.y - found.y) <= 1 and abs(wanted.z - found.z) <= 0.02
-    return wanted.command == found.command and close and here
+    here = abs(wanted.x - found.x) <= 1 and abs(wanted.y - found.y) <= 1
+    return wanted.command == found.command and close and here and _as_high(wanted, found, kind)
+
+
+def _as_high(wanted: Item, found: Item, kind: int) -> bool:
+    """Return whether two heights are the same; items without a place have none in any frame."""
+    if kind == FENCE:
+        return True
+    if abs(wanted.z - found.z) > HEIGHT_STEP[kind]:
+        return False
+    return wanted.frame == NO_FRAME or HEIGHTS_ABOVE[wanted.frame] == HEIGHTS_ABOVE.get(found.frame)
 
 
 def _result(number: int) -> str:
