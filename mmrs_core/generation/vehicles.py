@@ -23,17 +23,33 @@ class VehicleClass:
         mav_type: number of MAV_TYPE.
         flies: whether it takes off and lands.
         dives: whether its heights count from the water surface.
+        alone: responses of policies that it can give by itself, when it no longer hears the ground.
     """
 
     name: str
     mav_type: int
     flies: bool = False
     dives: bool = False
+    alone: frozenset[str] = frozenset()
 
 
-COPTER = VehicleClass("copter", 2, flies=True)
-SUB = VehicleClass("sub", 12, dives=True)
-ROVER = VehicleClass("rover", 10)
+COPTER = VehicleClass(
+    "copter",
+    2,
+    flies=True,
+    alone=frozenset({"CONTINUE", "RETURN", "EMERGENCY_AREA", "LAND", "HOLD"}),
+)
+SUB = VehicleClass(
+    "sub",
+    12,
+    dives=True,
+    alone=frozenset({"CONTINUE", "STOP_THRUST", "HOLD", "SURFACE", "LAND", "RETURN"}),
+)
+ROVER = VehicleClass(
+    "rover",
+    10,
+    alone=frozenset({"CONTINUE", "RETURN", "EMERGENCY_AREA", "HOLD", "LAND", "STOP_THRUST"}),
+)
 
 CLASSES: Mapping[Name, VehicleClass] = {
     ("urn:mmrs:multicopter:1.0", "Drone"): COPTER,

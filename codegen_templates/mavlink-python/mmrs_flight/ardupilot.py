@@ -64,13 +64,13 @@ class MavlinkVehicle:
         if fence:
             command(self._link, mavlink.MAV_CMD_DO_FENCE_ENABLE, 1)
 
-    def answer_lost_link(self, response: str) -> str | None:
+    def answer_lost_link(self, response: str) -> None:
         """Have the vehicle respond by itself when it no longer hears the ground.
 
-        Returns:
-            What could not be set, or None.
+        Raises:
+            Refused: it cannot respond so, or does not say that it will.
         """
-        return preparation.answer_lost_link(self._link, self._kind, response)
+        preparation.answer_lost_link(self._link, self._kind, response)
 
     def take_off(self, height: float) -> None:
         """Climb to a height above home.

@@ -26,6 +26,9 @@ class DryVehicle:
         self._guard = guard
         self._items: Sequence[Item] = ()
 
+    def answer_lost_link(self, response: str) -> None:
+        """Do nothing: there is no link to lose."""
+
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
         """Keep the mission."""
         self._items = mission
@@ -66,9 +69,8 @@ class DryVehicle:
     def operate(self, number: int, params: tuple[float, ...]) -> None:
         """Do nothing."""
 
-    def measure(self, value: str) -> float:
-        """Return zero."""
-        return 0.0
+    def measure(self, value: str) -> None:
+        """Measure nothing: there is nothing to measure."""
 
     def hold(self) -> bool:
         """Stay."""

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .clock import Clock
+from .faults import LINK_LOST, Fault
 from .ports import Port
 from .signing import sign
 
@@ -30,7 +31,8 @@ class Link:
     Attributes:
         guard: called again and again during every wait; raises what should end it.
         system, component: the vehicle's address; 0 until it was heard of.
-        garbled: how many frames could not be read.
+        garbled: how many frames could not be read, or were not signed as they should be.
+        trouble: what the port has last complained of; empty once the vehicle is heard again.
         tries: how often to send at most what is not answered.
     """
 
@@ -48,6 +50,7 @@ class Link:
         self.system = system
         self.component = 0
         self.garbled = 0
+        self.trouble = ""
         self.tries = TRIES
         self._wanted = system
         self._port = port
@@ -62,6 +65,7 @@ class Link:
         self._heard: float | None = None
         self._beaten = float("-inf")
         self._open = True
+        self._ended = False
         self._thread = threading.Thread(target=self._listen, name="mavlink reader", daemon=True)
         self._thread.start()
 
@@ -72,9 +76,12 @@ class Link:
         self._port.close()
 
     def send(self, message: Message) -> None:
-        """Send one message."""
+        """Send one message; where the port does not take it, it is lost like any on a poor link."""
         with self._sending:
-            self._mav.send(message)
+            try:
+                self._mav.send(message)
+            except OSError as error:
+                self.trouble = error.strerror or str(error)
 
     def latest(self, kind: str) -> Message | None:
         """Return the last message of that name from the vehicle."""
@@ -91,9 +98,15 @@ class Link:
         return 0.0 if self._heard is None else self.clock.now() - self._heard
 
     def wait(self, test: Callable[[], Found | None], seconds: float) -> Found | None:
-        """Return what the test finds as soon as it finds something; None if time runs out."""
+        """Return what the test finds as soon as it finds something; None if time runs out.
+
+        Raises:
+            Fault: the port has ended, so that nothing will come any more; or what the guard raises.
+        """
         until = self.clock.now() + seconds
         while True:
+            if self._ended:
+                raise Fault(LINK_LOST, self.trouble)
             self.guard()
             with self._changed:
                 found = test()
@@ -119,11 +132,16 @@ class Link:
             self._beat()
             try:
                 data = self._port.read(min(self.clock.real(HEARTBEAT_SECONDS), GLANCE_SECONDS))
-            except OSError:
-                self._open = False
+            except OSError as error:
+                self._end(f"the link has broken: {error.strerror or error}")
                 return
             for message in self._mav.parse_buffer(data) or ():
                 self._keep(message)
+
+    def _end(self, reason: str) -> None:
+        with self._changed:
+            self.trouble, self._ended = reason, True
+            self._changed.notify_all()
 
     def _beat(self) -> None:
         if self.clock.now() - self._beaten >= HEARTBEAT_SECONDS:
@@ -145,6 +163,7 @@ class Link:
             return
         with self._changed:
             self._heard = self.clock.now()
+            self.trouble = ""
             self._latest[kind] = (message, self._heard)
             for kinds, collected in self._inboxes:
                 if kind in kinds:

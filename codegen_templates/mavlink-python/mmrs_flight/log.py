@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
+
+from .faults import LOG_FAILED, Fault
 
 
 class Log:
@@ -15,10 +19,12 @@ class Log:
         """Open a new file.
 
         Raises:
-            FileExistsError: there is one already; logs are never overwritten.
+            Fault: it cannot be, or there is one already; logs are never overwritten.
         """
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self._file: IO[str] = path.open("x", encoding="ascii", newline="\n")
+        with _writing(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file: IO[str] = path.open("x", encoding="ascii", newline="\n")
+        self._path = path
         self._run = run
         self._robot = robot
         self._seq = 0
@@ -27,7 +33,11 @@ class Log:
     def write(
         self, label: str, move: str, *, lamport: int, time: float, detail: str = "", slot: str = ""
     ) -> None:
-        """Write one step; a notify is on the disk before it is delivered."""
+        """Write one step; a notify is on the disk before it is delivered.
+
+        Raises:
+            Fault: it cannot be written.
+        """
         self._time = max(self._time, round(time, 3))
         line = {
             "run": self._run,
@@ -40,25 +50,42 @@ class Log:
             "detail": detail,
             "slot": slot,
         }
-        self._file.write(json.dumps(line, ensure_ascii=True) + "\n")
-        self._file.flush()
-        if label == "ntf":
-            os.fsync(self._file.fileno())
+        with _writing(self._path):
+            self._file.write(json.dumps(line, ensure_ascii=True) + "\n")
+            self._file.flush()
+            if label == "ntf":
+                os.fsync(self._file.fileno())
         self._seq += 1
 
     def close(self) -> None:
         """Close the file."""
-        self._file.close()
+        # Every line was flushed, or its fault raised, when it was written: nothing new can fail here.
+        with suppress(OSError):
+            self._file.close()
 
 
 class Records:
     """What a robot reported and measured, one JSON object a line; the file appears with the first."""
 
-    def __init__(self, path: Path) -> None:
-        """Keep the path; nothing is opened yet."""
+    def __init__(self, path: Path, *, dry: bool) -> None:
+        """Keep the path; nothing is opened yet. `dry`: every record says that there was no vehicle."""
         self._path = path
+        self._mark = {"dry_run": True} if dry else {}
 
     def add(self, **fields: object) -> None:
-        """Append one record."""
-        with self._path.open("a", encoding="ascii", newline="\n") as file:
-            file.write(json.dumps(fields, ensure_ascii=True, default=str) + "\n")
+        """Append one record.
+
+        Raises:
+            Fault: it cannot be written.
+        """
+        line = json.dumps(fields | self._mark, ensure_ascii=True, default=str)
+        with _writing(self._path), self._path.open("a", encoding="ascii", newline="\n") as file:
+            file.write(line + "\n")
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise Fault(LOG_FAILED, f"{path}: cannot be written: {error.strerror or error}") from error

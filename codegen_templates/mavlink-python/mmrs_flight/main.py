@@ -67,7 +67,10 @@ def _slots(
     if options.bus.used:
         from .bus import BusSlots
 
-        bus = BusSlots(robots, options.run, options.log, options.bus.listen, options.bus.connect)
+        try:
+            bus = BusSlots(robots, options.run, options.log, options.bus.listen, options.bus.connect)
+        except OSError as error:
+            parser.error(f"--log {options.log}: {error.strerror or error}")
         stack.callback(bus.close)
         return bus
     here = {robot.id for robot in robots}

@@ -16,18 +16,37 @@ MODES: Mapping[str, Mapping[str, int]] = {
     "rover": {GUIDED: 15, AUTO: 10, HOLD: 4},
 }
 
-LINK_LOST_PARAMETER: Mapping[str, str] = {
-    "copter": "FS_GCS_ENABLE",
-    "sub": "FS_GCS_ENABLE",
-    "rover": "FS_ACTION",
-}
+ON_LOST_LINK = "FS_GCS_ENABLE"
+ON_ANY_LOSS = "FS_ACTION"
 
-LINK_LOST_VALUE: Mapping[str, Mapping[str, int]] = {
-    "copter": {"CONTINUE": 0, "RETURN": 3, "EMERGENCY_AREA": 3, "LAND": 5, "HOLD": 7},
-    "sub": {"CONTINUE": 1, "STOP_THRUST": 2, "HOLD": 3, "SURFACE": 4, "LAND": 4, "RETURN": 4},
-    "rover": {"CONTINUE": 0, "RETURN": 3, "EMERGENCY_AREA": 3, "HOLD": 2, "LAND": 2, "STOP_THRUST": 5},
+LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
+    "copter": {
+        "CONTINUE": {ON_LOST_LINK: 0},
+        "RETURN": {ON_LOST_LINK: 3},
+        "EMERGENCY_AREA": {ON_LOST_LINK: 3},
+        "LAND": {ON_LOST_LINK: 5},
+        "HOLD": {ON_LOST_LINK: 7},
+    },
+    "sub": {
+        "CONTINUE": {ON_LOST_LINK: 1},
+        "STOP_THRUST": {ON_LOST_LINK: 2},
+        "HOLD": {ON_LOST_LINK: 3},
+        "SURFACE": {ON_LOST_LINK: 4},
+        "LAND": {ON_LOST_LINK: 4},
+        "RETURN": {ON_LOST_LINK: 4},
+    },
+    "rover": {
+        "CONTINUE": {ON_LOST_LINK: 0},
+        "RETURN": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
+        "EMERGENCY_AREA": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
+        "HOLD": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
+        "LAND": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
+        "STOP_THRUST": {ON_ANY_LOSS: 5, ON_LOST_LINK: 1},
+    },
 }
-"""What the vehicle does by itself when it no longer hears the ground, by the policy's response.
+"""Parameters with which a vehicle responds by itself when it no longer hears the ground.
 
-A copter returns by the way it came, or lands where it may not hold for ever.
+By kind and by the policy's response, or by what comes nearest to it: a copter returns by the way it
+came, and lands where it may not hold for ever; a sub comes up. A rover heeds its action only where
+the failsafe of the ground station is switched on, too, which it is not at first.
 """

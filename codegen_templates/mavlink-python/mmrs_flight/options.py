@@ -10,6 +10,7 @@ from typing import Any
 
 from .clock import Clock
 from .link import TRIES
+from .ports import address_of
 from .program import Robot
 from .signing import signing_key
 
@@ -159,8 +160,16 @@ def _urls(parser: argparse.ArgumentParser, robots: Sequence[Robot], links: Seque
             parser.error(f"--link {link}: there is no robot {robot!a}")
         if not separator and len(robots) > 1:
             parser.error(f"--link {link}: which robot? say ROBOT={link}")
+        _check(parser, url)
         urls[robot or robots[0].id] = url
     return urls
+
+
+def _check(parser: argparse.ArgumentParser, url: str) -> None:
+    try:
+        address_of(url)
+    except ValueError as error:
+        parser.error(f"--link {error}")
 
 
 def _key(parser: argparse.ArgumentParser, path: Path | None) -> bytes | None:

@@ -9,7 +9,16 @@ from math import inf
 
 from .clock import Clock
 from .commands import Unanswered
-from .faults import CONDITION_FAILED, DEVICE_SILENT, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
+from .faults import (
+    BATTERY_LOW,
+    CONDITION_FAILED,
+    DEVICE_SILENT,
+    LINK_LOST,
+    PEER_LOST,
+    WAIT_TOO_LONG,
+    Fault,
+    Stopped,
+)
 from .log import Log, Records
 from .missions import Item
 from .objects import Locator, look_at, place_of
@@ -46,6 +55,8 @@ Say = Callable[[str], None]
 GLANCE_SECONDS = 0.1
 FULL = 0.99
 RECHARGE_FACTOR = 3.0
+"""How many times as long as expected charging may take."""
+
 PEER_SECONDS = 30.0
 
 
@@ -95,14 +106,20 @@ class Pilot:
         Raises:
             Fault: it cannot be carried out to its end.
         """
-        mission, self._flights = mission_of(self._robot)
-        polygons: tuple[Item, ...] = fence_of(self._robot) if fence else ()
-        self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+        self._prepare(fence)
         step: Step | None = self._steps[self._robot.start]
         while step is not None:
             self.move = step.move
             step = self._perform(step)
         self._vehicle.finish()
+
+    def _prepare(self, fence: bool) -> None:
+        mission, self._flights = mission_of(self._robot)
+        polygons: tuple[Item, ...] = fence_of(self._robot) if fence else ()
+        self._vehicle.answer_lost_link(policy_for(LINK_LOST, self._robot).response)
+        self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+        if self._vehicle.state().energy is None:
+            self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
 
     def _perform(self, step: Step) -> Step | None:
         self._tell(step)
@@ -178,10 +195,18 @@ class Pilot:
 
     def _recharge(self, seconds: float) -> None:
         self.track = []
+        self._vehicle.finish()
+        begun = self._desk.clock.now()
         self._vehicle.rest(seconds)
-        until = self._desk.clock.now() + RECHARGE_FACTOR * seconds
-        while (self._vehicle.state().energy or 1.0) < FULL and self._desk.clock.now() < until:
+        while (left := self._vehicle.state().energy) is not None and left < FULL:
+            taken = self._desk.clock.now() - begun
+            if taken >= RECHARGE_FACTOR * seconds:
+                fault = Fault(BATTERY_LOW, f"after {taken:.0f} s of charging the battery is at {left:.0%}")
+                self._raise_unless_carried_on(fault)
+                return
             self._vehicle.rest(min(5.0, seconds or 5.0))
+        if left is None:
+            self._desk.say(f"{self._robot.id!a} has charged for {seconds:.0f} s; nobody knows how far")
 
     def _act(self, action: Action, detail: str) -> None:
         if isinstance(action, Notify):
@@ -200,14 +225,15 @@ class Pilot:
         elif isinstance(action, Measure):
             found = self._vehicle.measure(action.value)
             self._vehicle.rest(action.seconds)
-            self._record("measured", action.value, {"device": action.device, "result": found})
+            self.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):
             self._desk.say(f"{self._robot.id!a} reports {action.name!a} {dict(action.pairs)!a}")
-            self._record("reported", action.name, dict(action.pairs))
+            self.record("reported", action.name, dict(action.pairs))
         elif isinstance(action, NoEffect):
             self._desk.say(f"{self._robot.id!a} has no way to do {action.name!a}: {action.why}")
 
-    def _record(self, what: str, name: str, content: Mapping[str, object]) -> None:
+    def record(self, what: str, name: str, content: Mapping[str, object]) -> None:
+        """Keep something in the records, with time, place and move."""
         state = self._vehicle.state()
         self._desk.records.add(
             robot=self._robot.id,
@@ -233,14 +259,22 @@ class Pilot:
     def _leave(self, step: Step) -> Step:
         then = step.then
         assert then is not None
-        self.policies = then.policies
+        self._follow(then.policies)
         if isinstance(then, Choose):
             following = self._choose(then)
         else:
             self._await(then.waits, lambda lamport: self._write("take", then.move, "", lamport))
             following = then.move
-        self.policies = ()
+        self._follow(())
         return self._steps[following]
+
+    def _follow(self, policies: tuple[Policy, ...]) -> None:
+        """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
+        before = policy_for(LINK_LOST, self._robot, self.policies).response
+        after = policy_for(LINK_LOST, self._robot, policies).response
+        self.policies = policies
+        if after != before:
+            self._vehicle.answer_lost_link(after)
 
     def _choose(self, then: Choose) -> str:
         self._await(then.waits, None)

@@ -6,17 +6,30 @@ import socket
 from typing import Any, Protocol
 
 LARGEST = 65_535
+"""Bytes that a datagram can hold."""
+
+LAST_PORT = 65_535
+USUAL_BAUD = 57_600
+SOCKETS = ("udpin", "udpout", "tcp")
 
 
 class Port(Protocol):
     """Carries bytes to and from a vehicle."""
 
     def read(self, seconds: float) -> bytes:
-        """Return what has come, waiting for so many real seconds at most; empty if nothing has."""
+        """Return what has come, waiting for so many real seconds at most; empty if nothing has.
+
+        Raises:
+            OSError: nothing will ever come again.
+        """
         ...
 
     def write(self, data: bytes) -> object:
-        """Send bytes, or drop them where nobody can be reached yet."""
+        """Send bytes, or drop them where nobody can be reached yet.
+
+        Raises:
+            OSError: they are lost; those after them need not be.
+        """
         ...
 
     def close(self) -> None:
@@ -35,14 +48,34 @@ def open_port(url: str) -> Port:
         ValueError: the url is none of these.
         OSError: the port cannot be opened.
     """
+    address = address_of(url)
+    if address is None:
+        return SerialPort(url)
+    scheme = url.partition(":")[0]
+    return TcpPort(address) if scheme == "tcp" else UdpPort(address, listens=scheme == "udpin")
+
+
+def address_of(url: str) -> tuple[str, int] | None:
+    """Return host and port of a url; None where it names a serial device.
+
+    Raises:
+        ValueError: it names neither.
+    """
     scheme, _, rest = url.partition(":")
-    if scheme in ("udpin", "udpout", "tcp"):
-        host, _, number = rest.rpartition(":")
-        if not host or not number.isdecimal():
-            raise ValueError(f"{url}: is not {scheme}:HOST:PORT")
-        address = (host, int(number))
-        return TcpPort(address) if scheme == "tcp" else UdpPort(address, listens=scheme == "udpin")
-    return SerialPort(url)
+    if scheme not in SOCKETS:
+        _baud_of(url)
+        return None
+    host, _, number = rest.rpartition(":")
+    if not host or not number.isdecimal() or int(number) > LAST_PORT:
+        raise ValueError(f"{url}: is not {scheme}:HOST:PORT")
+    return host, int(number)
+
+
+def _baud_of(url: str) -> int:
+    device, _, baud = url.partition(",")
+    if not device or not (baud or "0").isdecimal():
+        raise ValueError(f"{url}: is not DEVICE,BAUD")
+    return int(baud or USUAL_BAUD)
 
 
 class UdpPort:
@@ -60,7 +93,7 @@ class UdpPort:
         self._socket.settimeout(seconds)
         try:
             data, sender = self._socket.recvfrom(LARGEST)
-        except (TimeoutError, ConnectionRefusedError):
+        except (TimeoutError, ConnectionRefusedError, ConnectionResetError):
             return b""
         self._peer = sender
         return data
@@ -87,12 +120,19 @@ class TcpPort:
         self._socket = socket.create_connection(address, timeout=10.0)
 
     def read(self, seconds: float) -> bytes:
-        """Return what has come."""
+        """Return what has come.
+
+        Raises:
+            OSError: the connection has ended.
+        """
         self._socket.settimeout(seconds)
         try:
-            return self._socket.recv(LARGEST)
+            data = self._socket.recv(LARGEST)
         except TimeoutError:
             return b""
+        if not data:
+            raise ConnectionError("the vehicle's side has closed the connection")
+        return data
 
     def write(self, data: bytes) -> object:
         """Send all of it."""
@@ -111,15 +151,14 @@ class SerialPort:
         """Open ``DEVICE,BAUD``; the rate is 57600 where none is given.
 
         Raises:
-            ValueError: the device cannot be opened.
+            OSError: the device cannot be opened.
         """
         from pymavlink import mavutil
 
-        device, _, baud = url.partition(",")
         try:
-            self._file: Any = mavutil.mavserial(device, baud=int(baud or 57_600))
+            self._file: Any = mavutil.mavserial(url.partition(",")[0], baud=_baud_of(url))
         except Exception as error:
-            raise ValueError(f"{url}: cannot be opened: {error}") from error
+            raise OSError(f"{url}: cannot be opened: {error}") from error
 
     def read(self, seconds: float) -> bytes:
         """Return what has come."""

@@ -16,7 +16,6 @@ from .telemetry import Telemetry
 
 READY_SECONDS = 120.0
 PARAMETER_SECONDS = 1.5
-PARAMETER_TRIES = 3
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
     "LOCAL_POSITION_NED": 5.0,
@@ -57,23 +56,23 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
         raise Refused("the vehicle does not become ready: no position, or its own checks fail")
 
 
-def answer_lost_link(link: Link, kind: str, response: str) -> str | None:
+def answer_lost_link(link: Link, kind: str, response: str) -> None:
     """Have the vehicle respond by itself when it no longer hears the ground.
 
-    Returns:
-        What could not be set, or None.
+    Raises:
+        Refused: it cannot respond so, or does not say that it will.
     """
-    name, value = modes.LINK_LOST_PARAMETER[kind], modes.LINK_LOST_VALUE[kind].get(response)
-    if value is None:
-        return f"{name} has no value for {response}"
-    if _set_parameter(link, name, value):
-        return None
-    return f"{name} was not taken over by the vehicle"
+    values = modes.LINK_LOST[kind].get(response)
+    if values is None:
+        raise Refused(f"response to a lost link: a {kind} cannot do {response} by itself")
+    for name, value in values.items():
+        if not _set_parameter(link, name, value):
+            raise Refused(f"response to a lost link: the vehicle does not confirm {name} = {value}")
 
 
 def _set_parameter(link: Link, name: str, value: float) -> bool:
     with link.inbox("PARAM_VALUE") as inbox:
-        for _ in range(PARAMETER_TRIES):
+        for _ in range(link.tries):
             link.send(
                 mavlink.MAVLink_param_set_message(
                     link.system, link.component, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32

@@ -16,7 +16,7 @@ from .link import Link
 from .log import Log, Records
 from .options import Options
 from .pilot import Desk, Pilot
-from .ports import open_port
+from .ports import Port, open_port
 from .program import Robot
 from .responses import policy_for, respond
 from .screen import say
@@ -44,9 +44,6 @@ def run_robot(robot: Robot, shared: Shared) -> int:
         with ExitStack() as stack:
             stack.callback(shared.slots.leave, robot.id)
             return _open(robot, shared, stack).run(shared.options.fence)
-    except (OSError, ValueError) as error:
-        say(f"{robot.id!a}: {error}")
-        return LINK
     except Fault as fault:
         say(f"{robot.id!a}: {fault}")
         return CODES.get(fault.event, FAILED)
@@ -54,10 +51,16 @@ def run_robot(robot: Robot, shared: Shared) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """A robot with all that it needs: its pilot and vehicle, and who watches them."""
+    """A robot with all that it needs: its pilot and vehicle, and who watches them.
+
+    Attributes:
+        link: None in a dry run.
+        on_stop: the response when somebody asks the robot to stop.
+    """
 
     robot: Robot
     vehicle: Vehicle
+    link: Link | None
     watch: Watch
     desk: Desk
     pilot: Pilot
@@ -65,6 +68,12 @@ class Session:
 
     def run(self, fence: bool) -> int:
         """Carry the program out, with or without a fence; return the exit code."""
+        code = self._carry_out(fence)
+        if self.link is not None and self.link.garbled:
+            self._tell_garbled(self.link.garbled)
+        return code
+
+    def _carry_out(self, fence: bool) -> int:
         try:
             self.pilot.fly(fence)
         except Fault as fault:
@@ -81,8 +90,8 @@ class Session:
         self.watch.relax()
         try:
             self.pilot.fail(fault.event)
-        except OSError as error:
-            say(f"{self.robot.id!a}: the log cannot be written: {error}")
+        except Fault as error:
+            say(f"{self.robot.id!a}: the fault is not in the log: {error}")
         self.desk.slots.leave(self.robot.id)
         try:
             watched = respond(response, fault, self.robot, self.vehicle, self.pilot.track)
@@ -95,6 +104,13 @@ class Session:
         say(f"{self.robot.id!a}: stopped" if fault.event == STOPPED else f"{self.robot.id!a}: ended early")
         return CODES.get(fault.event, FAILED)
 
+    def _tell_garbled(self, frames: int) -> None:
+        say(f"{self.robot.id!a}: {frames} frames from the link could not be read")
+        try:
+            self.pilot.record("counted", "unreadable frames", {"frames": frames})
+        except Fault as error:
+            say(f"{self.robot.id!a}: {error}")
+
     def _response_to(self, fault: Fault) -> str:
         if fault.event == STOPPED:
             return self.on_stop.upper()
@@ -105,7 +121,7 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
     options, judgement = shared.options, shared.judgement
     log = Log(options.log / robot.log, options.run, robot.id)
     stack.callback(log.close)
-    records = Records(options.log / f"{Path(robot.log).stem}.records.ndjson")
+    records = Records(options.log / f"{Path(robot.log).stem}.records.ndjson", dry=options.dry)
     desk = Desk(
         options.clock,
         shared.slots,
@@ -117,31 +133,41 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
         say,
     )
     watch = Watch(robot, options.clock, shared.stop)
-    vehicle = _vehicle(robot, options, watch, stack)
+    link = None if options.dry else _link(robot, options, watch, stack)
+    vehicle = _vehicle(robot, options, watch, link)
     pilot = Pilot(robot, vehicle, desk)
     watch.current = lambda: pilot.policies
-    return Session(robot, vehicle, watch, desk, pilot, options.on_stop)
+    return Session(robot, vehicle, link, watch, desk, pilot, options.on_stop)
 
 
-def _vehicle(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Vehicle:
-    if options.dry:
+def _vehicle(robot: Robot, options: Options, watch: Watch, link: Link | None) -> Vehicle:
+    if link is None:
         return DryVehicle(options.clock, robot.home, watch.check)
-    link = _link(robot, options, watch, stack)
     near = options.tolerances
     vehicle = MavlinkVehicle(link, robot.vehicle, robot.home, acceptance=near.place, home_tolerance=near.home)
     watch.begin(link, vehicle)
-    unset = vehicle.answer_lost_link(policy_for(LINK_LOST, robot).response)
-    if unset:
-        say(f"{robot.id!a}: response to a lost link: {unset}")
     return vehicle
 
 
 def _link(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Link:
     reach, url = options.reach, options.reach.urls[robot.id]
-    link = Link(open_port(url), options.clock, reach.system, reach.key)
+    link = Link(_port(url), options.clock, reach.system, reach.key)
     stack.callback(link.close)
     link.guard, link.tries = watch.check, reach.tries
     say(f"{robot.id!a}: waits for a vehicle at {url}")
     if not link.wait(lambda: link.component, reach.patience * options.clock.speedup):
-        raise Fault(LINK_LOST, f"no vehicle at {url}")
+        raise Fault(LINK_LOST, f"no vehicle at {url}{_why_unheard(link)}")
     return link
+
+
+def _port(url: str) -> Port:
+    try:
+        return open_port(url)
+    except OSError as error:
+        raise Fault(LINK_LOST, f"{url}: {error.strerror or error}") from error
+
+
+def _why_unheard(link: Link) -> str:
+    if link.garbled:
+        return f"; {link.garbled} frames from there could not be read, or are not signed with the key"
+    return f"; {link.trouble}" if link.trouble else ""

@@ -30,6 +30,10 @@ class State:
 class Vehicle(Protocol):
     """What a robot's program needs of a vehicle."""
 
+    def answer_lost_link(self, response: str) -> None:
+        """Have the vehicle respond so by itself when it no longer hears the ground."""
+        ...
+
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move."""
         ...
@@ -62,8 +66,8 @@ class Vehicle(Protocol):
         """Have a device do something."""
         ...
 
-    def measure(self, value: str) -> float:
-        """Return the next value published under that name."""
+    def measure(self, value: str) -> float | None:
+        """Return the next value published under that name; None where there is only a dry run."""
         ...
 
     def hold(self) -> bool:

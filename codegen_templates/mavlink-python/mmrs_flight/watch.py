@@ -62,4 +62,5 @@ class Watch:
         limit = SILENCE_SECONDS if policy.after is None else policy.after
         silent = link.silent_for()
         if silent > self._clock.patience(limit, LEAST_SILENCE) and policy.response != CONTINUE:
-            raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s")
+            why = f" ({link.trouble})" if link.trouble else ""
+            raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")

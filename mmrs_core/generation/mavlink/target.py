@@ -6,12 +6,14 @@ from collections.abc import Iterator
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
-from mmrs_core.generation.context import context_of
+from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.generation.mavlink.actions import action_losses
 from mmrs_core.generation.mavlink.movements import losses_of
 from mmrs_core.generation.mavlink.program import conditions_of, objects_in, robot_view, trace_of
+from mmrs_core.generation.safety import policies_of
 from mmrs_core.resources import shipped
+from mmrs_core.scene import Policy
 
 RUNTIME = "mmrs_flight"
 TEMPLATES = shipped("codegen_templates") / "mavlink-python"
@@ -54,9 +56,20 @@ def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
         yield f"robot '{robot.id}': its home is not known, and heights count from there"
     context = context_of(robot, input, geographic=False)
-    for move in robot.moves:
+    for policy in policies_of(robot, input):
+        yield from _left_alone(policy, f"robot '{robot.id}'", context)
+    for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
         yield from action_losses(move, context)
+        transition = robot.transitions.get(index)
+        for policy in transition.policies if transition is not None else ():
+            yield from _left_alone(policy, context.label(move), context)
+
+
+def _left_alone(policy: Policy, where: str, context: RobotContext) -> Iterator[str]:
+    """Yield what a vehicle is to do when it no longer hears the ground, and cannot do by itself."""
+    if policy.event == "LINK_LOST" and policy.response not in context.vehicle.alone:
+        yield f"{where}: policy LINK_LOST: no {context.vehicle.name} does {policy.response} by itself"
 
 
 MAVLINK_PYTHON = Target(

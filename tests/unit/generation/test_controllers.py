@@ -210,6 +210,22 @@ def test_policies_are_the_waits_then_the_robots_then_the_types():
     assert 'policies=(Policy("WAIT_TOO_LONG", "LAND", 9.0),)' in source
 
 
+def test_a_response_to_a_lost_link_that_the_vehicle_cannot_give_by_itself_is_refused():
+    surfaces = (Policy("LINK_LOST", "SURFACE"),)
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), LAND],
+        slots=("go",),
+        transitions={1: Transition(1, 2, waits=("go",), policies=surfaces)},
+    )
+    with pytest.raises(UnsupportedError) as error:
+        generated(program(replace(robot, policies=surfaces)))
+    assert error.value.elements == (
+        "robot 'alpha': policy LINK_LOST: no copter does SURFACE by itself",
+        "robot 'alpha', move 'up': policy LINK_LOST: no copter does SURFACE by itself",
+    )
+
+
 def test_an_unknown_kind_of_move_is_refused_even_if_it_extends_a_known_one():
     spiral = replace(go_to("a", (0.0, 9.0, 5.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
     assert refused(take_off("up", 5.0), spiral, LAND) == (

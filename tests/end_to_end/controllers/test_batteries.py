@@ -1,0 +1,82 @@
+"""Charging, and batteries that say nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from mmrs_core.scene import Policy
+from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
+from mmrs_core.testing.vehicle.autopilot import Autopilot
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+TAKE_OFF = 22
+
+
+def two_sorties(*policies: Policy, charge: float = 20.0):
+    moves = [
+        take_off("up", 5.0),
+        LAND,
+        move("charge", "Recharge", duration=charge),
+        take_off("again", 5.0),
+        replace(LAND, id="home"),
+    ]
+    made = program(replace(robot_program("alpha", moves), policies=policies))
+    return replace(made, reserve=0.0)
+
+
+def take_offs(vehicle) -> int:
+    return sum(command == TAKE_OFF for _, command, _ in vehicle.autopilot.history)
+
+
+class Unmonitored(Autopilot):
+    """A vehicle that does not know its battery, which it says as -1 %."""
+
+    @property
+    def energy(self) -> float:
+        return -0.01
+
+    @energy.setter
+    def energy(self, value: float) -> None:
+        pass
+
+
+def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, hangar):
+    made = controllers(two_sorties())
+    vehicles, links = hangar(made.program, energy=2.0, recharge=1e9)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1, said
+    assert "BATTERY_LOW: after" in said
+    assert "of charging the battery is at 0%" in said
+    assert take_offs(vehicles["alpha"]) == 1
+
+
+def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
+    made = controllers(two_sorties(Policy("BATTERY_LOW", "CONTINUE")))
+    vehicles, links = hangar(made.program, energy=100.0, recharge=1e9)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert "carries on although after" in said
+    assert take_offs(vehicles["alpha"]) == 2
+
+
+def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
+    made = controllers(two_sorties(charge=20.0))
+    vehicles, links = hangar(made.program, energy=2.0, recharge=40.0)
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    landed, left = (
+        max(seconds for seconds, *_ in vehicles["alpha"].autopilot.track if seconds < 30.0),
+        max(seconds for seconds, command, _ in vehicles["alpha"].autopilot.history if command == TAKE_OFF),
+    )
+    assert left - landed > 38.0
+
+
+def test_a_robot_that_does_not_know_its_battery_says_so_and_charges_as_long_as_expected(controllers, hangar):
+    made = controllers(two_sorties())
+    vehicles, links = hangar(made.program)
+    vehicles["alpha"].autopilot.__class__ = Unmonitored
+    code, said = made.run("fleet.py", *links)
+    assert code == 0, said
+    assert said.count("does not tell its battery") == 1
+    assert "has charged for 20 s; nobody knows how far" in said
+    assert take_offs(vehicles["alpha"]) == 2

@@ -1,0 +1,115 @@
+"""Links that end, that lose what is sent, and that carry noise."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+from contextlib import contextmanager
+
+import pytest
+
+from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
+
+UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
+NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise"
+
+
+@contextmanager
+def hangs_up_after(seconds: float):
+    """Give the url of a peer that takes one TCP connection, and closes it a little later."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve() -> None:
+            connection, _ = server.accept()
+            with connection:
+                threading.Event().wait(seconds)
+                connection.settimeout(20.0)
+                connection.shutdown(socket.SHUT_WR)
+                while connection.recv(1000):
+                    pass
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        yield f"tcp:127.0.0.1:{server.getsockname()[1]}"
+        thread.join()
+
+
+class Port:
+    """A port that hears nothing, and cannot send."""
+
+    def __init__(self) -> None:
+        self.reads = 0
+
+    def read(self, seconds: float) -> bytes:
+        self.reads += 1
+        threading.Event().wait(seconds)
+        return b""
+
+    def write(self, data: bytes) -> None:
+        raise OSError("no buffer space")
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason(flight):
+    with hangs_up_after(0.1) as url:
+        link = flight.link.Link(flight.ports.open_port(url), flight.clock.Clock())
+        with pytest.raises(flight.faults.Fault, match="has closed the connection") as fault:
+            link.wait(lambda: None, 30.0)
+        assert fault.value.event == "LINK_LOST"
+        assert not link._thread.is_alive()
+        link.close()
+
+
+def test_what_cannot_be_sent_is_lost_and_the_link_says_why(flight):
+    link = flight.link.Link(Port(), flight.clock.Clock())
+    link.send(flight.link.mavlink.MAVLink_mission_ack_message(1, 1, 0, 0))
+    assert link.trouble == "no buffer space"
+    assert link._thread.is_alive()
+    link.close()
+
+
+def test_a_controller_says_that_its_peer_has_hung_up(controllers):
+    made = controllers(UP_AND_DOWN)
+    with hangs_up_after(0.5) as url:
+        code, said = made.run("fleet.py", "--link", f"alpha={url}", patience=20.0)
+    assert code == 5
+    assert "the vehicle's side has closed the connection" in said
+
+
+def test_a_port_that_cannot_be_opened_is_a_lost_link(controllers):
+    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--link", "tcp:127.0.0.1:1")
+    assert code == 5
+    assert "'alpha': tcp:127.0.0.1:1: Connection refused" in said
+
+
+@pytest.mark.parametrize(
+    "url", ["tcp:nowhere", "udpin:127.0.0.1:99999", "udpout::14550", "/dev/ttyUSB0,fast", ",57600"]
+)
+def test_a_url_that_is_none_is_a_usage_error(controllers, url):
+    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--link", url)
+    assert code == 2
+    assert f"--link {url}: is not" in said
+
+
+def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar):
+    made = controllers(UP_AND_DOWN)
+    vehicles, links = hangar(UP_AND_DOWN)
+    port = int(links[-1].rpartition(":")[2])
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger,
+        made.start("fleet.py", *links) as process,
+    ):
+        while not vehicles["alpha"].autopilot.armed:
+            assert process.poll() is None
+            threading.Event().wait(0.05)
+        for _ in range(3):
+            stranger.sendto(NOISE, ("127.0.0.1", port))
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    assert "frames from the link could not be read" in said
+    (record,) = map(json.loads, (made.logs / "alpha.records.ndjson").read_text("ascii").splitlines())
+    assert (record["what"], record["name"]) == ("counted", "unreadable frames")
+    assert record["content"]["frames"] > 0
