@@ -9,6 +9,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
 from mmrs_core.generation.mavlink.movements import turns_to
+from mmrs_core.generation.mavlink.runs import CORNER_SECONDS
 from mmrs_core.generation.qgc import items as qgc
 from mmrs_core.generation.qgc.items import Item
 from mmrs_core.generation.vehicles import ROVER
@@ -16,9 +17,6 @@ from mmrs_core.generation.wiring import Wired, wiring_of
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
-CORNER_SECONDS = 1.0
-"""Hold at the end of moves, without which vehicles cut corners; fluid transitions do without."""
-
 ORIGIN = (0.0, 0.0, 0.0)
 
 
@@ -107,6 +105,7 @@ class Flight:
             return
         self._pace(move)
         self._look(move)
+        # Without a hold at its end a vehicle cuts the corner; a fluid transition is content with that.
         for position in _ends(self._position, move.target.position, move):
             self._position = position
             last = position == move.target.position

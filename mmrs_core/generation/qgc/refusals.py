@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
@@ -10,7 +11,9 @@ from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.earth import sea_level_of
 from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
 from mmrs_core.generation.mavlink.movements import losses_of, objects_of
+from mmrs_core.generation.safety import explicit, policies_of
 from mmrs_core.generation.wiring import Sampled, Unwired, wiring_of
+from mmrs_core.scene import Policy
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
@@ -29,6 +32,8 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
             " above mean sea level, or the geoid separation"
         )
+    for policy in _declared(robot, input):
+        yield f"robot '{robot.id}': {_described(policy)}"
     context = context_of(robot, input, geographic=False)
     for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
@@ -43,6 +48,18 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             yield f"{context.label(move)}: waits for {slots}, which only an operator can do in a plan"
         if transition is not None and transition.condition is not None:
             yield f"{context.label(move)}: chooses by '{transition.condition}'"
+        for policy in transition.policies if transition is not None else ():
+            yield f"{context.label(move)}: {_described(explicit(policy))}"
+
+
+def _declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
+    """Return the policies of a robot that somebody wrote down; the habits of its kind are left out."""
+    return policies_of(robot, replace(input, robot_kinds={}))
+
+
+def _described(policy: Policy) -> str:
+    after = "" if policy.after is None else f" after {policy.after:g} s"
+    return f"policy {policy.event}{after}: {policy.response}, which only settings of the vehicle can do"
 
 
 def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[str]:

@@ -10,7 +10,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.qgc.target import QGC_PLAN
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.scene import Device, Frame
+from mmrs_core.scene import Device, Frame, Policy
 from mmrs_core.testing.programs import (
     L_AQUILA,
     MULTICOPTER,
@@ -161,6 +161,26 @@ def test_rally_points_keep_their_clearance_inside_emergency_areas():
 def test_a_wait_is_refused_with_its_slots():
     (fault,) = refused(take_off("up", 20.0), LAND, transitions={1: Transition(1, 2, waits=("go",))})
     assert fault == "robot 'alpha', move 'up': waits for go, which only an operator can do in a plan"
+
+
+def test_policies_of_a_robot_are_refused_by_name():
+    robot = replace(robot_program("alpha", [LAND]), policies=(Policy("BATTERY_LOW", "LAND"),))
+    type = replace(quad(), policies=(Policy("LINK_LOST", "HOLD", 5.0), Policy("BATTERY_LOW", "RETURN")))
+    assert tuple(QGC_PLAN.refusals(target_input(program(robot), [type]))) == (
+        "robot 'alpha': policy BATTERY_LOW: LAND, which only settings of the vehicle can do",
+        "robot 'alpha': policy LINK_LOST after 5 s: HOLD, which only settings of the vehicle can do",
+    )
+
+
+def test_policies_of_a_wait_are_refused_with_it():
+    late = (Policy("WAIT_TOO_LONG", "LAND", 9.0),)
+    faults = refused(
+        take_off("up", 20.0), LAND, transitions={1: Transition(1, 2, waits=("go",), policies=late)}
+    )
+    assert faults[1:] == (
+        "robot 'alpha', move 'up': policy WAIT_TOO_LONG after 9 s: LAND, which only settings of the"
+        " vehicle can do",
+    )
 
 
 def test_a_wait_that_is_lost_becomes_a_loiter_that_the_operator_ends():
