@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from mmrs_core.languages.collector import collector_at_rest
-from mmrs_core.languages.comparison.features import address_of, features_of, paths_of, raw_text, said_by
-from mmrs_core.languages.comparison.matching import Matching, every
+from mmrs_core.languages.comparison.features import Paths, address_of, features_of, raw_text, said_by
+from mmrs_core.languages.comparison.matching import Matching
+from mmrs_core.languages.comparison.traits import traits_of, values_in
 from mmrs_core.languages.element import Element, containing_feature, held
 from mmrs_core.languages.metaclass import Feature
 
@@ -62,28 +63,44 @@ class _Comparison:
     def __init__(self, before: Sequence[Element], after: Sequence[Element]) -> None:
         self._before, self._after = before, after
         self._matching = Matching(before, after)
-        self._old = _paths(before)
-        self._new = _paths(after)
+        self._old, self._new = Paths(before), Paths(after)
+        self._ours = {id(element) for element in self._matching.before}
+        self._theirs = {id(element) for element in self._matching.after}
 
     def changes(self) -> Iterator[Change]:
-        for one in every(self._before):
+        for one in self._matching.before:
             if id(one) not in self._matching.second and self._is_outermost(one, self._matching.second):
-                yield Change(Sort.REMOVED, one, before=self._old[id(one)])
+                yield Change(Sort.REMOVED, one, before=self._old.of(one))
         yield from self._moved_among(self._before, self._after)
-        for other in every(self._after):
+        for other in self._matching.after:
             one_ = self._matching.first.get(id(other))
             if one_ is None:
                 if self._is_outermost(other, self._matching.first):
-                    yield Change(Sort.ADDED, other, after=self._new[id(other)])
-            else:
+                    yield Change(Sort.ADDED, other, after=self._new.of(other))
+            elif not self._agree(one_, other):
                 yield from self._pair(one_, other)
 
     def _is_outermost(self, element: Element, matched: dict[int, Element]) -> bool:
         container = element._mmrs_container
         return container is None or id(container) in matched
 
+    def _agree(self, one: Element, other: Element) -> bool:
+        """Return whether two elements that were matched certainly agree; most of a large model does."""
+        same = self._matching.says_the_same(one, other) and one.__class__ is other.__class__
+        if not same or self._changed_container(one, other):
+            return False
+        second, traits = self._matching.second, traits_of(one.__class__)
+        for slot in (*traits.inside, *traits.links):
+            here, there = values_in(one, slot), values_in(other, slot)
+            if len(here) != len(there):
+                return False
+            for each, partner in zip(here, there, strict=True):
+                if second.get(id(each)) is not partner:
+                    return False
+        return True
+
     def _pair(self, one: Element, other: Element) -> Iterator[Change]:
-        before, after = self._old[id(one)], self._new[id(other)]
+        before, after = self._old.of(one), self._new.of(other)
         if self._changed_container(one, other):
             yield Change(Sort.MOVED, other, before, after)
         if raw_text(one) != raw_text(other):
@@ -107,7 +124,7 @@ class _Comparison:
             return ours is not theirs
         here, there = containing_feature(one), containing_feature(other)
         same = here is not None and there is not None and here.name == there.name
-        if same and id(ours) not in self._old and id(theirs) not in self._new:
+        if same and id(ours) not in self._ours and id(theirs) not in self._theirs:
             return False  # both stand at the top of their files, and parts of others contain them
         return not (same and self._matching.second.get(id(ours)) is theirs)
 
@@ -120,12 +137,12 @@ class _Comparison:
         return tuple(self._target(value) for value in _elements(held(element, feature))) or None
 
     def _target(self, target: Element) -> str:
-        if id(target) in self._new:
-            return self._new[id(target)]
-        if id(target) not in self._old:
+        if id(target) in self._theirs:
+            return self._new.of(target)
+        if id(target) not in self._ours:
             return address_of(target)
         match = self._matching.second.get(id(target))
-        return self._new[id(match)] if match is not None else f"{self._old[id(target)]} (removed)"
+        return self._new.of(match) if match is not None else f"{self._old.of(target)} (removed)"
 
     def _moved_among(self, before: Sequence[Element], after: Sequence[Element]) -> Iterator[Change]:
         """Yield the fewest moves that bring the common elements of a list into their new order."""
@@ -135,18 +152,11 @@ class _Comparison:
         staying = _longest_rise([places[id(other)] for _, other in common])
         for place, (one, other) in enumerate(common):
             if place not in staying:
-                yield Change(Sort.MOVED, other, self._old[id(one)], self._new[id(other)])
+                yield Change(Sort.MOVED, other, self._old.of(one), self._new.of(other))
 
 
 def _elements(values: Sequence[object]) -> list[Element]:
     return [value for value in values if isinstance(value, Element)]
-
-
-def _paths(roots: Sequence[Element]) -> dict[int, str]:
-    found: dict[int, str] = {}
-    for index, root in enumerate(roots):
-        found |= paths_of(root, f"/{index}" if len(roots) > 1 else "")
-    return found
 
 
 def _longest_rise(numbers: Sequence[int]) -> frozenset[int]:

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from mmrs_core.languages.element import (
-    Element,
-    Unknown,
-    contents,
-    descendants,
-    held,
-    holds,
-    label_of,
-    path_of,
-)
+from mmrs_core.languages.comparison.traits import Kind, traits_of, values_in
+from mmrs_core.languages.element import Element, Unknown, held, holds, label_of, path_of
 from mmrs_core.languages.json_form.layout import formatted
 from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 from mmrs_core.languages.metaclass import Feature, Metaclass
-
-Kind = tuple[str, str]
 
 
 def kind_of(element: Element) -> Kind:
@@ -26,24 +16,22 @@ def kind_of(element: Element) -> Kind:
     if isinstance(element, Unknown):
         ns_uri, _, name = element._mmrs_type.rpartition("#")
         return ns_uri, name
-    metaclass = type(element)._mmrs_metaclass
-    return metaclass.key if metaclass is not None else ("", "")
+    return traits_of(element.__class__).kind
 
 
 def features_of(element: Element) -> Mapping[str, Feature]:
     """Return the features of an element by name; none where its class is not installed."""
-    metaclass = type(element)._mmrs_metaclass
-    return metaclass.by_name if metaclass is not None else {}
+    return traits_of(element.__class__).features
 
 
 def identity_of(element: Element) -> str:
     """Return what tells an element from others of its class: its ids, its name; empty if it has none."""
     source = element._mmrs_source
-    if source is not None and element in source.ids:
+    if source is not None and source.ids and element in source.ids:
         return source.ids[element]
-    for feature in features_of(element).values():
-        if feature.is_id:
-            return next((str(value) for value in held(element, feature)), "")
+    identifier = traits_of(element.__class__).identifier
+    if identifier is not None:
+        return next((str(value) for value in held(element, identifier)), "")
     return label_of(element) if not isinstance(element, Unknown) else ""
 
 
@@ -70,32 +58,61 @@ def raw_text(element: Element) -> str:
     return element._mmrs_xml if isinstance(element, Unknown) else ""
 
 
-def _marks(element: Element) -> Iterator[tuple[str, str]]:
+def _marks(element: Element) -> Iterator[tuple[str, object]]:
     """Yield what tells the attributes that are set from others, at less cost than their texts."""
-    for name, feature in features_of(element).items():
-        if feature.stored and not feature.is_reference and holds(element, feature):
-            yield name, repr(held(element, feature))
+    for feature, read in traits_of(element.__class__).attributes:
+        try:
+            value = read(element)
+        except AttributeError:
+            continue
+        if value.__class__ is str and value != feature.default:
+            yield feature.name, value
+        elif holds(element, feature):
+            yield feature.name, (repr(held(element, feature)),)
 
 
-def fingerprints(root: Element) -> dict[int, int]:
-    """Return a number for each element that equal subtrees share, references left out, by `id`."""
+def fingerprints(elements: Sequence[Element]) -> dict[int, int]:
+    """Return a number for each element that equal subtrees share, references left out, by `id`.
+
+    Args:
+        elements: in document order, with all that is inside them.
+    """
     found: dict[int, int] = {}
-    for element in reversed([root, *descendants(root)]):
-        inner = tuple(found[id(each)] for each in contents(element))
-        said = (raw_text(element), *_marks(element))
-        found[id(element)] = hash((kind_of(element), said, inner))
+    for element in reversed(elements):
+        inside = traits_of(element.__class__).inside
+        inner = tuple([found[id(each)] for slot in inside for each in values_in(element, slot)])
+        text = raw_text(element) if isinstance(element, Unknown) else ""
+        found[id(element)] = hash((kind_of(element), text, tuple(_marks(element)), inner))
     return found
 
 
-def paths_of(root: Element, lead: str = "") -> dict[int, str]:
-    """Return the path of each element, by `id`, as `path_of` does one by one."""
-    found = {id(root): lead or "/"}
-    for element in (root, *descendants(root)):
-        here = found[id(element)].rstrip("/")
-        for name, feature in features_of(element).items():
-            for index, value in enumerate(held(element, feature) if feature.containment else ()):
-                found[id(value)] = f"{here}/{name}[{index}]" if feature.many else f"{here}/{name}"
-    return found
+class Paths(dict[int, str]):
+    """The path of each element of a model that is asked for, by `id`, as `path_of` has it."""
+
+    def __init__(self, roots: Sequence[Element]) -> None:
+        """Take the roots; where there are several, each path begins with the number of one."""
+        super().__init__()
+        for index, root in enumerate(roots):
+            self[id(root)] = f"/{index}" if len(roots) > 1 else "/"
+
+    def of(self, element: Element) -> str:
+        """Return the path of an element of the model."""
+        chain = [element]
+        while id(chain[-1]) not in self:
+            container = chain[-1]._mmrs_container
+            assert container is not None  # it is no root
+            chain.append(container)
+        for outer in chain[:0:-1]:
+            self._enter(outer)
+        return self[id(element)]
+
+    def _enter(self, outer: Element) -> None:
+        """Work out the paths of all elements directly inside another."""
+        begin = self[id(outer)].rstrip("/")
+        for slot in traits_of(outer.__class__).inside:
+            name, many = slot[0].name, slot[0].many
+            for index, each in enumerate(values_in(outer, slot)):
+                self[id(each)] = f"{begin}/{name}[{index}]" if many else f"{begin}/{name}"
 
 
 def address_of(element: Element) -> str:

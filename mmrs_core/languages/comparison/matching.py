@@ -13,7 +13,8 @@ from mmrs_core.languages.comparison.features import (
     kind_of,
     said_by,
 )
-from mmrs_core.languages.element import Element, contents, descendants, held
+from mmrs_core.languages.comparison.traits import traits_of, values_in
+from mmrs_core.languages.element import Element, contents, descendants
 
 _LIKE = 0.5
 """The least share of equal attributes by which two elements are taken for one."""
@@ -27,6 +28,8 @@ class Matching:
     """The pairs of two models.
 
     Attributes:
+        before: all elements of the first model, in document order.
+        after: all of the second.
         second: the element of the second model for each matched one of the first, by `id`.
         first: the reverse.
     """
@@ -35,13 +38,12 @@ class Matching:
         """Match two models, given their roots."""
         self.second: dict[int, Element] = {}
         self.first: dict[int, Element] = {}
-        self._prints: dict[int, int] = {}
-        for root in (*before, *after):
-            self._prints.update(fingerprints(root))
+        self.before, self.after = tuple(every(before)), tuple(every(after))
+        self._prints = fingerprints(self.before) | fingerprints(self.after)
         self._pending: deque[tuple[Element, Element]] = deque()
         self._match_lists(before, after)
         self._match_contents()
-        self._match_moved(before, after)
+        self._match_moved()
         self._match_contents()
 
     def says_the_same(self, one: Element, other: Element) -> bool:
@@ -56,13 +58,19 @@ class Matching:
     def _match_contents(self) -> None:
         while self._pending:
             one, other = self._pending.popleft()
-            known = features_of(other)
-            for name, feature in features_of(one).items():
-                if feature.containment and name in known:
-                    self._match_lists(_elements(held(one, feature)), _elements(held(other, known[name])))
+            there = {slot[0].name: slot for slot in traits_of(other.__class__).inside}
+            for slot in traits_of(one.__class__).inside:
+                if slot[0].name in there:
+                    self._match_lists(values_in(one, slot), values_in(other, there[slot[0].name]))
 
     def _match_lists(self, before: Sequence[Element], after: Sequence[Element]) -> None:
         """Match what one feature holds: equal names first, then equal contents, likeness, and position."""
+        if not before or not after:
+            return
+        if self._are_alike(before, after):
+            for one, other in zip(before, after, strict=True):
+                self._pair(one, other)
+            return
         self._by_key(before, after, _called)
         self._by_key(before, after, lambda each: (kind_of(each), self._prints[id(each)]), unique=False)
         self._by_likeness(before, after)
@@ -70,10 +78,18 @@ class Matching:
             if self._free(one, other) and kind_of(one) == kind_of(other) and _may_be_one(one, other):
                 self._pair(one, other)
 
-    def _match_moved(self, before: Sequence[Element], after: Sequence[Element]) -> None:
+    def _are_alike(self, before: Sequence[Element], after: Sequence[Element]) -> bool:
+        """Return whether each element of a list equals the one in the same place, so that nothing moved."""
+        prints = self._prints
+        return len(before) == len(after) and all(
+            prints[id(one)] == prints[id(other)] and self._free(one, other) and _is_called_alike(one, other)
+            for one, other in zip(before, after, strict=True)
+        )
+
+    def _match_moved(self) -> None:
         """Match what was not found where it had been with what came elsewhere."""
-        gone = [each for each in every(before) if id(each) not in self.second]
-        come = [each for each in every(after) if id(each) not in self.first]
+        gone = [each for each in self.before if id(each) not in self.second]
+        come = [each for each in self.after if id(each) not in self.first]
         self._by_key(gone, come, _called)
         self._by_key(
             gone, come, lambda each: (kind_of(each), self._prints[id(each)]) if _tells(each) else None
@@ -131,8 +147,10 @@ def _called(element: Element) -> Hashable:
     return (kind_of(element), identity) if identity else None
 
 
-def _elements(values: Iterable[object]) -> list[Element]:
-    return [value for value in values if isinstance(value, Element)]
+def _is_called_alike(one: Element, other: Element) -> bool:
+    """Return whether neither of two equal elements has an identifier that it does not say itself."""
+    ours, theirs = one._mmrs_source, other._mmrs_source
+    return (ours is None or not ours.ids) and (theirs is None or not theirs.ids)
 
 
 def _likeness(one: Element, other: Element) -> float:
