@@ -26,8 +26,8 @@ def replay(
     from mmrs_core.behaviour.replay import Outcome
     from mmrs_core.behaviour.replay import replay as replayed
     from mmrs_core.cli.behaviours import load_program
+    from mmrs_core.cli.figures import clock
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.preview.figures import clock
 
     workshop = Workshop(settings_of(call))
     program = load_program(workshop, behaviour_file(behaviour))

@@ -13,8 +13,8 @@ import typer
 from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
-from mmrs_core.cli.preview.figures import clock, length
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.runtime.run import Run

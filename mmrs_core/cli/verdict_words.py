@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mmrs_core.cli.preview.figures import quantity
+from mmrs_core.cli.figures import quantity
 from mmrs_core.contributions.checks import Status, Verdict
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
+from mmrs_core.cli.figures import clock, energy, length
 from mmrs_core.cli.preview.crossings import corners
-from mmrs_core.cli.preview.figures import clock, energy, length
 from mmrs_core.cli.preview.picture import Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, symbol_of_robot, task_pictures, zones_of
 from mmrs_core.cli.preview.steps import arms_of, bars_of, flat, legs_of

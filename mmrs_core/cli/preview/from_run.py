@@ -10,7 +10,7 @@ from math import dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
 from mmrs_core.cli.preview.places import origin_of, symbol_of_robot, zones_of
 from mmrs_core.cli.preview.things import things_of
@@ -90,12 +90,13 @@ def _robot(
 ) -> RobotPicture:
     moves = {move.id: move for move in robot.moves}
     end = records[-1].time if records else 0.0
-    flown = sum(dist(a, b) for a, b in pairwise(_positions(track)))
+    way = _Track(track)
+    flown = sum(dist(a, b) for a, b in pairwise(way.positions))
     return RobotPicture(
         name=robot.id,
         type_name=robot.type_name,
-        home=robot.home or (_positions(track) or [(0.0, 0.0, 0.0)])[0],
-        legs=tuple(_legs(moves, records, track, kinds)),
+        home=robot.home or (way.positions or [(0.0, 0.0, 0.0)])[0],
+        legs=tuple(_legs(moves, records, way, kinds)),
         bars=tuple(_bars(moves, records, kinds)),
         heights=tuple((sample.time, sample.up) for sample in track),
         summary=(("moves", str(len(robot.moves))), ("way", length(flown)), ("time", clock(end))),
@@ -105,16 +106,19 @@ def _robot(
 def _legs(
     moves: Mapping[str, Move],
     records: Sequence[StepRecord],
-    track: Sequence[Sample],
+    track: _Track,
     kinds: Mapping[Name, MoveKind],
 ) -> Iterator[Leg]:
-    acts = [(record.move, record.time) for record in records if record.label == "act"]
+    acts: dict[str, list[float]] = {}
+    for record in records:
+        if record.label == "act":
+            acts.setdefault(record.move, []).append(record.time)
     for begin, end in _movements(records):
-        points = _way(track, begin.time, end.time)
+        points = track.between(begin.time, end.time)
         move = moves[begin.move]
         if not points:
             continue
-        done = tuple(_at(track, time) for name, time in acts if name == move.id)
+        done = tuple(track.at(time) for time in acts.get(move.id, ()))
         stays = sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL
         if stays and not done and (move.is_a(_RECHARGE) or not move.is_a(_HOLD)):
             continue
@@ -189,28 +193,34 @@ def _action(move: Move, detail: str) -> Action:
     return (move.before if side == "pre" else move.after)[int(index)]
 
 
-def _positions(track: Sequence[Sample]) -> list[Position]:
-    return [(sample.east, sample.north, sample.up) for sample in track]
+class _Track:
+    """The way of a robot, asked for by time.
 
+    Attributes:
+        positions: all corners of the way.
+    """
 
-def _way(track: Sequence[Sample], begin: float, end: float) -> tuple[Position, ...]:
-    """Return where the robot was from begin to end: corners of its way, first and last interpolated."""
-    if not track:
-        return ()
-    times = [sample.time for sample in track]
-    inside = track[bisect_right(times, begin) : bisect_left(times, end)]
-    return (_at(track, begin), *_positions(inside), _at(track, end))
+    def __init__(self, samples: Sequence[Sample]) -> None:
+        self._times = [sample.time for sample in samples]
+        self.positions: list[Position] = [sample.position for sample in samples]
 
+    def between(self, begin: float, end: float) -> tuple[Position, ...]:
+        """Return the corners from begin to end, first and last interpolated; empty where nothing is known."""
+        if not self.positions:
+            return ()
+        inside = self.positions[bisect_right(self._times, begin) : bisect_left(self._times, end)]
+        return (self.at(begin), *inside, self.at(end))
 
-def _at(track: Sequence[Sample], time: float) -> Position:
-    times = [sample.time for sample in track]
-    after = min(max(bisect_left(times, time), 1), len(track) - 1)
-    if len(track) == 1:
-        return _positions(track)[0]
-    a, b = track[after - 1], track[after]
-    part = min(max((time - a.time) / (b.time - a.time), 0.0), 1.0) if b.time > a.time else 1.0
-    return (
-        a.east + part * (b.east - a.east),
-        a.north + part * (b.north - a.north),
-        a.up + part * (b.up - a.up),
-    )
+    def at(self, time: float) -> Position:
+        """Return where the robot was; before the first sample and after the last it stood still."""
+        after = bisect_left(self._times, time)
+        if after == 0 or after == len(self._times):
+            return self.positions[min(after, len(self._times) - 1)]
+        since, until = self._times[after - 1], self._times[after]
+        part = (time - since) / (until - since)
+        one, two = self.positions[after - 1], self.positions[after]
+        return (
+            one[0] + part * (two[0] - one[0]),
+            one[1] + part * (two[1] - one[1]),
+            one[2] + part * (two[2] - one[2]),
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import dist
 
-from mmrs_core.cli.preview.figures import clock, heights, length
+from mmrs_core.cli.figures import clock, heights, length
 from mmrs_core.cli.preview.markup import element, number, text, title
 from mmrs_core.cli.preview.picture import Details, TaskPicture, Thing, Zone
 from mmrs_core.cli.preview.projection import Projection

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from math import atan2, degrees, dist
 
-from mmrs_core.cli.preview.figures import clock, length
+from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.preview.markup import element, number, title
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture

@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from mmrs_core.cli.preview.figures import heights
+from mmrs_core.cli.figures import heights
 from mmrs_core.cli.preview.labels import Box, Labels, around
 from mmrs_core.cli.preview.map_furniture import furniture_places
 from mmrs_core.cli.preview.map_places import BADGE, STEM, badge_places, task_tip, thing_tip

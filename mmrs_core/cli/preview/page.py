@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from importlib.resources import files
 
-from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.figures import clock
 from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text

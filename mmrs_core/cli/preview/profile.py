@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
+from mmrs_core.cli.figures import heights, length
 from mmrs_core.cli.preview.crossings import Crossing, corners, crossings
-from mmrs_core.cli.preview.figures import heights, length
 from mmrs_core.cli.preview.labels import shortened
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of

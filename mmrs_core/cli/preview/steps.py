@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.figures import clock
 from mmrs_core.cli.preview.footprints import along, footprints
 from mmrs_core.cli.preview.picture import Arm, Bar, Leg
 from mmrs_core.scene import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.figures import clock
 from mmrs_core.cli.preview.markup import element, text
 
 LEFT = 172.0

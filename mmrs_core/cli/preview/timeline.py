@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import accumulate
 
-from mmrs_core.cli.preview.figures import clock
+from mmrs_core.cli.figures import clock
 from mmrs_core.cli.preview.labels import shortened, width_of
 from mmrs_core.cli.preview.map_places import task_tip
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
