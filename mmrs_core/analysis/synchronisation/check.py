@@ -9,6 +9,7 @@ from mmrs_core.analysis.synchronisation.exploration import find_stuck
 from mmrs_core.analysis.synchronisation.fixpoint import must_fixpoint
 from mmrs_core.analysis.synchronisation.network import Network, Node, network_of
 from mmrs_core.analysis.synchronisation.search import (
+    LIMIT,
     LimitExceededError,
     Stuck,
     Trap,
@@ -21,7 +22,13 @@ from mmrs_core.contributions.checks import Check, CheckInput, Status, Verdict
 NAME = "synchronisation"
 
 
-def _run(input: CheckInput) -> Iterator[Verdict]:
+def verdicts_of(input: CheckInput, *, limit: int = LIMIT) -> Iterator[Verdict]:
+    """Yield who may wait for ever, or that nobody does.
+
+    Args:
+        input: of the check.
+        limit: how many steps a search through the ways that Choices go may make.
+    """
     program = input.program
     network = network_of(program)
     if not network.awaited:
@@ -34,7 +41,8 @@ def _run(input: CheckInput) -> Iterator[Verdict]:
     ]
     yield from orphaned
     named = {(verdict.robot, verdict.move) for verdict in orphaned}
-    for verdict in _with_resets(program, network) if network.volatile else _monotone(program, network):
+    decided = _with_resets(program, network) if network.volatile else _monotone(program, network, limit)
+    for verdict in decided:
         if not orphaned or (verdict.status is Status.VIOLATED and (verdict.robot, verdict.move) not in named):
             yield verdict
 
@@ -48,7 +56,7 @@ def _orphaned(program: Program, network: Network, slot: SlotId) -> Iterator[Verd
                 yield _violated(program, net.robot, node.move, f"{words}, which nobody ever activates")
 
 
-def _monotone(program: Program, network: Network) -> Iterator[Verdict]:
+def _monotone(program: Program, network: Network, limit: int) -> Iterator[Verdict]:
     fixpoint = must_fixpoint(network)
     if not fixpoint.blocked:
         yield _free(program, network, "whatever ways Choices go")
@@ -61,7 +69,7 @@ def _monotone(program: Program, network: Network) -> Iterator[Verdict]:
         yield _undecided(f"no way leads {endless} to Stop")
         return
     try:
-        trap = find_trap(network, fixpoint.active)
+        trap = find_trap(network, fixpoint.active, limit=limit)
     except LimitExceededError:
         yield _undecided("the Choices that robots make have more outcomes than were looked at")
         return
@@ -167,6 +175,6 @@ def _undecided(reason: str) -> Verdict:
 SYNCHRONISATION = Check(
     name=NAME,
     title="Every awaited slot is activated by somebody, and no run leaves a robot waiting for ever.",
-    run=_run,
+    run=verdicts_of,
     hint="let some robot notify the slot on every way it may go, or take the wait away",
 )

@@ -70,7 +70,9 @@ def test_rows_are_followed_to_and_fro(robot, scene):
 
 
 def test_the_camera_records_from_one_end_of_a_row_to_the_other(robot, scene):
-    for stroke in row_inspection_work(rows(), robot(), scene()).strokes:
+    strokes = row_inspection_work(rows(), robot(), scene()).strokes
+    assert len(strokes) == 4
+    for stroke in strokes:
         lead_in, begin, end = stroke.points
         start, stop = stroke.actions
         assert (start.action, start.device, start.parameters) == ("StartCapture", "thermal", RECORDED)
@@ -86,7 +88,9 @@ def test_the_robot_can_turn_round_before_it_records(robot, scene):
 
 
 def test_all_passes_look_the_same_way(robot, scene):
-    for stroke in row_inspection_work(rows(), robot(), scene()).strokes:
+    strokes = row_inspection_work(rows(), robot(), scene()).strokes
+    assert len(strokes) == 4
+    for stroke in strokes:
         assert stroke.look.device == "thermal"
         for point in stroke.points[1:]:
             east, north, up = (a - b for a, b in zip(stroke.look.at, point, strict=True))

@@ -117,6 +117,7 @@ def test_the_whole_report_is_one_json_object(mmrs, project):
 def test_the_text_tells_every_finding_with_its_line(mmrs, project):
     findings = json.loads(mmrs("migrate", *ORCHARD, "-o", project, "--json")[1])["findings"]
     text = mmrs("migrate", *ORCHARD, "-o", project)[1]
+    assert findings
     for finding in findings:
         assert finding["reason"] in text
         assert finding["subject"] in text

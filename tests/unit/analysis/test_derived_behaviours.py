@@ -77,7 +77,9 @@ def test_leaving_out_any_notify_strands_somebody(derived):
 
 
 def test_turning_round_any_notify_strands_somebody(derived):
-    for robot, index, move in places(derived, notifies):
+    found = list(places(derived, notifies))
+    assert found
+    for robot, index, move in found:
         after = tuple(replace(action, active=False) for action in move.after)
         before = tuple(replace(action, active=False) for action in move.before)
         assert violations(
@@ -88,7 +90,9 @@ def test_turning_round_any_notify_strands_somebody(derived):
 def test_leading_any_move_into_the_middle_of_an_area_is_violated_by_name(derived):
     area = next(area for area in derived.areas if area.use is AreaUse.FORBIDDEN)
     middle = [sum(corner[i] for corner in area.shell) / len(area.shell) for i in (0, 1)]
-    for robot, index, move in list(places(derived, lambda move: move.target is not None))[::25]:
+    chosen = list(places(derived, lambda move: move.target is not None))[::25]
+    assert chosen
+    for robot, index, move in chosen:
         target = replace(move.target, position=(*middle, move.target.position[2]))
         found = violations(altered(derived, robot, index, replace(move, target=target)), "clearance")
         assert area.name in {verdict.area for verdict in found}
@@ -100,7 +104,9 @@ def test_leading_any_move_into_the_middle_of_an_area_is_violated_by_name(derived
 
 
 def test_a_landing_that_is_left_out_is_violated(derived):
-    for robot, index, move in places(derived, lambda move: move.is_a(LAND)):
+    landings = list(places(derived, lambda move: move.is_a(LAND)))
+    assert landings
+    for robot, index, move in landings:
         held = replace(
             move, metaclasses=(("urn:mmrs:behaviour:1.0", "HoldPosition"),), attributes={"duration": 1.0}
         )
