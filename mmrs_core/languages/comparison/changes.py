@@ -89,8 +89,8 @@ class _Comparison:
         same = self._matching.says_the_same(one, other) and one.__class__ is other.__class__
         if not same or self._changed_container(one, other):
             return False
-        second, traits = self._matching.second, traits_of(one.__class__)
-        for slot in (*traits.inside, *traits.links):
+        second = self._matching.second
+        for slot in traits_of(one.__class__).targets:
             here, there = values_in(one, slot), values_in(other, slot)
             if len(here) != len(there):
                 return False

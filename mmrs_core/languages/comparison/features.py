@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from mmrs_core.languages.comparison.traits import Kind, traits_of, values_in
+from mmrs_core.languages.comparison.traits import Kind, Traits, traits_of, values_in
 from mmrs_core.languages.element import Element, Unknown, held, holds, label_of, path_of
 from mmrs_core.languages.json_form.layout import formatted
 from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 from mmrs_core.languages.metaclass import Feature, Metaclass
+
+_SINGLE = frozenset((str, float, int, bool))
 
 
 def kind_of(element: Element) -> Kind:
@@ -58,17 +60,21 @@ def raw_text(element: Element) -> str:
     return element._mmrs_xml if isinstance(element, Unknown) else ""
 
 
-def _marks(element: Element) -> Iterator[tuple[str, object]]:
-    """Yield what tells the attributes that are set from others, at less cost than their texts."""
-    for feature, read in traits_of(element.__class__).attributes:
+def _marks(element: Element, traits: Traits) -> list[object]:
+    """Return what tells the attributes that are set from others, at less cost than their texts."""
+    marks: list[object] = []
+    for feature, read in traits.attributes:
         try:
             value = read(element)
         except AttributeError:
             continue
-        if value.__class__ is str and value != feature.default:
-            yield feature.name, value
+        if value.__class__ in _SINGLE and value != feature.default:
+            # the hash of a float does not tell 0.0 from -0.0, nor one NaN from the same
+            told = value if value.__class__ is not float or (value and value == value) else repr(value)
+            marks += (feature.name, told)
         elif holds(element, feature):
-            yield feature.name, (repr(held(element, feature)),)
+            marks += (feature.name, repr(held(element, feature)))
+    return marks
 
 
 def fingerprints(elements: Sequence[Element]) -> dict[int, int]:
@@ -79,10 +85,10 @@ def fingerprints(elements: Sequence[Element]) -> dict[int, int]:
     """
     found: dict[int, int] = {}
     for element in reversed(elements):
-        inside = traits_of(element.__class__).inside
-        inner = tuple([found[id(each)] for slot in inside for each in values_in(element, slot)])
-        text = raw_text(element) if isinstance(element, Unknown) else ""
-        found[id(element)] = hash((kind_of(element), text, tuple(_marks(element)), inner))
+        traits = traits_of(element.__class__)
+        inner = [found[id(each)] for slot in traits.inside for each in values_in(element, slot)]
+        known = traits.kind if traits.kind[1] else (kind_of(element), raw_text(element))
+        found[id(element)] = hash((known, *_marks(element, traits), None, *inner))
     return found
 
 

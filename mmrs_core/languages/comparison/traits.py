@@ -25,7 +25,7 @@ class Traits:
         features: by name.
         attributes: those that files hold.
         inside: those that contain elements.
-        links: the other references that files hold, but for those to the container.
+        targets: those, and all other references that files hold but those to the container.
         identifier: the attribute that tells elements from each other, if there is one.
     """
 
@@ -33,7 +33,7 @@ class Traits:
     features: Mapping[str, Feature] = field(default_factory=dict)
     attributes: tuple[Slot, ...] = ()
     inside: tuple[Slot, ...] = ()
-    links: tuple[Slot, ...] = ()
+    targets: tuple[Slot, ...] = ()
     identifier: Feature | None = None
 
 
@@ -46,13 +46,15 @@ def traits_of(made: type[Element]) -> Traits:
 
 def _traits(metaclass: Metaclass, made: type[Element]) -> Traits:
     slots = [(each, made._mmrs_slots[each.attribute].__get__) for each in metaclass.features]
-    links = [slot for slot in slots if slot[0].is_reference and not slot[0].containment and slot[0].stored]
+    inside = tuple(slot for slot in slots if slot[0].containment)
+    references = [slot for slot in slots if slot[0].is_reference and slot[0].stored]
+    links = tuple(slot for slot in references if not (slot[0].containment or slot[0].is_container))
     return Traits(
         metaclass.key,
         metaclass.by_name,
         tuple(slot for slot in slots if slot[0].stored and not slot[0].is_reference),
-        tuple(slot for slot in slots if slot[0].containment),
-        tuple(slot for slot in links if not slot[0].is_container),
+        inside,
+        inside + links,
         next((feature for feature in metaclass.by_name.values() if feature.is_id), None),
     )
 
