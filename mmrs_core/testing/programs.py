@@ -1,4 +1,4 @@
-"""Behaviours made by hand, as targets and backends get them: small, but with everything in them."""
+"""Drones and behaviours made by hand, as targets and backends get them, built on `small_programs`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from mmrs_core.behaviour.program import (
     Move,
     Program,
     RobotProgram,
-    SlotId,
     Target,
     Transition,
 )
@@ -31,6 +30,7 @@ from mmrs_core.scene import (
     RobotType,
     Value,
 )
+from mmrs_core.testing.small_programs import MOVE, notify, robot, use
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ROBOT = "urn:mmrs:robot:1.0"
@@ -38,16 +38,14 @@ L_AQUILA = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
 SUPERTYPES: Mapping[tuple[str, str], Metaclasses] = {
     (MULTICOPTER, "GoTo"): ((BEHAVIOUR, "GoTo"),),
     (BEHAVIOUR, "Recharge"): ((BEHAVIOUR, "HoldPosition"),),
-    (BEHAVIOUR, "DeviceAction"): ((BEHAVIOUR, "Action"),),
-    (BEHAVIOUR, "Feedback"): ((BEHAVIOUR, "CommunicationAction"), (BEHAVIOUR, "Action")),
-    (BEHAVIOUR, "UnicastNotify"): ((BEHAVIOUR, "Notify"), (BEHAVIOUR, "CommunicationAction")),
 }
 
 
 def move(id: str, kind: str, *, uri: str = BEHAVIOUR, task: str = "", **attributes: Value) -> Move:
     """Return a move of a metaclass, with plain attributes."""
     rule = "by_hand" if task else ""
-    return Move(id, _metaclasses(uri, kind), attributes, task=task, rule=rule)
+    kinds = ((uri, kind), *SUPERTYPES.get((uri, kind), ()), MOVE)
+    return Move(id, kinds, attributes, task=task, rule=rule)
 
 
 def take_off(id: str, altitude: float) -> Move:
@@ -70,18 +68,14 @@ def go_to(
 
 
 def photo(device: str = "camera", action: str = "takePhoto") -> Action:
-    """Return an action of a device."""
-    return Action(_metaclasses(BEHAVIOUR, "DeviceAction"), action, device)
+    """Return an action of a device, by default one that takes a photo."""
+    return use(device, action)
 
 
 def feedback(name: str, *pairs: tuple[str, str]) -> Action:
     """Return a message to the control station."""
-    return Action(_metaclasses(BEHAVIOUR, "Feedback"), name, parameters=pairs)
-
-
-def notify(*slots: SlotId, active: bool = True) -> Action:
-    """Return an action that sets slots."""
-    return Action(_metaclasses(BEHAVIOUR, "UnicastNotify"), "notify", sets=slots, active=active)
+    kinds = tuple((BEHAVIOUR, kind) for kind in ("Feedback", "CommunicationAction", "Action"))
+    return Action(kinds, name, parameters=pairs)
 
 
 def robot_program(
@@ -103,20 +97,9 @@ def robot_program(
         transitions: those that differ from going on plainly, by index of the move, Start being 0.
         type_name: of the robot's type.
     """
-    every = (move("start", "Start"), *moves, move("stop", "Stop"))
-    plain = {index: Transition(index, index + 1) for index in range(len(every) - 1)}
-    return RobotProgram(
-        id,
-        type_name,
-        "NORMAL",
-        0.0,
-        home,
-        slots,
-        every,
-        plain | dict(transitions or {}),
-        0,
-        len(every) - 1,
-    )
+    plain = robot(id, moves, home=home, slots=slots)
+    changed = {**plain.transitions, **(transitions or {})}
+    return replace(plain, type_name=type_name, transitions=changed)
 
 
 def program(
@@ -193,7 +176,3 @@ def target_input(program: Program, types: Iterable[RobotType] | None = None) -> 
     """Return what a target gets for a behaviour among `areas`; its type is `quad` unless others are given."""
     given = (quad(),) if types is None else types
     return TargetInput(program, {each.name: each for each in given}, {}, {}, areas())
-
-
-def _metaclasses(uri: str, kind: str) -> Metaclasses:
-    return ((uri, kind), *SUPERTYPES.get((uri, kind), ()), *(((BEHAVIOUR, "Move"),) if uri else ()))

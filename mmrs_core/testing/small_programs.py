@@ -41,10 +41,10 @@ def hold(id: str, seconds: float = 1.0, **more: object) -> Move:
     return Move(id, kind, {"duration": seconds}, **more)  # type: ignore[arg-type]
 
 
-def notify(*slots: str, active: bool = True) -> Action:
-    """Return a notify of slots given as ``robot.slot``."""
+def notify(*slots: str | SlotId, active: bool = True) -> Action:
+    """Return a notify of slots, also given as ``robot.slot``."""
     kind = "UnicastNotify" if len(slots) == 1 else "MulticastNotify"
-    sets = tuple(slot_id(slot) for slot in slots)
+    sets = tuple(slot_id(slot) if isinstance(slot, str) else slot for slot in slots)
     return Action(((BEHAVIOUR, kind), (BEHAVIOUR, "Notify")), sets=sets, active=active)
 
 
