@@ -28,28 +28,29 @@ class Code:
 CODES: Mapping[str, Code] = MappingProxyType(
     {
         "XMI001": Code(
-            "the metamodel of an element is not installed",
-            "a metamodel that is installed, by its nsURI",
-            "install the plug-in that brings it, or correct the nsURI",
+            "an element of a language that is not installed",
+            "an element of an installed language",
+            "install the plug-in that brings the language, or correct its address (nsURI); "
+            "'mmrs metamodel list' shows what is installed",
         ),
         "XMI002": Code(
-            "a metamodel has no class of that name",
-            "the name of a class of that metamodel",
-            "correct the name; 'mmrs metamodel list' says what is installed",
+            "a class that its language does not have",
+            "the name of a class of that language",
+            "correct the name; 'mmrs metamodel list' shows the languages that are installed",
         ),
         "XMI003": Code(
-            "an element of an abstract class",
-            "the name of a class that elements can be made of",
-            "say which kind of it by xsi:type, or by $type in JSON",
+            "an element that does not say which kind of its class it is",
+            "one of the kinds of that class",
+            'state the kind by xsi:type="prefix:Class", in JSON by "$type": "prefix:Class"',
         ),
         "XMI004": Code(
             "an element has something that its class does not know",
-            "only features of the element's class",
-            "correct the name, or take it away",
+            "only attributes and parts that the element's class has",
+            "correct the name, or take it away; the page about languages lists what each class has",
         ),
         "XMI005": Code(
-            "a value that its type does not allow",
-            "a value of the feature's type",
+            "a value that the attribute does not take",
+            "a value of the kind that the attribute takes",
             "correct the value, or leave the attribute out where it is optional",
         ),
         "XMI006": Code(
@@ -63,18 +64,20 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "move the other file into the project, and refer to it by its relative path",
         ),
         "XMI008": Code(
-            "an element of the wrong class, contained or referred to",
-            "an element of the class that the feature takes",
+            "an element of a class that does not belong there",
+            "an element of the class that the message names",
             "choose a class that fits, or refer to another element",
         ),
-        "XMI009": Code("several values where one is allowed", "one value", "keep one of them"),
+        "XMI009": Code(
+            "several values where one is allowed", "one value", "keep one of them, and take the others away"
+        ),
         "XMI010": Code(
             "text where only elements may stand, or the reverse",
             "elements inside elements, and text inside values",
-            "take it away, or put it into an attribute",
+            "take the text away, make it a comment, or put it into an attribute",
         ),
         "XMI011": Code(
-            "an extension of XMI that is not read",
+            "a note of another tool inside the model, which is not read",
             "only the model's own elements",
             "take it away if nobody needs it: saving the model loses it",
             Severity.WARNING,
@@ -96,7 +99,7 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
         "XMI015": Code(
             "a root element without a namespace",
-            "a root that says which metamodel it is of",
+            "a root that says which language it is of",
             'write the root as prefix:Class, and declare xmlns:prefix="nsURI"; in JSON, give it a $type',
         ),
         "XMI016": Code(
@@ -110,21 +113,29 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "contain it once, and refer to it elsewhere",
         ),
         "ECO001": Code(
-            "a required value is missing", "a value for everything that the metamodel requires", "add it"
+            "a required value is missing",
+            "a value for everything that has to be known",
+            "write it, since there is no default",
         ),
         "ECO002": Code(
-            "too few or too many values", "as many values as the metamodel allows", "add or take away"
+            "too few or too many values",
+            "as many values as the message says",
+            "add what is missing, or take away what is too much",
         ),
-        "ECO003": Code("a value of the wrong type", "a value of the feature's type", "correct the value"),
+        "ECO003": Code(
+            "a value of another kind than the attribute takes",
+            "a value of the kind that the message names",
+            "correct the value",
+        ),
         "ECO004": Code(
-            "a value that is not a literal of its enumeration",
-            "a literal of the enumeration",
+            "a word that is not among those that the attribute takes",
+            "one of the words that the message lists",
             "choose one of those that the message lists",
         ),
         "ECO005": Code(
             "an element of the wrong class",
-            "an element of the class that the feature takes",
-            "put an element of another class there",
+            "an element of the class that the message names",
+            "put an element of that class there, or move this one to where it belongs",
         ),
         "ECO006": Code(
             "the same value twice among values that must differ",
@@ -147,9 +158,9 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "give a number; leave the attribute out where the value is not known",
         ),
         "ECO010": Code(
-            "an element of a metamodel that is not installed",
-            "an element of a metamodel that is installed",
-            "install the plug-in that brings it",
+            "an element of a language that is not installed",
+            "an element of an installed language",
+            "install the plug-in that brings the language",
         ),
         "ECO011": Code(
             "a reference whose other end does not refer back",
@@ -169,13 +180,13 @@ CODES: Mapping[str, Code] = MappingProxyType(
         "MIG001": Code(
             "a model of an older version of its language, migrated while it was read",
             "a model of the installed version",
-            "save the model to have it in the new version",
+            "save the model to have it in the new version, as 'mmrs convert' does; the file is as it was",
             Severity.NOTE,
         ),
         "MIG002": Code(
             "a value that the newer version of a language has no place for",
             "only what the newer version knows",
-            "check whether it is needed, and say it in another way",
+            "see whether the value is needed; if so, say it in another way",
             Severity.WARNING,
         ),
         "GND001": Code(
@@ -185,8 +196,8 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
         "GND002": Code(
             "something that a robot type needs for planning is missing",
-            "a robot type with size and speed",
-            "add it to the robot type",
+            "a robot type with all that planning needs, such as its size and speed",
+            "write it into the robot type's file",
         ),
         "GND003": Code(
             "a robot of a type that is not among the models",
@@ -195,13 +206,13 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
         "GND004": Code(
             "an element whose plug-in is not installed, where it is needed",
-            "elements of metamodels that are installed",
-            "install the plug-in that brings it",
+            "elements of installed languages only",
+            "install the plug-in that brings the language, or take the element away",
         ),
         "LOG001": Code(
             "a line of a log that is no step",
-            "one step a line, as the logs' schema says",
-            "take the line away, or write the log anew",
+            "one step a line, with all that the message names",
+            "take the line away, or run the mission again to have a whole log",
         ),
         "PRJ001": Code(
             "two types of robot of one name",

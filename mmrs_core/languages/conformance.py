@@ -9,6 +9,7 @@ from itertools import islice
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.codes import explained
+from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element, Unknown, held, label_of, metaclass_of, place_of, root_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, is_null
@@ -20,6 +21,7 @@ from mmrs_core.languages.soundness import Sound, soundness
 
 _OFTEN = 16
 """Compiling costs as much as asking all rules of so many elements."""
+_KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
 _FINITE = "give a number; leave the attribute out where the value is not known"
 
 
@@ -97,7 +99,9 @@ class _Check:
             few = count < feature.lower
             wanted = f"at least {feature.lower}" if few else f"at most {feature.upper}"
             message = f"{_owner(element)}: {feature.name} has {count or 'none'}, needs {wanted}"
-            yield _fault("ECO002" if count or not few else "ECO001", element, message, "", _wanted(feature))
+            short = f"add at least {feature.lower - count} more" if count else f"add {wanted}"
+            hint = short if few else f"take {count - feature.upper} away"
+            yield _fault("ECO002" if count or not few else "ECO001", element, message, hint, _wanted(feature))
 
     def _attributes(
         self, element: Element, feature: Feature, values: Sequence[object]
@@ -160,7 +164,7 @@ def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagno
             yield _fault("ECO004", element, message, hint)
         return
     if not kind.accepts(value):
-        yield _fault("ECO003", element, f"{where} is {value!r}, not of the type {kind.name}")
+        yield _fault("ECO003", element, f"{where} is {value!r}, not {_kind_words(kind)}")
     elif kind.python is float and not math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
         yield _fault("ECO009", element, f"{where} is {kind.render(value)}, not a finite number", _FINITE)
     elif kind.python is int:
@@ -243,9 +247,19 @@ def _key_words(value: object) -> str:
 
 def _wanted(feature: Feature) -> str:
     """Return what a feature takes, and how much of it."""
-    most = "" if feature.upper < 0 else f" to {feature.upper}"
-    count = f"{feature.lower}{most or ' or more'}" if feature.upper != feature.lower else f"{feature.lower}"
-    return f"{feature.name} with {count} {feature.type.name}"
+    kind = feature.type
+    if not feature.many and not isinstance(kind, Metaclass):
+        return f"{_kind_words(kind)} for {feature.name}"
+    most = " or more" if feature.upper < 0 else f" to {feature.upper}"
+    count = f"{feature.lower}{most}" if feature.upper != feature.lower else f"{feature.lower}"
+    return f"{count} {kind.name} in {feature.name}"
+
+
+def _kind_words(kind: DataType | Enumeration) -> str:
+    """Return what people call a type of values."""
+    if isinstance(kind, Enumeration):
+        return f"one of {', '.join(kind.names)}"
+    return _KINDS.get(kind.python, f"a value of the type {kind.name}")
 
 
 def _owner(element: Element) -> str:

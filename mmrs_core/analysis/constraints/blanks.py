@@ -20,7 +20,7 @@ def _empty(root: Element, models: ModelSet) -> Iterator[Finding]:
     for element in (root, *descendants(root)):
         for feature in () if isinstance(element, Unknown) else metaclass_of(element).features:
             if _names(feature) and is_set(element, feature.name) and not text(element, feature.name).strip():
-                yield finding(element, f"{feature.name} is empty, but is needed to tell what is what")
+                yield finding(element, f"{feature.name} is empty, but others go by it")
 
 
 def _names(feature: Feature) -> bool:
@@ -30,7 +30,7 @@ def _names(feature: Feature) -> bool:
     return one and isinstance(kind, DataType) and kind.python is str and feature.name not in MAY_BE_EMPTY
 
 
-_GIVE = "give what it is called"
+_GIVE = "write a name or identifier with something to see"
 
 CONSTRAINTS = (
     Constraint("MML013", "No required name of a mission is empty.", (MISSION, "Mission"), _empty, _GIVE),

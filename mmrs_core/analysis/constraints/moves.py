@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from mmrs_core.analysis.constraints.findings import BEHAVIOUR, called, finding
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.element import Element, is_kind, path_of
+from mmrs_core.languages.element import Element, is_kind, label_of, path_of
 from mmrs_core.languages.grounding.values import child, children, text
 from mmrs_core.languages.modelset import ModelSet
 
@@ -150,7 +150,7 @@ def _for_ever(robot: Element, models: ModelSet) -> Iterator[Finding]:
             current = child(onward[current], "to")
         if current is not None and current in way:
             circle = tuple(way)[tuple(way).index(current) :]
-            names = " → ".join(path_of(each) for each in (*circle, current))
+            names = " → ".join(label_of(each) or path_of(each) for each in (*circle, current))
             yield finding(current, f"goes round for ever: {names}")
         done.update(way)
 

@@ -112,7 +112,11 @@ CONSTRAINTS = (
         Severity.WARNING,
     ),
     Constraint(
-        "RL002", "Devices of a robot have different identifiers.", (ROBOT, "Robot"), _devices, _RENAME
+        "RL002",
+        "Devices of a robot have different identifiers.",
+        (ROBOT, "Robot"),
+        _devices,
+        "give each its own identifier",
     ),
     Constraint("RL003", "Actions of a device have different names.", (ROBOT, "Device"), _actions, _RENAME),
     Constraint(
@@ -120,7 +124,7 @@ CONSTRAINTS = (
         "Parameters of an action have different keys.",
         (ROBOT, "SupportedAction"),
         _parameters,
-        _RENAME,
+        "give each its own key",
     ),
     Constraint(
         "RL005",

@@ -123,7 +123,7 @@ CONSTRAINTS = (
         "Wind, current and sunshine are not negative.",
         (CONTEXT, "Environment"),
         _at_least_zero("windSpeed", "currentSpeed", "irradiance"),
-        "turn the direction by 180 degrees instead",
+        "give wind and current a direction turned by 180 degrees instead; without sun the irradiance is 0",
     ),
     _constraint(
         "CTX012",

@@ -88,7 +88,8 @@ def _local(
     if root is None or not found:
         return None
     if frame.latitude is None or frame.longitude is None:
-        message = f"is geographic, as {len(found)} here are, but the mission is a local one"
+        others = f", as are {len(found) - 1} more" if len(found) > 1 else ""
+        message = f"is geographic{others}, but the mission is a local one"
         hint = "give the mission a geographic origin, or make all coordinates relative"
         faults.append(fault(found[0], message, hint))
         return None

@@ -7,7 +7,7 @@ from typing import TypeAlias, get_args
 
 from mmrs_core.diagnostics import Diagnostic, Severity
 from mmrs_core.languages.codes import explained
-from mmrs_core.languages.element import Element, descendants, is_kind, place_of
+from mmrs_core.languages.element import Element, Unknown, descendants, is_kind, label_of, path_of, place_of
 from mmrs_core.languages.grounding.values import child, children, literal, number, text
 from mmrs_core.scene import AltitudeReference, Frame
 
@@ -152,5 +152,12 @@ def origin_faults(model: Element, origin: Element, frame: Frame) -> Iterator[str
 
 def fault(element: Element, message: str, hint: str = "", code: str = NOWHERE) -> Diagnostic:
     """Return an error of an element, which the message does not name yet."""
-    place = place_of(element)
-    return explained(Diagnostic(code, Severity.ERROR, f"{place.path} {message}", place, hint))
+    words = f"{_called(element)} {message}"
+    return explained(Diagnostic(code, Severity.ERROR, words, place_of(element), hint))
+
+
+def _called(element: Element) -> str:
+    """Return class and name of an element, or where it stands in its model if it has no name."""
+    kind = "element" if isinstance(element, Unknown) else type(element).__name__
+    label = label_of(element)
+    return f"{kind} {label!r}" if label else f"{kind} {path_of(element).lstrip('/')}".rstrip()

@@ -146,7 +146,9 @@ def _incomplete(models: ModelSet) -> Iterator[Diagnostic]:
     for root in (root for root in roots if root is not None):
         for element in (root, *descendants(root)):
             if isinstance(element, Unknown):
-                yield fault(element, "needs a plug-in that is not installed", code=NOT_INSTALLED)
+                language, _, kind = element._mmrs_type.rpartition("#")
+                words = f"is a {kind} of {language or 'a language'}, whose plug-in is not installed"
+                yield fault(element, words, code=NOT_INSTALLED)
             else:
                 yield from _missing(element)
 
@@ -158,9 +160,14 @@ def _missing(element: Element) -> Iterator[Diagnostic]:
         found = value(element, feature.name)
         count = len(found) if isinstance(found, Sized) and feature.many else int(found is not None)
         if isinstance(feature.type, Enumeration) and not feature.many and not feature.type.accepts(found):
-            yield fault(element, f"has the {feature.name} {found!r}, which is none", code=MISSING)
+            yield fault(
+                element,
+                f"has the {feature.name} {found!r}, which is none of {', '.join(feature.type.names)}",
+                code=MISSING,
+            )
         elif count < feature.lower:
-            yield fault(element, f"has {count} {feature.name}, {feature.lower} are needed", code=MISSING)
+            least = f", at least {feature.lower} are needed" if feature.lower > 1 else ""
+            yield fault(element, f"has {count or 'no'} {feature.name}{least}", code=MISSING)
 
 
 def _misdirected(mission: Element) -> Iterator[Diagnostic]:

@@ -32,7 +32,7 @@ def test_latitude_beyond_the_pole_is_refused(registry):
 
 def test_coordinate_that_cannot_be_projected_is_refused_by_name(registry):
     found = faults(simple(registry, geo(0.0, 0.0), point=geo(0.0, 90.0)))
-    assert found[0].startswith("/tasks[0]/point cannot be placed")
+    assert found[0].startswith("GeoCoordinate tasks[0]/point cannot be placed")
 
 
 @pytest.mark.parametrize("latitude", [-77.8, 0.0, 42.37, 69.6])

@@ -38,7 +38,9 @@ def test_unknown_robot_type_is_refused_with_the_known_ones(registry):
 def test_literal_that_does_not_exist_is_refused(registry):
     made = simple(registry, geo())
     made.team.robots[0].travelMode = "RECKLESS"
-    assert faults(made) == ["/team/robots[0] has the travelMode 'RECKLESS', which is none"]
+    assert faults(made) == [
+        "Robot 'r0' has the travelMode 'RECKLESS', which is none of SAFE, NORMAL, AGGRESSIVE"
+    ]
 
 
 def test_robot_type_sorts_capabilities_and_converts_batteries():

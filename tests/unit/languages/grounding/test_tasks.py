@@ -65,5 +65,5 @@ def test_missing_values_are_refused_before_they_are_missed(registry):
     made.team.robots[0].home = None
     made.tasks[0].point = mission.GeoCoordinate(latitude=1.0)
     found = faults(made)
-    assert "/team/robots[0] has 0 home, 1 are needed" in found
-    assert "/tasks[0]/point has 0 longitude, 1 are needed" in found
+    assert "Robot 'r0' has no home" in found
+    assert "GeoCoordinate tasks[0]/point has no longitude" in found
