@@ -5,9 +5,9 @@ out, ``ardupilot.py`` says it in MAVLink. ``main.py`` runs all robots, ``session
 from the opening of its link to its end, and ``options.py`` is the command line.
 """
 
+from .desk import Condition
 from .main import main
 from .objects import Locator, where_expected
-from .pilot import Condition
 from .program import (
     Choose,
     Geographic,

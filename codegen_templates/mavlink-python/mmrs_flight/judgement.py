@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from .desk import Condition
 from .objects import Locator
-from .pilot import Condition
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 
 

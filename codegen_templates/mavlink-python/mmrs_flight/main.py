@@ -8,10 +8,10 @@ import threading
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 
+from .desk import Condition
 from .judgement import Judgement
 from .objects import Locator
 from .options import Options, options_of, parser_for
-from .pilot import Condition
 from .program import Robot
 from .session import FAILED, INTERRUPTED, LINK, OK, Shared, run_robot
 from .slots import LocalSlots, Slots

@@ -83,6 +83,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
         description=f"Flies {', '.join(ascii(robot.id) for robot in robots)}.",
         epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped.",
     )
+    _add_reach(parser)
     add = parser.add_argument
     add("--log", type=Path, default=Path("logs"), help="folder for the logs; must not hold any yet")
     add("--run", default="run-0", help="identifier of this run, in the logs")
@@ -92,7 +93,6 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--no-fence", action="store_true", help="do not upload the fence")
     add("--acceptance", type=float, default=0.5, help="metres from a place that count as there")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
-    _add_reach(parser)
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")

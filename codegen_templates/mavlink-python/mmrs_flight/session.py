@@ -9,13 +9,14 @@ from pathlib import Path
 from traceback import format_exception
 
 from .ardupilot import MavlinkVehicle
+from .desk import Desk
 from .dry import DryVehicle
 from .faults import CRASHED, LINK_LOST, STOPPED, Fault
 from .judgement import Judgement
 from .link import Link
 from .log import Log, Records
 from .options import Options
-from .pilot import Desk, Pilot
+from .pilot import Pilot
 from .ports import Port, open_port
 from .program import Robot
 from .responses import policy_for, respond
@@ -89,7 +90,7 @@ class Session:
         say(f"{self.robot.id!a}: {fault.event}: {fault}; response: {response}")
         self.watch.relax()
         try:
-            self.pilot.fail(fault.event)
+            self.pilot.journal.fail(fault.event)
         except Fault as error:
             say(f"{self.robot.id!a}: the fault is not in the log: {error}")
         self.desk.slots.leave(self.robot.id)
@@ -107,14 +108,14 @@ class Session:
     def _tell_garbled(self, frames: int) -> None:
         say(f"{self.robot.id!a}: {frames} frames from the link could not be read")
         try:
-            self.pilot.record("counted", "unreadable frames", {"frames": frames})
+            self.pilot.journal.record("counted", "unreadable frames", {"frames": frames})
         except Fault as error:
             say(f"{self.robot.id!a}: {error}")
 
     def _response_to(self, fault: Fault) -> str:
         if fault.event == STOPPED:
             return self.on_stop.upper()
-        return policy_for(fault.event, self.robot, self.pilot.policies).response
+        return policy_for(fault.event, self.robot, self.pilot.waits.policies).response
 
 
 def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
@@ -136,7 +137,7 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
     link = None if options.dry else _link(robot, options, watch, stack)
     vehicle = _vehicle(robot, options, watch, link)
     pilot = Pilot(robot, vehicle, desk)
-    watch.current = lambda: pilot.policies
+    watch.current = lambda: pilot.waits.policies
     return Session(robot, vehicle, link, watch, desk, pilot, options.on_stop)
 
 

@@ -1,0 +1,36 @@
+"""What a robot works with, beside its program and its vehicle."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from .clock import Clock
+from .log import Log, Records
+from .objects import Locator
+from .slots import Slots
+from .vehicle import State
+
+Condition = Callable[[State], bool]
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Desk:
+    """What a robot works with.
+
+    Attributes:
+        conditions: by identifier; locators: by description of the object.
+        stop: set when the robot is to stop.
+        say: tells people what goes on.
+    """
+
+    clock: Clock
+    slots: Slots
+    log: Log
+    records: Records
+    conditions: Mapping[str, Condition]
+    locators: Mapping[str, Locator]
+    stop: threading.Event
+    say: Say

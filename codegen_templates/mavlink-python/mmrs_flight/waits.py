@@ -1,0 +1,120 @@
+"""Waits for other robots: for slots to be set, and for notifications to be answered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+from .desk import Desk
+from .faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
+from .journal import Journal
+from .program import Choose, Policy, Robot, Then
+from .responses import CONTINUE, policy_for
+from .vehicle import Vehicle
+
+GLANCE_SECONDS = 0.1
+PEER_SECONDS = 30.0
+
+
+class Waits:
+    """Waits, and knows how long a robot bears what goes wrong meanwhile.
+
+    Attributes:
+        policies: of the wait that the robot is in; they go before the robot's own.
+    """
+
+    def __init__(self, robot: Robot, vehicle: Vehicle, desk: Desk, journal: Journal) -> None:
+        """Wait for nothing yet."""
+        self.policies: tuple[Policy, ...] = ()
+        self._robot = robot
+        self._vehicle = vehicle
+        self._desk = desk
+        self._journal = journal
+
+    def leave(self, then: Then | Choose) -> str:
+        """Return the move that comes next, once the robot may go on to it.
+
+        Raises:
+            Fault: it may not, and its policies say that this ends the program.
+        """
+        self._follow(then.policies)
+        if isinstance(then, Choose):
+            following = self._choose(then)
+        else:
+            self._await(then.waits, lambda lamport: self._journal.write("take", then.move, "", lamport))
+            following = then.move
+        self._follow(())
+        return following
+
+    def delivery(self) -> Callable[[tuple[str, ...]], None]:
+        """Return what is to be called with the robots that have not answered a notification yet."""
+        begun = self._desk.clock.now()
+
+        def check(silent: tuple[str, ...]) -> None:
+            self._vehicle.rest(0.0)
+            if self._desk.clock.now() - begun > self._patience(PEER_LOST, PEER_SECONDS):
+                shown = ", ".join(map(ascii, silent))
+                self.raise_unless_carried_on(Fault(PEER_LOST, f"no answer from {shown}"))
+
+        return check
+
+    def raise_unless_carried_on(self, fault: Fault) -> None:
+        """Raise a fault, or only say it where a policy has the robot carry on."""
+        if policy_for(fault.event, self._robot, self.policies).response != CONTINUE:
+            raise fault
+        self._desk.say(f"{self._robot.id!a} carries on although {fault}")
+
+    def _follow(self, policies: tuple[Policy, ...]) -> None:
+        """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
+        before = policy_for(LINK_LOST, self._robot, self.policies).response
+        after = policy_for(LINK_LOST, self._robot, policies).response
+        self.policies = policies
+        if after != before:
+            self._vehicle.answer_lost_link(after)
+
+    def _choose(self, then: Choose) -> str:
+        self._await(then.waits, None)
+        try:
+            holds = bool(self._desk.conditions[then.condition](self._vehicle.state()))
+        except Exception as error:
+            raise Fault(CONDITION_FAILED, f"condition {then.condition!a} fails: {error!r}") from error
+        chosen = "true" if holds else "false"
+        self._await(then.waits, lambda lamport: self._journal.write("choose", chosen, "", lamport))
+        return then.move if holds else then.otherwise
+
+    def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
+        slots, clock = self._desk.slots, self._desk.clock
+        kept = record if record is not None else (lambda lamport: None)
+        begun = alone = clock.now()
+        told = False
+        while not slots.take(self._robot.id, names, kept):
+            if not told:
+                self._desk.say(f"{self._robot.id!a} waits for {', '.join(map(ascii, names))}")
+                told = True
+            if not self._orphaned(names):
+                alone = clock.now()
+            self._check(names, begun, alone)
+            slots.await_change(GLANCE_SECONDS)
+            self._vehicle.rest(0.0)
+
+    def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
+        if self._desk.stop.is_set():
+            raise Stopped()
+        now, shown = self._desk.clock.now(), ", ".join(map(ascii, names))
+        limit = self._patience(WAIT_TOO_LONG, inf)
+        if now - begun > limit:
+            self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {shown}"))
+        if now - alone > self._patience(PEER_LOST, PEER_SECONDS):
+            self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
+
+    def _orphaned(self, names: tuple[str, ...]) -> bool:
+        slots, senders = self._desk.slots, dict(self._robot.senders)
+        for name in names:
+            alone = all(slots.lost((sender,)) for sender in senders.get(name, ()))
+            if alone and not slots.take(self._robot.id, (name,), lambda lamport: None):
+                return True
+        return False
+
+    def _patience(self, event: str, usual: float) -> float:
+        policy = policy_for(event, self._robot, self.policies)
+        return usual if policy.after is None else policy.after
