@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -52,34 +53,36 @@ def convert(
     """
     from mmrs_core.cli.journey import Workshop
 
-    workshop = Workshop(settings_of(call))
+    asked = _Asked(Workshop(settings_of(call)), to, tuple(metamodel or ()), schema_location, force, json)
     if output is not None:
-        return _together(workshop, files, output, to, metamodel or (), schema_location, force, json)
+        return _together(asked, files, output)
     if len(files) > 2:
         raise typer.BadParameter("several files are converted together by -o DIR, which says where to")
-    target = files[1] if len(files) == 2 else None
-    return _alone(workshop, files[0], target, to, metamodel or (), schema_location, force, json)
+    return _alone(asked, files[0], files[1] if len(files) == 2 else None)
 
 
-def _together(
-    workshop: Workshop,
-    given: Sequence[Path],
-    directory: Path,
-    to: Form | None,
-    metamodels: Sequence[Path],
-    exported: Path | None,
-    force: bool,
-    json: bool,
-) -> int:
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What holds for all files."""
+
+    workshop: Workshop
+    to: Form | None
+    metamodels: tuple[Path, ...]
+    exported: Path | None
+    force: bool
+    json: bool
+
+
+def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
     from mmrs_core.cli.conversion import converted_together, refuse_existing, targets_in
     from mmrs_core.cli.replacing import replace_files
 
-    targets = targets_in(directory, given, to)
-    made, faults = converted_together(workshop, targets, metamodels, exported)
+    targets = targets_in(directory, given, asked.to)
+    made, faults = converted_together(asked.workshop, targets, asked.metamodels, asked.exported)
     report(faults)
-    refuse_existing(list(targets.values()), force)
+    refuse_existing(list(targets.values()), asked.force)
     replace_files({each.target: each.text for each in made})
-    if json:
+    if asked.json:
         say_json({"files": [_as_json(each) for each in made], "diagnostics": faults})
         return 0
     for each in made:
@@ -99,37 +102,28 @@ def _as_json(made: Converted) -> dict[str, object]:
     }
 
 
-def _alone(
-    workshop: Workshop,
-    source: Path,
-    target: Path | None,
-    to: Form | None,
-    metamodels: Sequence[Path],
-    exported: Path | None,
-    force: bool,
-    json: bool,
-) -> int:
+def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     from mmrs_core.cli.any_model import faults_in, read_foreign
     from mmrs_core.cli.conversion import refuse_existing, text_of
     from mmrs_core.cli.protection import files_of, refuse_inputs
     from mmrs_core.languages.writing import replace_file
 
-    found = read_foreign(workshop, source, metamodels)
+    found = read_foreign(asked.workshop, source, asked.metamodels)
     faults = tuple(faults_in(found))
     if any(map(is_mistake, faults)):
         raise InvalidModelError(f"{source}: not converted, since something of it would be lost", faults)
     report(faults)
-    form = to or (form_of(target) if target is not None else other_form(source))
+    form = asked.to or (form_of(target) if target is not None else other_form(source))
     if target is not None:
         refuse_inputs([target], files_of([found.model]))
-        refuse_existing([target], force)
-    text = text_of(found.model.roots, found.registry, source, target or source, form, exported)
+        refuse_existing([target], asked.force)
+    text = text_of(found.model.roots, found.registry, source, target or source, form, asked.exported)
     count = sum(1 for _ in found.model.elements())
     if target is None:
         say_file(text)
         return 0
     replace_file(target, text)
-    if json:
+    if asked.json:
         say_json({"file": target, "form": form.value, "elements": count, "diagnostics": faults})
     else:
         say(f"written: {target} ({counted(count, 'element')})")
