@@ -68,6 +68,11 @@ EDITS: dict[str, tuple[str, str, str]] = {
         f'eType="{ECORE}EDouble"',
         "incompatible",
     ),
+    "elements must differ by a key": (
+        'name="keepers" upperBound="-1"',
+        'name="keepers" upperBound="-1" eKeys="#//Keeper/badge"',
+        "incompatible",
+    ),
     "a class becomes abstract": ('name="Otter"', 'name="Otter" abstract="true"', "incompatible"),
     "a class is not abstract any more": ('name="Swimmer" abstract="true"', 'name="Swimmer"', "compatible"),
     "a class has a supertype less": ("#//Animal #//Swimmer", "#//Animal", "incompatible"),

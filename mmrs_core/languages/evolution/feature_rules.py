@@ -167,6 +167,8 @@ def _flags(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
         yield refused(what, "identifies its element now", "older models may have it twice")
     if new.unique and not old.unique and new.many:
         yield refused(what, "holds a value only once now", "older models may hold one twice")
+    if new.many and new.keys and not (old.keys and set(old.keys) <= set(new.keys)):
+        yield refused(what, f"tells its elements apart by {', '.join(new.keys)} now", "two may be alike")
     if old.stored and not new.stored:
         yield changed(what, "is not written any more", Verdict.MEANING, "it is lost when a model is saved")
     if old.unsettable and not new.unsettable:
