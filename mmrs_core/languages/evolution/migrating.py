@@ -78,12 +78,18 @@ class Migrating:
             final = self._final(node, held_by)
             if final is not None:
                 self._finals[id(node)] = final
+            is_foreign = self._is_foreign(node)
             for key, value in list(node.members.items()):
                 if key.startswith("$") and not key.startswith("$$"):
                     continue
                 feature = self._feature(node, final, key)
-                node.members[key] = arranged = _arranged(value, feature)
+                node.members[key] = arranged = value if is_foreign else _arranged(value, feature)
                 pending += _addressed(arranged, feature, f"{address}/@{key}")
+
+    def _is_foreign(self, node: Node) -> bool:
+        """Return whether an object is of a language that nobody knows: it, and what is in it, stays as it is."""
+        ns_uri, _ = self._kind(node)
+        return not self._registry.has(ns_uri) and ns_uri not in self._registry.chains
 
     def _final(self, node: Node, held_by: Feature | None) -> Metaclass | None:
         kind = self._kind(node)

@@ -32,6 +32,8 @@ _HELPED_FAULTS = 200
 """Beyond this many faults nobody reads which name was probably meant, and looking for it takes time."""
 _MOST_WORDS = 500
 """References that wait as one text."""
+_A_TYPE = "a:type"
+"""Stands between two of them where the first would be taken for the type of the second, as XMI has it."""
 
 
 class Way(NamedTuple):
@@ -231,9 +233,11 @@ class Members:
             if text is None:
                 self._no_link(element, feature, line)
                 continue
-            if words and (at != place or len(words) >= _MOST_WORDS or _is_type(words[-1], text)):
+            if at != place or len(words) >= _MOST_WORDS:
                 self._wait(element, feature, words, place)
                 words.clear()
+            if words and _is_type(words[-1], text):
+                words.append(_A_TYPE)
             place = at
             words.append(text)
         self._wait(element, feature, words, place)
@@ -280,5 +284,5 @@ class Members:
 
 
 def _is_type(word: str, following: str) -> bool:
-    """Return whether the first of two words in one text may be taken for a type in front of a reference."""
-    return ":" in word and "#" in following
+    """Return whether a reference that ends a text would be taken for the type of the one that follows."""
+    return ":" in word and "#" in following.partition(" ")[0]
