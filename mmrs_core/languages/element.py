@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 from mmrs_core.diagnostics import Place
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.naming import nearest
+
+_HIDDEN_STEP = re.compile(r"/@([^./\[]+)(?:\.([0-9]+))?")
 
 
 class Source:
@@ -121,14 +124,34 @@ class Unknown(Element):
         _mmrs_xml: its text, from the opening bracket to the closing one.
         _mmrs_scope: the prefixes that were in scope there.
         _mmrs_type: what it claims to be, as ``nsURI#Name``.
+        _mmrs_links: the paths that stand in its text, with the elements of its file that they lead to; None
+            for none.
     """
 
-    __slots__ = ("_mmrs_scope", "_mmrs_type", "_mmrs_xml")
+    __slots__ = ("_mmrs_links", "_mmrs_scope", "_mmrs_type", "_mmrs_xml")
 
     if TYPE_CHECKING:
+        _mmrs_links: tuple[tuple[str, Element], ...] | None
         _mmrs_scope: Mapping[str, str]
         _mmrs_type: str
         _mmrs_xml: str
+
+
+class Hidden(Unknown):
+    """What a reference leads to inside an element whose metamodel is not installed; nobody can look there.
+
+    It is in no feature of any element, and says nothing but how files refer to it.
+
+    Attributes:
+        _mmrs_outer: the element it stands in.
+        _mmrs_rest: the way to it from there, such as ``/@point``; or its identifier, good from anywhere.
+    """
+
+    __slots__ = ("_mmrs_outer", "_mmrs_rest")
+
+    if TYPE_CHECKING:
+        _mmrs_outer: Unknown
+        _mmrs_rest: str
 
 
 def metaclass_of(element: Element | type[Element]) -> Metaclass:
@@ -161,6 +184,8 @@ def containing_feature(element: Element) -> Feature | None:
 
 def root_of(element: Element) -> Element:
     """Return the outermost container; the element itself if it has none."""
+    if isinstance(element, Hidden):
+        element = element._mmrs_outer
     while (container := element._mmrs_container) is not None:
         element = container
     return element
@@ -252,6 +277,9 @@ def path_of(element: Element) -> str:
 
     Where its file has several roots, their number comes first: ``/1/shell[0]``.
     """
+    if isinstance(element, Hidden):
+        way = _HIDDEN_STEP.sub(_as_step, element._mmrs_rest)
+        return f"{path_of(element._mmrs_outer).rstrip('/')}{way if way.startswith('/') else f'#{way}'}"
     steps: list[str] = []
     while (container := element._mmrs_container) is not None:
         feature = element._mmrs_feature
@@ -259,6 +287,10 @@ def path_of(element: Element) -> str:
         steps.append(f"/{feature.name}{_index(container, feature, element)}")
         element = container
     return f"{_number_of(element)}{''.join(reversed(steps))}" or "/"
+
+
+def _as_step(step: re.Match[str]) -> str:
+    return f"/{step[1]}" if step[2] is None else f"/{step[1]}[{step[2]}]"
 
 
 def _number_of(root: Element) -> str:

@@ -35,8 +35,8 @@ def stem_of(ns_uri: str) -> str:
     return match[1] if match else ns_uri
 
 
-def hint_for(ns_uri: str, registry: Registry) -> str:
-    """Return what to do about a metamodel that a model needs and that is not installed.
+def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
+    """Return what to do about a metamodel that a model needs and that is not installed, and what was `kept`.
 
     The hint names another version that is installed, a metamodel of nearly the same name, or the plug-in
     that brings it, by its distribution where that is known.
@@ -46,10 +46,10 @@ def hint_for(ns_uri: str, registry: Registry) -> str:
     others = [known for known in installed if stem_of(known) == stem]
     if others:
         known = " and ".join(others)
-        return f"{known} is installed, but no migration leads there from this version; {_KEPT}"
+        return f"{known} is installed, but no migration leads there from this version; {kept}"
     distribution = DISTRIBUTIONS.get(stem)
     if distribution:
-        return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {_KEPT}"
+        return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {kept}"
     guess = typo_of(ns_uri, installed)
-    missing = f"a plug-in is missing: install the one that brings {ns_uri}; {_KEPT}"
+    missing = f"a plug-in is missing: install the one that brings {ns_uri}; {kept}"
     return f"{guess} else {missing}" if guess else missing

@@ -75,7 +75,7 @@ class Reading:
         with collector_at_rest():
             while self._unresolved:
                 draft = self._unresolved.pop(0)
-                doubled.append((draft, resolve(draft, self.open, self._root)))
+                doubled.append((draft, resolve(draft, self.open, self._root, self._registry)))
             for draft, references in doubled:
                 tell_other_ends(draft, references)
 

@@ -12,7 +12,7 @@ from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.comparison.features import Paths, address_of, features_of, raw_text, said_by
 from mmrs_core.languages.comparison.matching import Matching
 from mmrs_core.languages.comparison.traits import traits_of, values_in
-from mmrs_core.languages.element import Element, containing_feature, held
+from mmrs_core.languages.element import Element, Hidden, containing_feature, held
 from mmrs_core.languages.metaclass import Feature
 
 
@@ -137,6 +137,8 @@ class _Comparison:
         return tuple(self._target(value) for value in _elements(held(element, feature))) or None
 
     def _target(self, target: Element) -> str:
+        if isinstance(target, Hidden):
+            return f"{self._target(target._mmrs_outer)} {target._mmrs_rest}"
         if id(target) in self._theirs:
             return self._new.of(target)
         if id(target) not in self._ours:

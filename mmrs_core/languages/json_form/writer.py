@@ -75,6 +75,7 @@ class JsonWriter:
 
     def _element(self, element: Element, feature: Feature | None, depth: int, jobs: list[_Piece]) -> None:
         if isinstance(element, Unknown):
+            self._addresses.refuse_strays(element)
             node = stated(element, lambda name: self._short(name, element._mmrs_scope))
             self._pieces.append(formatted(node, depth))
             return

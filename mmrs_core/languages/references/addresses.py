@@ -6,9 +6,20 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from mmrs_core.languages.element import Element, Source, held, holds, metaclass_of, root_of
+from mmrs_core.languages.element import (
+    Element,
+    Hidden,
+    Source,
+    Unknown,
+    held,
+    holds,
+    metaclass_of,
+    path_of,
+    root_of,
+)
 from mmrs_core.languages.links import LinkedList, raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.hidden import strayed
 from mmrs_core.languages.references.hrefs import relative_href
 
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
@@ -26,7 +37,9 @@ class Addresses:
         self._entered: dict[int, str] = {}
 
     def stands_here(self, element: Element) -> bool:
-        """Return whether the document holds the element."""
+        """Return whether the document holds the element, or the unknown one around it."""
+        if isinstance(element, Hidden):
+            element = element._mmrs_outer
         return id(element) in self._fragments()
 
     def stands_elsewhere(self, element: Element) -> bool:
@@ -48,7 +61,25 @@ class Addresses:
 
     def fragment(self, element: Element) -> str:
         """Return the fragment of an element of this document."""
+        if isinstance(element, Hidden):
+            return _inside(self.fragment(element._mmrs_outer), element)
         return self._fragments()[id(element)]
+
+    def refuse_strays(self, element: Unknown) -> None:
+        """Do nothing, unless the text of an unknown element refers to others that stand elsewhere now.
+
+        Raises:
+            ValueError: if it does: the text is kept as it was read, and would refer to other elements.
+        """
+        path = strayed(element, self._roots)
+        if path:
+            name = element._mmrs_type.rpartition("#")[2]
+            message = (
+                f"{path_of(element)}: the {name} is kept as it was read, and {path} in it leads elsewhere now"
+            )
+            raise ValueError(
+                f"{message}; install what brings {element._mmrs_type}, or keep the elements in place"
+            )
 
     def identifier(self, element: Element) -> str | None:
         """Return the ``xmi:id`` that its file gave to an element."""
@@ -63,6 +94,9 @@ class Addresses:
         """
         if self.stands_here(element):
             return f"#{self.fragment(element)}"
+        if isinstance(element, Hidden):
+            document, _, fragment = self.href(element._mmrs_outer).rpartition("#")
+            return f"{document}#{_inside(fragment, element)}"
         top = root_of(element)
         for candidate in _upwards(element):
             if candidate._mmrs_source is not None and candidate in candidate._mmrs_source.roots:
@@ -111,6 +145,12 @@ class Addresses:
                     if isinstance(value, Element) and not self.stands_elsewhere(value):
                         step = f"/@{feature.name}.{index}" if feature.many else f"/@{feature.name}"
                         pending.append((value, fragment + step))
+
+
+def _inside(outer: str, element: Hidden) -> str:
+    """Return the fragment of what stands inside an unknown element, given that of the element."""
+    rest = element._mmrs_rest
+    return f"{outer}{rest}" if rest.startswith("/") else rest
 
 
 def _own_id(element: Element) -> str | None:

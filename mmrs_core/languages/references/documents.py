@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Source, path_of
+from mmrs_core.languages.element import Element, Source, Unknown, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
@@ -22,12 +22,16 @@ _KEY = re.compile(r"""(?P<name>\w+)=(?:'(?P<single>[^']*)'|"(?P<double>[^"]*)"|(
 
 @dataclass(slots=True)
 class Pending:
-    """A reference that is still a text: in ``feature`` of ``element``, on that line."""
+    """A reference that is still a text: in ``feature`` of ``element``, on that line.
+
+    What it claims to lead to is ``nsURI#Name``, or empty if it says nothing about that.
+    """
 
     element: Element
     feature: Feature
     text: str
     line: int
+    claimed: str = ""
 
 
 Quick = tuple[Element, Feature, str, int]
@@ -46,6 +50,7 @@ class Draft:
     broken: set[tuple[Element, str]] = field(default_factory=set)
     found: dict[str, Element] = field(default_factory=dict)
     lists: dict[str, list[object]] = field(default_factory=dict)
+    said_within: dict[str, Unknown] | None = None
     _read_below: list[int] = field(default_factory=list)
 
     def fault(
@@ -127,6 +132,19 @@ class Draft:
         if element is not None:
             self.found[fragment] = element
         return element
+
+    def entered(self, fragment: str) -> tuple[Unknown | None, str]:
+        """Return the unknown element that a path leads into, and the rest of the path; None if into none."""
+        _, root, *steps = fragment.split("/")
+        element, behind = self._root(root), len(root) + 1
+        for step in steps:
+            if isinstance(element, Unknown):
+                return element, fragment[behind:]
+            element = self._step(element, step)
+            if element is None:
+                break
+            behind += len(step) + 1
+        return None, ""
 
     def _root(self, index: str) -> Element | None:
         if not _INDEX.fullmatch(index):

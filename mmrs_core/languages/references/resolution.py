@@ -10,9 +10,12 @@ from mmrs_core.languages.datatypes import shown
 from mmrs_core.languages.element import Element, Unknown, descendants, label_of
 from mmrs_core.languages.links import raw, store
 from mmrs_core.languages.metaclass import Feature
+from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.references.documents import Draft, Pending, Quick
+from mmrs_core.languages.references.hidden import hidden_in, note_links
 from mmrs_core.languages.references.hrefs import linked_file
+from mmrs_core.languages.registry import Registry
 
 _HELPED_FAULTS = 20
 """Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""
@@ -20,13 +23,16 @@ _HELPED_FAULTS = 20
 Opener = Callable[[Path], Draft]
 
 
-def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pending, Element]]:
+def resolve(
+    draft: Draft, opener: Opener, root: Path | None, registry: Registry
+) -> list[tuple[Pending, Element]]:
     """Set every reference of a file; what leads nowhere becomes a fault of that file.
 
     Args:
         draft: the file; its pending references are emptied.
         opener: reads another file, or returns it when it was read before.
         root: the folder that references must not leave; None where there are no files.
+        registry: the metamodels that are installed.
 
     Returns:
         The references whose other ends are to be told, with their targets, once all files have said theirs.
@@ -35,9 +41,10 @@ def resolve(draft: Draft, opener: Opener, root: Path | None) -> list[tuple[Pendi
     doubled = []
     for reference in _left(pending, draft):
         for uri in _uris(reference.text):
-            target = _target(uri, reference, draft, opener, root)
+            target = _target(uri, reference, draft, opener, root, registry)
             if target is not None and _set(reference, target, draft):
                 doubled.append((reference, target))
+    note_links(draft)
     return doubled
 
 
@@ -81,7 +88,9 @@ def _uris(text: str) -> Iterator[str]:
             yield word
 
 
-def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None) -> Element | None:
+def _target(
+    uri: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None, registry: Registry
+) -> Element | None:
     document, _, fragment = uri.rpartition("#") if "#" in uri else ("", "", uri)
     where = draft
     if document:
@@ -90,6 +99,8 @@ def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Pa
             return None
         where = opened
     target = where.find(fragment or "/")
+    if target is None and not reference.feature.containment:
+        target = _hidden(uri, reference, draft, where, registry)
     if target is None:
         _fault(
             "XMI006",
@@ -99,6 +110,24 @@ def _target(uri: str, reference: Pending, draft: Draft, opener: Opener, root: Pa
             _hint(uri, reference.feature, draft),
         )
     return target
+
+
+def _hidden(uri: str, reference: Pending, draft: Draft, where: Draft, registry: Registry) -> Element | None:
+    """Return what stands inside an element whose language is not installed, after a fault that names it."""
+    hidden = hidden_in(where, uri.rpartition("#")[2], reference.claimed)
+    if hidden is None:
+        return None
+    ns_uri, _, name = hidden._mmrs_outer._mmrs_type.rpartition("#")
+    if not ns_uri or registry.has(
+        ns_uri
+    ):  # then the element itself is wrong, and what it would hold is not known
+        return None
+    message = (
+        f"{reference.feature.name}: leads into a {name} of {ns_uri}, which is not installed: {shown(uri)}"
+    )
+    hint = hint_for(ns_uri, registry, "the reference is kept as it is")
+    draft.fault("XMI001", message, reference.line, reference.element, hint)
+    return hidden
 
 
 def _hint(uri: str, feature: Feature, draft: Draft) -> str:

@@ -108,7 +108,7 @@ class XmiReader:
         elif (href := _value(attributes, "href")) and (
             "#" in href or not self._owns_href(feature, attributes)
         ):
-            self._refer(element, feature, href)
+            self._refer(element, feature, href, self._claim(attributes))
             self._open.append((element, metaclass, feature))
         elif _value(attributes, _NIL) in ("true", "1"):
             self._leave_blank(element, feature)
@@ -248,8 +248,13 @@ class XmiReader:
         else:
             self._value(element, feature, text)
 
-    def _refer(self, element: Element, feature: Feature, text: str) -> None:
-        self._draft.pending.append(Pending(element, feature, text, self._document.line))
+    def _claim(self, attributes: list[str]) -> str:
+        """Return the class that a link says it leads to, as ``nsURI#Name``; empty if it says none."""
+        prefix, _, name = (_value(attributes, _TYPE) or "").rpartition(":")
+        return f"{self._document.namespaces.uri(prefix) or ''}#{name}" if name else ""
+
+    def _refer(self, element: Element, feature: Feature, text: str, claimed: str = "") -> None:
+        self._draft.pending.append(Pending(element, feature, text, self._document.line, claimed))
 
     def _value(self, element: Element, feature: Feature, text: str) -> None:
         assert not isinstance(feature.type, Metaclass)  # it is an attribute

@@ -139,6 +139,7 @@ class XmiWriter:
             jobs.extend(reversed(children))
 
     def _unknown(self, element: Unknown, indent: str) -> None:
+        self._addresses.refuse_strays(element)
         self._lines.append(f"{indent}{text_of(element, self._declares)}\n")
 
     def _declares(self, prefix: str, ns_uri: str) -> bool:
@@ -243,13 +244,24 @@ class XmiWriter:
         return self._addresses.fragment(target) if self._addresses.stands_here(target) else None
 
     def _href(self, element: Element, feature: Feature, target: Element, depth: int) -> str:
-        metaclass = metaclass_of(target)
-        kind = "" if metaclass is feature.type else f' xsi:type="{self._kind(metaclass)}"'
+        kind = self._claim(target, feature)
         try:
             href = self._addresses.href(target)
         except ValueError as fault:
             raise ValueError(f"{_where(element, feature)}: {fault}") from None
         return f'{"  " * depth}<{feature.name}{kind} href="{in_attribute(href)}"/>\n'
+
+    def _claim(self, target: Element, feature: Feature) -> str:
+        """Return what a link to an element says of its class; nothing, if that is the expected one."""
+        if not isinstance(target, Unknown):
+            metaclass = metaclass_of(target)
+            return "" if metaclass is feature.type else f' xsi:type="{self._kind(metaclass)}"'
+        ns_uri, _, name = target._mmrs_type.rpartition("#")
+        if not ns_uri:
+            return ""
+        self._typed = True
+        had = next((prefix for prefix, uri in target._mmrs_scope.items() if uri == ns_uri), "")
+        return f' xsi:type="{self._prefix(ns_uri, had)}:{name}"'
 
     def _kind(self, metaclass: Metaclass) -> str:
         self._typed = True
@@ -258,11 +270,13 @@ class XmiWriter:
     def _name(self, metaclass: Metaclass) -> str:
         return f"{self._prefix(metaclass.ns_uri)}:{metaclass.name}"
 
-    def _prefix(self, ns_uri: str) -> str:
+    def _prefix(self, ns_uri: str, had: str = "") -> str:
+        """Return the prefix of a language; of one that is not installed, that which it `had` in its file."""
         known = self._prefixes.get(ns_uri)
         if known is not None:
             return known
-        wanted = self._registry.package(ns_uri).prefix or "p"
+        installed = self._registry.has(ns_uri)
+        wanted = (self._registry.package(ns_uri).prefix if installed else had) or "p"
         taken = {"xmi", "xsi", "xml", "xmlns", *self._prefixes.values()}
         prefix, number = wanted, 0
         while prefix in taken:
