@@ -11,7 +11,7 @@ from traceback import format_exception
 from .ardupilot import MavlinkVehicle
 from .desk import Desk
 from .dry import DryVehicle
-from .faults import CRASHED, LINK_LOST, STOPPED, Fault
+from .faults import CRASHED, LINK_LOST, STOPPED, TAKEN_OVER, Fault
 from .judgement import Judgement
 from .link import Link
 from .log import Log, Records
@@ -26,6 +26,7 @@ from .vehicle import Vehicle
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
+WATCH_SECONDS = 0.5
 CODES = {STOPPED: INTERRUPTED, LINK_LOST: LINK}
 
 
@@ -95,15 +96,28 @@ class Session:
             say(f"{self.robot.id!a}: the fault is not in the log: {error}")
         self.desk.slots.leave(self.robot.id)
         try:
-            watched = respond(response, fault, self.robot, self.vehicle, self.pilot.track)
+            if respond(response, fault, self.robot, self.vehicle, self.pilot.track):
+                self._watch_over()
         except Fault as error:
             say(f"{self.robot.id!a}: cannot carry out {response}: {error}; take over by hand")
             return CODES.get(error.event, FAILED)
-        if watched:
-            say(f"{self.robot.id!a}: holds; interrupt to end")
-            self.desk.stop.wait()
         say(f"{self.robot.id!a}: stopped" if fault.event == STOPPED else f"{self.robot.id!a}: ended early")
         return CODES.get(fault.event, FAILED)
+
+    def _watch_over(self) -> None:
+        """Stay with a vehicle that holds until somebody stops the program or takes over.
+
+        Raises:
+            Fault: the link is lost.
+        """
+        say(f"{self.robot.id!a}: holds; interrupt to end")
+        try:
+            while not self.desk.stop.is_set():
+                self.vehicle.rest(WATCH_SECONDS)
+        except Fault as fault:
+            if fault.event != TAKEN_OVER:
+                raise
+            say(f"{self.robot.id!a}: {fault}")
 
     def _tell_garbled(self, frames: int) -> None:
         say(f"{self.robot.id!a}: {frames} frames from the link could not be read")

@@ -134,6 +134,29 @@ def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     assert made.replayed().complaints == ()
 
 
+def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hangar):
+    made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
+    vehicles, links = hangar(made.program, silent=frozenset({2000}))
+    with made.start("fleet.py", *links) as process:
+        wait_for(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
+        vehicles["alpha"].mute()
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 5, said
+    assert "cannot carry out HOLD: the vehicle has been silent" in said
+
+
+def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
+    made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
+    vehicles, links = hangar(made.program, silent=frozenset({2000}))
+    with made.start("fleet.py", *links) as process:
+        assert any("holds; interrupt to end" in line for line in process.stderr)
+        vehicles["alpha"].autopilot.set_mode(0)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 1, said
+    assert "somebody else has taken over" in said
+    assert "cannot carry out" not in said
+
+
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
