@@ -50,7 +50,7 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
         "XMI005": Code(
             "a value that the attribute does not take",
-            "a value of the kind that the attribute takes",
+            "a value that the attribute takes: a number, a word of its list, true or false",
             "correct the value, or leave the attribute out where it is optional",
         ),
         "XMI006": Code(

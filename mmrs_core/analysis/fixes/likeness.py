@@ -16,15 +16,15 @@ def meant(name: str, known: Iterable[str]) -> str | None:
 
     >>> meant("Capture_Image", ["CaptureImage", "Capture"]), meant("dorne", ["drone", "stone"])
     ('CaptureImage', 'drone')
-    >>> meant("cat", ["car", "cut"]) is None
-    True
+    >>> meant("save", ["SAFE", "NORMAL"]), meant("cat", ["car", "cut"]) is None
+    ('SAFE', True)
     """
     choices = sorted(set(known) - {name})
     alike = [each for each in choices if _letters(each) == _letters(name)]
     allowed = 0
     while not alike and allowed < (1 if len(name) <= _SHORT else 2):
         allowed += 1
-        alike = [each for each in choices if _apart(name, each) <= allowed]
+        alike = [each for each in choices if _apart(name.casefold(), each.casefold()) <= allowed]
     return alike[0] if len(alike) == 1 and name.strip() else None
 
 

@@ -158,7 +158,7 @@ def _actions(wrong: Wrong) -> list[str]:
 FIXES = (
     Fix("XMI001", "correct the nsURI", _metamodels),
     Fix("XMI002", "correct the name of the class", _classes),
-    Fix("XMI004", "correct the name of the feature", _features),
+    Fix("XMI004", "correct the name of the attribute or part", _features),
     Fix("XMI014", "declare the prefix", _prefixes),
     Fix("MML004", "correct the name of the robot type", _named("type", _types)),
     Fix("BL035", "correct the name of the robot type", _named("typeName", _types)),

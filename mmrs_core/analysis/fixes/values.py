@@ -124,7 +124,7 @@ def _system(wrong: Wrong) -> Iterator[Edit]:
 
 FIXES = (
     Fix("XMI003", "state the class by xsi:type", _kind),
-    Fix("XMI005", "write the value as its type wants it", _value),
+    Fix("XMI005", "write the value as the attribute takes it", _value),
     Fix("MML001", "name the coordinate reference system by its EPSG code", _system),
     Fix("CTX001", "name the coordinate reference system by its EPSG code", _system),
     Fix("BL016", "name the coordinate reference system by its EPSG code", _system),
