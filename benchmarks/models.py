@@ -92,7 +92,16 @@ def subjects(folder: Path) -> dict[str, Callable[[int, Path, Path], list[str]]]:
             *(java, "-cp", path, "EmfModels", str(runs), str(model), str(out)),
             *map(str, ECORES),
         ]
-    return found | {"pyecore": python("pyecore"), "lxml": python("lxml")}
+    return found | {"pyecore": python("pyecore"), "lxml": python("lxml"), "our JSON": our_json}
+
+
+def our_json(runs: int, model: Path, out: Path) -> list[str]:
+    """Return how we are called to read and write the same model as JSON, which is made for the first call."""
+    command = [sys.executable, str(HERE / "model_subjects.py"), "ours"]
+    source = model.with_suffix(".json")
+    if not source.exists():
+        subprocess.run([*command, "1", model, source], stdout=subprocess.DEVNULL, check=True)
+    return [*command, str(runs), str(source), str(out.with_suffix(".out.json"))]
 
 
 def measured(
