@@ -92,7 +92,7 @@ class _Check:
             return
         if not feature.many:
             if feature.required and not count and feature.default is None:
-                hint = "" if feature.is_reference else feature.documentation
+                hint = "" if feature.is_reference else _in_passing(feature.documentation)
                 message = f"{_owner(element)}: {feature.name} is missing"
                 yield _fault("ECO001", element, message, hint, _wanted(feature))
         elif count < feature.lower or count > feature.upper >= 0:
@@ -253,6 +253,16 @@ def _wanted(feature: Feature) -> str:
     most = " or more" if feature.upper < 0 else f" to {feature.upper}"
     count = f"{feature.lower}{most}" if feature.upper != feature.lower else f"{feature.lower}"
     return f"{count} {kind.name} in {feature.name}"
+
+
+def _in_passing(sentence: str) -> str:
+    """Return a sentence as a part of another: without a capital, unless it is of an acronym, or a full stop.
+
+    >>> _in_passing("Height, in metres."), _in_passing("GSD of images.")
+    ('height, in metres', 'GSD of images')
+    """
+    first = sentence[:1].lower() if sentence[1:2].islower() else sentence[:1]
+    return f"{first}{sentence[1:]}".removesuffix(".")
 
 
 def _kind_words(kind: DataType | Enumeration) -> str:

@@ -28,7 +28,8 @@ def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(robot, "type")
     if name and name not in models.robots:
         known = f"known are {listed(sorted(models.robots))}"
-        yield finding(robot, f"its type {name!r} is not known", guessed(known, name, models.robots))
+        hint = guessed(known, name, models.robots) if models.robots else ""
+        yield finding(robot, f"its type {name!r} is not known", hint)
 
 
 def devices_of(robot_type: Element | None) -> Mapping[str, frozenset[str]]:

@@ -34,7 +34,7 @@ def test_a_missing_number_is_named_with_what_it_means(core, fine):
     fine.team.robots[0].home.latitude = None
     (fault,) = faults(core, fine)
     assert (fault.code, fault.message) == ("ECO001", "GeoCoordinate: latitude is missing")
-    assert fault.hint == "Geographic latitude, in degrees, north positive."
+    assert fault.hint == "geographic latitude, in degrees, north positive"
     assert fault.place.path == "/team/robots[0]/home"
 
 
