@@ -19,18 +19,20 @@ _UNSEEN = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp", "Zs"))
 def python_name(name: str, taken: Collection[str] = ()) -> str:
     """Return the attribute under which a feature of that name is reached.
 
-    Keywords get a trailing underscore, and so do names that Python or this package keeps for itself.
+    Keywords get a trailing underscore, and so do names that Python or this package keeps for itself, and
+    keywords with underscores behind them: two features of one class may be called ``from`` and ``from_``,
+    declared where neither knows of the other.
     What no identifier may hold becomes an underscore; a name already taken gets underscores until it is free.
 
-    >>> python_name("from"), python_name("shell"), python_name("__init__"), python_name("2nd-pass")
-    ('from_', 'shell', '_init___', '_2nd_pass')
+    >>> python_name("from"), python_name("from_"), python_name("__init__"), python_name("2nd-pass")
+    ('from_', 'from__', '_init___', '_2nd_pass')
     """
     result = _FOREIGN.sub("_", name) or "_"
     if result[0].isdigit():
         result = f"_{result}"
     if result.startswith("__") or result.startswith("_mmrs_"):
         result = f"_{result.lstrip('_')}_"
-    if keyword.iskeyword(result):
+    if keyword.iskeyword(result.rstrip("_")):
         result += "_"
     while result in taken:
         result += "_"
