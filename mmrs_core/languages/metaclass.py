@@ -69,7 +69,7 @@ class Feature:
         name: as in the metamodel and in files.
         attribute: the name under which Python reaches it; differs for keywords, as in ``from_``.
         lower: fewest values.
-        upper: most values, ``MANY`` (-1) for any number.
+        upper: most values, ``MANY`` (-1) for any number; what else is not above 1 means one value, as to EMF.
         type: a metaclass for a reference, else a data type or an enumeration.
         default: what it holds when it was never set; None where an unset number is no number.
         unsettable: whether "never set" differs from "set to the default".
@@ -109,7 +109,7 @@ class Feature:
 
     def __post_init__(self) -> None:
         """Work out what the reader and the writer ask of every value."""
-        object.__setattr__(self, "many", self.upper != 1)
+        object.__setattr__(self, "many", self.upper > 1 or self.upper == MANY)
         object.__setattr__(self, "required", self.lower > 0)
         absent = self.is_reference or self.many or self.default is None
         object.__setattr__(self, "nullable", not (absent or getattr(self.type, "primitive", True)))
@@ -222,6 +222,7 @@ class Package:
         provider: the distribution that brought it.
         ecore: the file it came from, or the pyecore EPackage.
         parent: nsURI of the package it stands in; empty at the top.
+        root: which of the elements at the top of its file it is, or stands in, counted from 0.
         known: the packages that its types may come from, by nsURI.
         pyecore: the EPackage made of it, once somebody asked for it.
     """
@@ -238,6 +239,7 @@ class Package:
     parent: str = ""
     known: Mapping[str, Package] = field(repr=False, default_factory=dict)
     pyecore: object = field(repr=False, default=None)
+    root: int = 0
 
     @property
     def members(self) -> Mapping[str, type[Element] | Enumeration]:

@@ -13,6 +13,7 @@ from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_ol
 from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
+from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.references.resolution import resolve, tell_other_ends
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import Document, read_bytes
@@ -31,7 +32,7 @@ class Reading:
         """
         self._registry = registry
         self._unsaved = unsaved or {}
-        self._root = root.resolve() if root is not None else None
+        self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
         self._refused: dict[Path, str] = {}
         self._unresolved: list[Draft] = []
@@ -42,7 +43,7 @@ class Reading:
         Raises:
             UnreadableError: if it is missing, not well-formed, has a DOCTYPE, is too large or too deep.
         """
-        real = path.resolve()
+        real = real_path(path)
         if real in self._refused:
             raise UnreadableError(self._refused[real])
         if real not in self._drafts:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.errors import PluginError
-from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.metaclass import Metaclass, Package
 from mmrs_core.languages.metamodels.assembly import Assembly
+from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 from mmrs_core.languages.metamodels.locating import Located, locate_all
 from mmrs_core.languages.naming import nearest
 from mmrs_core.resources import shipped
@@ -44,7 +44,7 @@ class Registry:
 
     Attributes:
         packages: in the order in which they were given, a package before those inside it.
-        everything: the same, with the part of Ecore itself that models may hold.
+        everything: the same, after Ecore itself and EMF's types of XML, as far as models may hold them.
         migrations: steps from older versions of them.
         makers: functions that readers compiled, for the next file.
     """
@@ -53,7 +53,7 @@ class Registry:
         self.everything = tuple(packages)
         self.migrations = tuple(migrations)
         self.makers: dict[tuple[object, ...], Maker | None] = {}
-        self.packages = tuple(package for package in self.everything if package.ns_uri != ECORE)
+        self.packages = tuple(package for package in self.everything if package.ns_uri not in BUILT_IN)
         self._packages = {package.ns_uri: package for package in self.everything}
         self._metaclasses: Mapping[tuple[str, str], Metaclass] = {
             metaclass.key: metaclass for package in self.everything for metaclass in package.metaclasses

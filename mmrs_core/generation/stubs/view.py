@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from mmrs_core.generation.escaping import python_literal
 from mmrs_core.generation.stubs.bases import Lineage
 from mmrs_core.generation.stubs.names import Scope, member_names
-from mmrs_core.languages.datatypes import ECORE, DataType
+from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +113,7 @@ class _Module:
     def _type(self, kind: Metaclass | DataType | Enumeration) -> str:
         if isinstance(kind, DataType):
             return self._scope.known(kind.python.__name__)
-        if kind.ns_uri == ECORE:
+        if kind.ns_uri in BUILT_IN:
             return self._scope.known("Element")
         if kind.ns_uri == self._package.ns_uri:
             return self._scope.member(self._names[kind.name])
@@ -126,5 +127,5 @@ def referred(package: Package) -> Iterable[str]:
     for metaclass in package.metaclasses:
         kinds = (*metaclass.supertypes, *(feature.type for feature in metaclass.features))
         for kind in kinds:
-            if not isinstance(kind, DataType) and kind.ns_uri not in (ECORE, package.ns_uri):
+            if not isinstance(kind, DataType) and kind.ns_uri not in (*BUILT_IN, package.ns_uri):
                 yield kind.ns_uri

@@ -10,9 +10,9 @@ from typing import Any
 from pyecore import ecore
 
 from mmrs_core.errors import InternalError
-from mmrs_core.languages.datatypes import ECORE, DataType
+from mmrs_core.languages.datatypes import ECORE, XML_TYPES, DataType
 from mmrs_core.languages.metaclass import Enumeration, Feature, Literal, Metaclass, Package
-from mmrs_core.languages.metamodels.tables import GENMODEL
+from mmrs_core.languages.metamodels.nodes import GENMODEL
 
 _OWN_ECORE = frozenset(("EStringToStringMapEntry",))
 """Classes of Ecore that pyecore has as data types only."""
@@ -37,7 +37,7 @@ def epackage_of(package: Package) -> Any:
 def eclass_of(metaclass: Metaclass) -> Any:
     """Return a metaclass as a pyecore ``EClass``, always the same object."""
     if metaclass.ns_uri == ECORE and metaclass.name not in _OWN_ECORE:
-        return ecore.EObject.eClass
+        return _of_ecore(metaclass)
     if metaclass.package is None:
         raise InternalError(f"{metaclass.name}: a metaclass without a package")
     return _classifier(epackage_of(metaclass.package), metaclass.name)
@@ -80,7 +80,7 @@ def _build(package: Package) -> None:
     for shell in shells:
         if shell.parent and shell.parent in shell.known:
             epackage_of(shell.known[shell.parent]).eSubpackages.append(shell.pyecore)
-        for metaclass in shell.metaclasses:
+        for metaclass in _made_here(shell):
             _fill(metaclass, _classifier(shell.pyecore, metaclass.name), shell)
 
 
@@ -109,11 +109,16 @@ def _shell(package: Package) -> Any:
         epackage.eClassifiers.append(_enumeration(enumeration))
     for datatype in package.datatypes:
         epackage.eClassifiers.append(ecore.EDataType(datatype.name, eType=datatype.python))
-    for metaclass in package.metaclasses:
+    for metaclass in _made_here(package):
         eclass = ecore.EClass(metaclass.name, abstract=metaclass.abstract)
         _document(eclass, metaclass.documentation)
         epackage.eClassifiers.append(eclass)
     return epackage
+
+
+def _made_here(package: Package) -> list[Metaclass]:
+    """Return the classes of a package that pyecore does not have itself."""
+    return [kind for kind in package.metaclasses if kind.ns_uri != ECORE or kind.name in _OWN_ECORE]
 
 
 def _enumeration(enumeration: Enumeration) -> Any:
@@ -187,14 +192,19 @@ def _default_text(feature: Feature) -> str | None:
 
 
 def _type(kind: Metaclass | DataType | Enumeration, package: Package) -> Any:
-    if kind.ns_uri in package.known and not (kind.ns_uri == ECORE and kind.name not in _OWN_ECORE):
+    if kind.ns_uri == ECORE and kind.name not in _OWN_ECORE:
+        return _of_ecore(kind)
+    if kind.ns_uri in package.known and not (kind.ns_uri == XML_TYPES and isinstance(kind, DataType)):
         return _classifier(package.known[kind.ns_uri].pyecore, kind.name)
-    if isinstance(kind, Metaclass):
-        return ecore.EObject.eClass
-    if kind.ns_uri == ECORE:
-        return _classifier(ecore, kind.name)
     assert isinstance(kind, DataType)  # one of EMF's types of XML, which pyecore has not
     return ecore.EDataType(kind.name, eType=kind.python, default_value=kind.primitive_default)
+
+
+def _of_ecore(kind: Metaclass | DataType | Enumeration) -> Any:
+    """Return what pyecore itself has; of types whose values live in Java only, it has few."""
+    if isinstance(kind, Metaclass):
+        return getattr(ecore, kind.name).eClass
+    return ecore.getEClassifier(kind.name) or ecore.EJavaObject
 
 
 def _document(element: Any, text: str) -> None:

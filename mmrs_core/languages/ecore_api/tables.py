@@ -8,8 +8,8 @@ from pyecore import ecore
 
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.metaclass import Literal
+from mmrs_core.languages.metamodels.nodes import GENMODEL
 from mmrs_core.languages.metamodels.tables import (
-    GENMODEL,
     ClassTable,
     DataTypeTable,
     EnumTable,
@@ -70,7 +70,7 @@ def _feature(feature: Any) -> FeatureTable:
         stored=not feature.transient,
         default=feature.defaultValueLiteral,
         opposite=f"{_uri(opposite.eContainer())}/{opposite.name}" if opposite is not None else "",
-        keys=tuple(key.name for key in keys),
+        keys=tuple(f"{_uri(key.eContainer())}/{key.name}" for key in keys),
     )
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.metaclass import Metaclass, Package
+from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 from mmrs_core.languages.metamodels.gathering import documents_of, flat, gathered
-from mmrs_core.languages.metamodels.tables import read_tables
+from mmrs_core.languages.metamodels.parsing import read_tables
 from mmrs_core.languages.registry import MetamodelSource, Registry
 
 
@@ -82,7 +82,7 @@ def _needed(sources: list[MetamodelSource], installed: Registry) -> Iterator[Met
         if not isinstance(ecore, Path):
             continue
         for document in documents_of(read_tables(ecore)):
-            if document in brought or document == ECORE or not installed.has(document):
+            if document in brought or document in BUILT_IN or not installed.has(document):
                 continue
             package = _outermost(document, installed)
             brought.add(document)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from mmrs_core.errors import PluginError
+from mmrs_core.errors import InternalError, PluginError
 from mmrs_core.languages.datatypes import ECORE, DataType, builtin_type, declared_type
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metaclass import MANY, Enumeration, Feature, Metaclass, Package
+from mmrs_core.languages.metamodels.ecore_itself import built_in
 from mmrs_core.languages.metamodels.locating import Directory, Located
-from mmrs_core.languages.metamodels.tables import MAP_ENTRY, ClassTable, FeatureTable, PackageTable
+from mmrs_core.languages.metamodels.tables import MAP_ENTRY, ClassTable, FeatureTable
 from mmrs_core.languages.naming import nearest, python_name
 
 DEEPEST_INHERITANCE = 100
@@ -17,27 +18,8 @@ MOST_FEATURES = 500_000
 """Of all classes together, inherited ones counted again in each; the largest metamodels have a tenth."""
 
 _Key = tuple[str, str]
-
-_ECORE_ITSELF = Located(
-    PackageTable(
-        ECORE,
-        "ecore",
-        "ecore",
-        classes=(
-            ClassTable(
-                "EStringToStringMapEntry",
-                features=(
-                    FeatureTable("key", f"{ECORE}#//EString", False),
-                    FeatureTable("value", f"{ECORE}#//EString", False),
-                ),
-                java_class=MAP_ENTRY,
-            ),
-        ),
-    ),
-    "core",
-    None,
-    None,
-)
+_Type = Metaclass | DataType | Enumeration
+_ANYTHING = (ECORE, "EObject")
 
 
 def _any_object() -> Metaclass:
@@ -53,9 +35,9 @@ class Assembly:
     def __init__(self, known: Iterable[Package], located: Iterable[Located]) -> None:
         """Take packages that stand already and share their classes, and those to be made."""
         packages = tuple(known)
-        self._located = tuple(located) if packages else (*located, _ECORE_ITSELF)
-        self._directory = Directory(self._located, {package.ns_uri: package.parent for package in packages})
-        self._metaclasses: dict[_Key, Metaclass] = {(ECORE, "EObject"): _any_object()}
+        self._located = tuple(located) if packages else (*located, *built_in())
+        self._directory = Directory(self._located, packages)
+        self._metaclasses: dict[_Key, Metaclass] = {}
         self._types: dict[_Key, DataType | Enumeration] = {}
         for package in packages:
             self._metaclasses |= {metaclass.key: metaclass for metaclass in package.metaclasses}
@@ -95,8 +77,11 @@ class Assembly:
                 ns_uri, kind.name, kind.java_class, kind.serializable
             )
         for table in entry.table.classes:
-            if (ns_uri, table.name) in self._tables:
+            if (ns_uri, table.name) in self._tables or (ns_uri, table.name) in self._types:
                 raise PluginError(f"{entry.provider}: {ns_uri}: class {table.name} is declared twice")
+            if (ns_uri, table.name) == _ANYTHING:
+                self._metaclasses[_ANYTHING] = _any_object()
+                continue
             self._tables[ns_uri, table.name] = (table, entry)
             self._metaclasses[ns_uri, table.name] = Metaclass(
                 ns_uri,
@@ -150,7 +135,20 @@ class Assembly:
             twice = next(feature.name for feature in features if by_name[feature.name] is not feature)
             raise PluginError(f"{entry.provider}: {metaclass.ns_uri}: {table.name} has two features {twice}")
         by_attribute = {feature.attribute: feature for feature in features}
+        if len(by_attribute) < len(features):
+            raise self._one_name(table, features, entry)
         _complete(metaclass, features=features, by_name=by_name, by_attribute=by_attribute)
+
+    def _one_name(self, table: ClassTable, features: Iterable[Feature], entry: Located) -> PluginError:
+        """Return the error for features, inherited from different classes, that Python cannot tell apart."""
+        seen: dict[str, Feature] = {}
+        for feature in features:
+            other = seen.setdefault(feature.attribute, feature)
+            if other is not feature:
+                both = f"{other.owner.name}.{other.name} and {feature.owner.name}.{feature.name}"
+                reason = f"{table.name} inherits {both}, which are both {feature.attribute} in Python"
+                return PluginError(f"{entry.provider}: {entry.table.ns_uri}: {reason}; rename one")
+        raise InternalError(f"{table.name}: no two features share an attribute")
 
     def _feature(self, owner: Metaclass, row: FeatureTable, entry: Located, attribute: str) -> Feature:
         key = self._directory.find(row.type, entry)
@@ -170,12 +168,17 @@ class Assembly:
             stored=row.stored and getattr(kind, "serializable", True),
             owner=owner,
             type=kind,
-            keys=("key",) if isinstance(kind, Metaclass) and kind.is_entry else row.keys,
+            keys=self._keys(row, kind, entry),
             default=_default(row, kind, f"{entry.provider}: {entry.table.ns_uri}: {where}"),
         )
         if row.opposite:
             self._unlinked.append((feature, row, entry))
         return feature
+
+    def _keys(self, row: FeatureTable, kind: _Type, entry: Located) -> tuple[str, ...]:
+        if isinstance(kind, Metaclass) and kind.is_entry:
+            return ("key",)
+        return tuple(self._directory.find_feature(uri, entry)[2] for uri in row.keys)
 
     def _class(self, key: _Key, entry: Located, where: str) -> Metaclass:
         if key in self._metaclasses:
@@ -190,7 +193,7 @@ class Assembly:
 
     def _no_type(self, key: _Key, entry: Located, where: str) -> str:
         ns_uri, name = key
-        if name in ("EFeatureMapEntry", "EFeatureMap"):
+        if name == "EFeatureMapEntry":
             message = "a feature map, which models here cannot hold; use a reference to a common supertype"
             return f"{entry.provider}: {entry.table.ns_uri}: {where}: {message}"
         hint = nearest(name, [known for uri, known in (*self._metaclasses, *self._types) if uri == ns_uri])
@@ -198,10 +201,8 @@ class Assembly:
         return f"{message}; {hint}" if hint else message
 
     def _join_opposites(self, feature: Feature, row: FeatureTable, entry: Located) -> None:
-        document, _, fragment = row.opposite.partition("#")
-        owner, _, name = fragment.rpartition("/")
-        key = self._directory.find(f"{document}#{owner}", entry)
-        other = self._class(key, entry, row.name).by_name.get(name)
+        ns_uri, owner, name = self._directory.find_feature(row.opposite, entry)
+        other = self._class((ns_uri, owner), entry, row.name).by_name.get(name)
         if other is None or not other.is_reference:
             raise PluginError(f"{entry.provider}: {entry.table.ns_uri}: {row.opposite}: no such reference")
         feature.join(other)
@@ -221,11 +222,12 @@ class Assembly:
             entry.ecore,
             entry.parent,
             self._packages,
+            root=table.root,
         )
 
 
-def _default(row: FeatureTable, kind: Metaclass | DataType | Enumeration, where: str) -> object:
-    if row.is_reference or isinstance(kind, Metaclass) or row.upper != 1:
+def _default(row: FeatureTable, kind: _Type, where: str) -> object:
+    if row.is_reference or isinstance(kind, Metaclass) or row.upper > 1 or row.upper == MANY:
         return None
     if row.default is not None and (row.default or kind.name == "EString"):
         try:

@@ -5,23 +5,19 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from hashlib import sha256
 from pathlib import Path
 
 from mmrs_core.errors import MmrsError
-from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.metaclass import Package
-from mmrs_core.languages.metamodels.locating import Directory, Located
-from mmrs_core.languages.metamodels.tables import PackageTable
-from mmrs_core.languages.metamodels.text import package_text
+from mmrs_core.languages.metamodels.rewriting import Rewriter
 from mmrs_core.languages.references.hrefs import relative_href
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.writing import replace_file
-from mmrs_core.languages.xmi.events import Document, read_bytes
 
-_REFERENCE = re.compile(r"""\b(eType|eSuperTypes|eOpposite|eClassifier|eKeys)=(["'])(.*?)\2""", re.DOTALL)
-
+_UNSAFE = re.compile(r"[^\w.-]+")
+_LONGEST_NAME = 60
 _RECORD = ".mmrs-export.json"
 _PROJECT = """<?xml version="1.0" encoding="UTF-8"?>
 <projectDescription>
@@ -37,17 +33,30 @@ _PROJECT = """<?xml version="1.0" encoding="UTF-8"?>
 def exported_names(registry: Registry) -> dict[str, str]:
     """Return the file name that each metamodel gets, by nsURI; packages inside others have no own file.
 
-    Models point there by what `schema_locations` returns.
+    Models point there by what `schema_locations` returns. Packages that share a file go on sharing one.
     """
     names: dict[str, str] = {}
+    files: dict[Path, str] = {}
     for package in registry.packages:
         if package.parent:
             continue
-        name = f"{package.name}.ecore"
-        if name in names.values():
-            name = f"{package.name}-{len(names)}.ecore"
+        source = package.ecore if isinstance(package.ecore, Path) else None
+        name = files.get(source) if source is not None else None
+        if name is None:
+            name = _free_name(package, {each.casefold() for each in names.values()})
+        if source is not None:
+            files[source] = name
         names[package.ns_uri] = name
     return names
+
+
+def _free_name(package: Package, taken: Collection[str]) -> str:
+    """Return a name for the file of a package, which may call itself what no file can be called."""
+    stem = _UNSAFE.sub("_", package.name).strip(".")[:_LONGEST_NAME] or "metamodel"
+    name, number = f"{stem}.ecore", len(taken)
+    while name.casefold() in taken:
+        name, number = f"{stem}-{number}.ecore", number + 1
+    return name
 
 
 def schema_locations(registry: Registry, directory: Path, file: Path) -> dict[str, str]:
@@ -65,7 +74,8 @@ def schema_locations(registry: Registry, directory: Path, file: Path) -> dict[st
     places: dict[str, str] = {}
     for package in registry.packages:  # one package comes before those inside it
         if not package.parent:
-            places[package.ns_uri] = relative_href(directory.resolve() / names[package.ns_uri], base)
+            place = relative_href(directory.resolve() / names[package.ns_uri], base)
+            places[package.ns_uri] = f"{place}#/{package.root}" if package.root else place
         else:
             above = places[package.parent]
             places[package.ns_uri] = f"{above}{'/' if '#' in above else '#//'}{package.name}"
@@ -91,10 +101,9 @@ def export_metamodels(registry: Registry, directory: Path, *, force: bool = Fals
         OSError: if the folder cannot be written to.
     """
     names = exported_names(registry)
-    rewriter = _Rewriter(registry, names)
-    texts = {
-        names[package.ns_uri]: rewriter.text(package) for package in registry.packages if not package.parent
-    }
+    rewriter = Rewriter(registry, names)
+    tops = {names[package.ns_uri]: package for package in registry.packages if not package.parent}
+    texts = {name: rewriter.text(package) for name, package in tops.items()}
     files = {name: text.encode() for name, text in {".project": _PROJECT, **texts}.items()}
     sources = [package.ecore for package in registry.packages if isinstance(package.ecore, Path)]
     _refuse(directory, [name for name in files if _is_any(directory / name, sources)], "installed from there")
@@ -150,65 +159,3 @@ def _is_any(path: Path, files: Iterable[Path]) -> bool:
 
 def _hash(data: bytes) -> str:
     return sha256(data).hexdigest()
-
-
-class _Rewriter:
-    def __init__(self, registry: Registry, names: Mapping[str, str]) -> None:
-        self._names = names
-        self._packages = {package.ns_uri: package for package in registry.packages}
-        self._located = {package.ns_uri: _located(package) for package in registry.packages}
-        self._directory = Directory(self._located.values(), {})
-
-    def text(self, package: Package) -> str:
-        if not isinstance(package.ecore, Path):
-            return package_text(package, lambda ns_uri: self._address(ns_uri, package))
-        data = read_bytes(package.ecore)
-        document = Document(data, str(package.ecore))
-        document.parse(_Deaf())
-        text = document.data.decode(document.encoding)
-        text = re.sub(r'(<\?xml[^>]*encoding=")[^"]*', r"\1UTF-8", text.removeprefix("\ufeff"), count=1)
-        return _REFERENCE.sub(lambda match: self._attribute(match, package), text)
-
-    def _attribute(self, match: re.Match[str], package: Package) -> str:
-        tokens = [self._token(token, package) for token in match[3].split()]
-        return f"{match[1]}={match[2]}{' '.join(tokens)}{match[2]}"
-
-    def _token(self, token: str, package: Package) -> str:
-        document, hash_, fragment = token.partition("#")
-        if not hash_ or not document:
-            return token
-        ns_uri = self._directory.document(document, 0, self._located[package.ns_uri], token)
-        if ns_uri not in self._packages:
-            return token
-        return self._address(ns_uri, package) + fragment.lstrip("/")
-
-    def _address(self, ns_uri: str, referrer: Package) -> str:
-        """Return what stands before the name of a class of that package, in the file of the referrer."""
-        if ns_uri == ECORE or ns_uri not in self._packages:
-            return f"{ns_uri}#//"
-        steps = []
-        package = self._packages[ns_uri]
-        while package.parent:
-            steps.append(package.name)
-            package = self._packages[package.parent]
-        file = "" if package.ns_uri == referrer.ns_uri else self._names[package.ns_uri]
-        return f"{file}#//{''.join(f'{step}/' for step in reversed(steps))}"
-
-
-def _located(package: Package) -> Located:
-    file = package.ecore.resolve() if isinstance(package.ecore, Path) else None
-    table = PackageTable(package.ns_uri, package.name, package.prefix)
-    return Located(table, package.provider, file, package.ecore, package.parent)
-
-
-class _Deaf:
-    """Hears nothing: only the encoding of the document is wanted."""
-
-    def start(self, tag: str, attributes: list[str]) -> None:
-        """Pass over."""
-
-    def end(self, tag: str) -> None:
-        """Pass over."""
-
-    def text(self, text: str) -> None:
-        """Pass over."""

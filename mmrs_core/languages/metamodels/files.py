@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from mmrs_core.languages.metamodels.gathering import documents_of, file_at, flat
-from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
+from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
 
 
@@ -27,7 +29,7 @@ def registry_of_files(
         UnreadableError: if a file is no metamodel.
         PluginError: if a metamodel refers to one that is missing, or two files hold the same.
     """
-    given = [file.resolve() for file in files]
+    given = [real_path(file) for file in files]
     held = {
         file: [table.ns_uri for table in flat(tables)] for file, tables in _with_neighbours(given).items()
     }
@@ -48,5 +50,5 @@ def _with_neighbours(files: Iterable[Path]) -> dict[Path, tuple[PackageTable, ..
         found[file] = read_tables(file)
         for document in documents_of(found[file]):
             other = file_at(document, file.parent) or file_at(document.rpartition("/")[2], file.parent)
-            pending += [other.resolve()] if other is not None else []
+            pending += [real_path(other)] if other is not None else []
     return found

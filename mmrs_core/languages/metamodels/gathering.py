@@ -8,7 +8,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.metamodels.tables import PackageTable, read_tables
+from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.metamodels.tables import PackageTable
+from mmrs_core.languages.references.hrefs import real_path
 from mmrs_core.languages.registry import MetamodelSource, Registry
 
 
@@ -22,9 +24,9 @@ def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSou
     brought: set[str] = set()
     while pending:
         file = pending.pop(0)
-        if file.resolve() in seen:
+        if real_path(file) in seen:
             continue
-        seen.add(file.resolve())
+        seen.add(real_path(file))
         tables = read_tables(file)
         names = {table.ns_uri for table in flat(tables)}
         if any(registry.has(name) or name in brought for name in names):
@@ -32,14 +34,18 @@ def gathered(files: Iterable[Path], registry: Registry) -> Iterator[MetamodelSou
         brought |= names
         yield MetamodelSource(tables[0].ns_uri, file, str(file))
         for document in dict.fromkeys(documents_of(tables)):
-            pending += [other for other in _meant(document, file, registry) if other.resolve() not in seen]
+            pending += [other for other in _meant(document, file, registry) if real_path(other) not in seen]
 
 
 def documents_of(tables: Iterable[PackageTable]) -> Iterator[str]:
     """Yield the documents that packages refer to."""
     for table in flat(tables):
+        yield from (uri.partition("#")[0] for uri in table.elsewhere)
         for row in table.classes:
-            uris = (*row.supertypes, *(uri for each in row.features for uri in (each.type, each.opposite)))
+            uris = (
+                *row.supertypes,
+                *(uri for each in row.features for uri in (each.type, each.opposite, *each.keys)),
+            )
             yield from (document for uri in uris if (document := uri.partition("#")[0]))
 
 

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import re
+from os.path import realpath
 from pathlib import Path
 from urllib.parse import unquote
 
 _WORKSPACE = re.compile(r"platform:/(?:resource|plugin)/([^/]+)/(.+)", re.DOTALL)
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+
+
+def real_path(path: Path) -> Path:
+    """Return where a path leads, also one that leads in a circle, of which `Path.resolve` makes an error."""
+    return Path(realpath(path))
 
 
 def linked_file(document: str, base: Path, root: Path) -> Path:

@@ -8,7 +8,8 @@ from os.path import isfile
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable, read_tables
+from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
 from mmrs_core.migration.sources.nodes import Claim, SourceDocument
 from mmrs_core.migration.sources.structure import Sort, SourceClass, SourceFeature, Structure
 

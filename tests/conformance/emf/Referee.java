@@ -10,6 +10,7 @@ import java.util.Random;
 import org.eclipse.emf.common.util.Diagnostic;
 import org.eclipse.emf.common.util.URI;
 import org.eclipse.emf.ecore.EPackage;
+import org.eclipse.emf.ecore.EcorePackage;
 import org.eclipse.emf.ecore.impl.EPackageRegistryImpl;
 import org.eclipse.emf.ecore.resource.Resource;
 import org.eclipse.emf.ecore.resource.ResourceSet;
@@ -17,6 +18,7 @@ import org.eclipse.emf.ecore.resource.impl.ResourceSetImpl;
 import org.eclipse.emf.ecore.util.Diagnostician;
 import org.eclipse.emf.ecore.util.EcoreUtil;
 import org.eclipse.emf.ecore.xmi.impl.EcoreResourceFactoryImpl;
+import org.eclipse.emf.ecore.xml.type.XMLTypePackage;
 
 /**
  * Asks Eclipse EMF what it thinks of metamodels and models.
@@ -28,6 +30,7 @@ import org.eclipse.emf.ecore.xmi.impl.EcoreResourceFactoryImpl;
  *   <li>{@code metamodels ECORE...}: from now on, these are registered, and judged.
  *   <li>{@code workspace NAME FOLDER}: what {@code platform:/resource/NAME/} means.
  *   <li>{@code describe}: every registered metamodel, feature by feature.
+ *   <li>{@code itself}: Ecore and EMF's types of XML, in the same way.
  *   <li>{@code check MODEL}: the model is read, resolved and validated.
  *   <li>{@code dump MODEL}: every value in it.
  *   <li>{@code alone QUESTION}: what it would answer if it knew no metamodel.
@@ -60,6 +63,10 @@ public final class Referee {
       case "metamodels" -> register(words);
       case "alone" -> alone(words);
       case "workspace" -> workspace.add(new String[] {words[1], words[2]});
+      case "itself" -> {
+        Metamodels.describe(EcorePackage.eINSTANCE, OUT);
+        Metamodels.describe(XMLTypePackage.eINSTANCE, OUT);
+      }
       case "describe" -> packages.forEach(each -> Metamodels.describe(each, OUT));
       case "check" -> judge(resources(), words[1], true);
       case "dump" -> dump(words[1]);

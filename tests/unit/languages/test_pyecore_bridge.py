@@ -131,7 +131,7 @@ def test_the_tables_are_what_pyecore_loads(everything):
     from pyecore.resources import URI, ResourceSet
 
     from mmrs_core.languages.ecore_api.tables import package_table
-    from mmrs_core.languages.metamodels.tables import read_tables
+    from mmrs_core.languages.metamodels.parsing import read_tables
 
     resources = ResourceSet()
     for package in everything.packages:

@@ -13,6 +13,11 @@ HEAD = (
     'xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore"'
 )
 
+TWICE = (
+    'name="a" nsURI="urn:a"><eClassifiers xsi:type="ecore:EClass" name="A"/>'
+    '<eClassifiers xsi:type="ecore:EEnum" name="A"/></ecore:EPackage>'
+)
+
 
 @pytest.fixture
 def package(tmp_path):
@@ -134,7 +139,6 @@ def test_packages_inside_packages_are_metamodels_of_their_own(zoo):
         (eclass("A", "http://127.0.0.1:1/x#//B"), "needs the metamodel http://127.0.0.1:1/x"),
         (eclass("A", "#//A"), "class A inherits from itself"),
         (eclass("A", "#//B") + eclass("B", "#//A"), "inherits from itself"),
-        (eclass("A") + eclass("A"), "class A is declared twice"),
         (eclass("A", "#//Bee") + eclass("Be"), "no type Bee in urn:t:bad; did you mean Be?"),
         (eclass("A", "", attribute("n", "EIntt")), "A.n: no type EIntt"),
         (eclass("A", "", attribute("n", "EInt", 'defaultValueLiteral="x"')), "A.n: default 'x': not a whole"),
@@ -175,6 +179,7 @@ def test_a_file_that_holds_another_metamodel_is_an_error(package):
         (f"{HEAD}/>", "name is missing"),
         (f'{HEAD} name="a"/>', "nsURI is missing"),
         (f'{HEAD} name="a" nsURI="urn:a"><eClassifiers name="A"/></ecore:EPackage>', "no kind of classifier"),
+        (f"{HEAD} {TWICE}", "a.ecore:1: eClassifiers: EEnum A is declared twice, before in line 1"),
         ("<!DOCTYPE x><x/>", "DOCTYPE"),
         ("junk", "not well-formed"),
     ],
