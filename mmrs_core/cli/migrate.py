@@ -49,42 +49,39 @@ def migrate(
 
     Tells every value that was defaulted, changed in meaning, or not carried over.
 
-    For example: mmrs migrate mission.json context.json Heron.xmi -o field
+    For example: mmrs migrate mission.json context.json Heron.xmi -o orchard
     """
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.migration import read_sources, write_outputs
-    from mmrs_core.cli.migration_faults import faults_in
-    from mmrs_core.cli.migration_words import migration_lines
-    from mmrs_core.diagnostics import has_errors
+    from mmrs_core.cli.migration_verdicts import verdicts_on
+    from mmrs_core.cli.migration_words import migration_lines, verdict_lines
+    from mmrs_core.diagnostics import in_order
 
     workshop = Workshop(settings_of(call))
     migration = read_sources(workshop, files, output, mapping, metamodels or (), types or ())
     written = write_outputs(workshop, migration, files, output, force=force)
-    faults = faults_in(written, workshop.contributions)
-    valid = bool(written) and not has_errors(faults)
-    for source in migration.sources:
-        if source.fault:
-            tell(f"mmrs: {source.fault}")
+    verdicts = verdicts_on(written, workshop)
+    faults = in_order(dict.fromkeys(fault for verdict in verdicts for fault in verdict.faults))
+    valid = bool(written) and all(verdict.valid for verdict in verdicts)
+    unreadable = [source.fault for source in migration.sources] + [each.unreadable for each in verdicts]
+    for fault in filter(None, unreadable):
+        tell(f"mmrs: {fault}")
     if json:
-        told = {"sources": migration.sources, "findings": migration.findings, "files": written}
         report(faults)
-        say_json({"valid": valid, **told, "diagnostics": faults})
+        told = {"sources": migration.sources, "findings": migration.findings, "files": written}
+        judged = [{"path": each.path, "valid": each.valid, "missing": each.missing} for each in verdicts]
+        say_json({"valid": valid, "verdicts": judged, **told, "diagnostics": faults})
     else:
         for line in migration_lines(migration, output):
             say(line)
         report(faults)
-        say(
-            f"{output}: {'valid' if valid else 'not valid'}"
-            if written
-            else "nothing to migrate, nothing written"
-        )
-    return _exit_code(migration, valid)
+        for line in verdict_lines(verdicts):
+            say(line)
+    return 3 if any(unreadable) else _exit_code(migration, valid)
 
 
 def _exit_code(migration: Migration, valid: bool) -> int:
-    """Return 3 if a file is not readable, 1 if a model became nothing or something invalid, else 0."""
-    if any(source.fault for source in migration.sources):
-        return 3
+    """Return 1 if a model became nothing or something invalid, else 0."""
     used = {file for output in migration.outputs for file in output.sources}
     came_to_nothing = any(source.is_model and source.file not in used for source in migration.sources)
     return 0 if not came_to_nothing and (valid or not migration.outputs) else 1

@@ -13,7 +13,7 @@ from mmrs_core.languages import robot as robots
 from mmrs_core.languages.modelset import robot_files_in
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.writing import replace_file, to_xmi
-from mmrs_core.migration.migrate import Migration
+from mmrs_core.migration.migrate import Migration, UnknownTypeError
 from mmrs_core.migration.migrate import migrate as migrated
 from mmrs_core.migration.rules.mapping_file import read_mapping
 from mmrs_core.resources import shipped
@@ -33,17 +33,20 @@ def read_sources(
 
     Raises:
         UnreadableError: if a file or the mapping cannot be read.
-        typer.BadParameter: if a robot type's name is not written as OLD=NAME.
+        typer.BadParameter: if a robot type's name is not written as OLD=NAME, or OLD occurs nowhere.
     """
     registry = workshop.contributions.languages
     rules = read_mapping(mapping or shipped("migrations") / DEFAULT_MAPPING, registry)
     stands_for = _stands_for(types)
     present = _types_in(project, workshop)
-    return workshop.stage(
-        "migrate",
-        "migrating",
-        lambda: migrated(files, rules, registry, metamodels=metamodels, types=stands_for, present=present),
-    )
+
+    def migrating() -> Migration:
+        return migrated(files, rules, registry, metamodels=metamodels, types=stands_for, present=present)
+
+    try:
+        return workshop.stage("migrate", "migrating", migrating)
+    except UnknownTypeError as fault:
+        raise typer.BadParameter(f"--type: {fault}") from None
 
 
 def _stands_for(given: Sequence[str]) -> dict[str, str]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from mmrs_core.cli.migration_verdicts import Verdict
 from mmrs_core.cli.output import counted
 from mmrs_core.migration.findings import Category, Finding, grouped
 from mmrs_core.migration.migrate import Migration
@@ -34,6 +35,21 @@ def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
     yield ""
     for output in migration.outputs:
         yield f"written: {project / output.path} (from {', '.join(output.sources)})"
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> Iterator[str]:
+    """Yield whether what was written is valid, and what a behaviour still needs to be run."""
+    for verdict in verdicts:
+        for name in verdict.missing:
+            yield (
+                f"{verdict.path}: to simulate or generate it, the robot type {name!r} is needed: migrate the"
+                f" file that describes it into {verdict.path.parent}, too, write"
+                f" {verdict.path.parent / 'robots' / name}.xmi, or say by --type which type is meant"
+            )
+        valid = "valid" if verdict.valid else "not valid"
+        yield f"{verdict.path}: {valid}{', with no mission beside it yet' * verdict.alone}"
+    if not verdicts:
+        yield "nothing to migrate, nothing written"
 
 
 def _places(findings: Iterable[Finding]) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,6 +23,10 @@ from mmrs_core.migration.sources.metamodels import metamodels_for, structure_of
 from mmrs_core.migration.sources.nodes import SourceDocument
 from mmrs_core.migration.sources.reading import Reader
 from mmrs_core.migration.sources.structure import Structure
+
+
+class UnknownTypeError(ValueError):
+    """What is said to stand for a robot type occurs nowhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +89,12 @@ def migrate(
 
     Raises:
         UnreadableError: if one of the given metamodels is none.
+        UnknownTypeError: if types name what no file calls a robot type.
     """
     opened = [_opened(path, mapping) for path in files]
     models = [each for each in opened if isinstance(each, Opened) and each.document is not None]
     settled = {each.file: _settled(each, mapping, metamodels) for each in models}
+    _refuse_unknown(types or {}, settled.values(), mapping)
     robots = RobotTypes(present or {}, {**mapping.types, **(types or {})})
     record, made = Record(), list[Made]()
     for each in _types_first(settled.values(), mapping):
@@ -125,6 +131,27 @@ def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> 
     return _Settled(document, structure, Source(opened.file, opened.what, places, is_model=True))
 
 
+def _refuse_unknown(types: Mapping[str, str], settled: Iterable[_Settled], mapping: DialectMapping) -> None:
+    """Do nothing if every name that is to stand for a robot type occurs in the files."""
+    occurring = {name for each in settled for name in _type_names(each, mapping)}
+    for name in types:
+        if name not in occurring:
+            known = ", ".join(sorted(map(repr, occurring)))
+            occur = f"these files name {known}" if known else "these files name none"
+            raise UnknownTypeError(f"{name!r}: no robot type of this name occurs; {occur}")
+
+
+def _type_names(settled: _Settled, mapping: DialectMapping) -> Iterator[str]:
+    """Yield the robot types that a document names."""
+    for root in settled.document.roots:
+        for node in root.inside():
+            kinds = settled.structure.ancestry(node.kind)
+            rules = [rule for rule in mapping.rules.values() if rule.source.partition("/")[0] in kinds]
+            for feature, use in ((name, use) for rule in rules for name, use in rule.uses.items()):
+                texts = node.texts(feature) if use.robot_type else ()
+                yield from (use.values.get(text, text) for text in texts)
+
+
 def _types_first(settled: Iterable[_Settled], mapping: DialectMapping) -> list[_Settled]:
     """Return documents with robot types before all others, which may name them."""
 
@@ -142,6 +169,6 @@ def _built(
     draft = builder.build(settled.document.roots)
     Linker(draft, registry, record).complete()
     for node, rule in draft.rings:
-        draw_ring(node, rule, draft, registry, record)
+        draw_ring(node, rule, draft, types, registry, record)
     nodes = {draft.made[node]: node for node in settled.document.roots if node in draft.made}
     return [Made(element, nodes[element], (settled.document.file,)) for element in draft.roots]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mmrs_core.diagnostics import Place
 from mmrs_core.migration.findings import Category, Finding
 from mmrs_core.migration.sources.nodes import Link, SourceNode, Text
 
@@ -15,21 +16,32 @@ class Record:
     def value(
         self, category: Category, reason: str, node: SourceNode, feature: str, value: Text | None = None
     ) -> None:
-        """Note what happens to a feature of an element, or to one value of it."""
-        said = (
-            value.text
-            if value is not None
-            else ", ".join(_words(each) for each in node.values.get(feature, ()))
-        )
-        subject = f"{feature}{said and ' ' + said} of {node.called()}"
-        line = value.line if value is not None else _line(node, feature)
-        self.findings.append(Finding(category, reason, subject, node.place(line)))
+        """Note what happens to a feature of an element, or to one value of it; to every element by itself."""
+        inner = node.nodes(feature) if value is None else ()
+        plain = [each.text for each in node.values.get(feature, ()) if not isinstance(each, SourceNode)]
+        said = value.text if value is not None else ", ".join(plain)
+        for each in inner:
+            self._add(category, reason, f"{feature} {_words(each)} of {node.called()}", each.place())
+        if said or not inner:
+            line = value.line if value is not None else _line(node, feature)
+            self._add(
+                category, reason, f"{feature}{said and ' ' + said} of {node.called()}", node.place(line)
+            )
+
+    def item(self, category: Category, reason: str, node: SourceNode) -> None:
+        """Note what happens to one of the elements that a feature contains."""
+        owner = node.parent
+        around = f" of {owner.called()}" if owner is not None else ""
+        self._add(category, reason, f"{node.feature} {_words(node)}{around}", node.place())
 
     def element(self, category: Category, reason: str, node: SourceNode) -> None:
         """Note what happens to a whole element; its values are told with it where it is lost."""
         content = _content(node) if category is Category.LOST else ""
         told = content and f" ({content})"
-        self.findings.append(Finding(category, reason, f"{node.called()}{told}", node.place()))
+        self._add(category, reason, f"{node.called()}{told}", node.place())
+
+    def _add(self, category: Category, reason: str, subject: str, place: Place) -> None:
+        self.findings.append(Finding(category, reason, subject, place))
 
 
 def _line(node: SourceNode, feature: str) -> int:
@@ -39,19 +51,15 @@ def _line(node: SourceNode, feature: str) -> int:
 def _words(value: Text | Link | SourceNode) -> str:
     if not isinstance(value, SourceNode):
         return value.text
-    content = _content(value, 1)
+    content = _content(value)
     return f"{value.called()}{content and f' ({content})'}"
 
 
-def _content(node: SourceNode, depth: int = 0) -> str:
-    """Return what an element holds; of the elements in it only what they are called, further down."""
+def _content(node: SourceNode) -> str:
+    """Return all that an element holds, down to the last value."""
     parts = [
-        f"{feature} {', '.join(_words(value) if depth == 0 else _name(value) for value in values)}"
+        f"{feature} {', '.join(_words(value) for value in values)}"
         for feature, values in node.values.items()
-        if feature != "name"
+        if feature != "name" or len(values) > 1
     ]
     return "; ".join(parts)
-
-
-def _name(value: Text | Link | SourceNode) -> str:
-    return value.called() if isinstance(value, SourceNode) else value.text

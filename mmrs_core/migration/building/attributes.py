@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterator
 
-from mmrs_core.languages.element import Element, label_of
+from mmrs_core.languages.element import Element, label_of, metaclass_of
 from mmrs_core.languages.grounding.values import text as text_of
 from mmrs_core.migration.building.converting import number_in, put, scaled
 from mmrs_core.migration.building.drafts import Draft
@@ -12,10 +12,12 @@ from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Constant, DeviceLookup, Use
-from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.rules.paths import FeaturePath, Keep, reach
+from mmrs_core.migration.rules.sense import NUMBER, WORD
+from mmrs_core.migration.rules.values import said
 from mmrs_core.migration.sources.nodes import SourceNode, Text
 
-_WORD = re.compile(r"\{(\w+)\}")
+_FURTHER = "what is said once stands for further places, too"
 
 
 class Attributes:
@@ -29,10 +31,9 @@ class Attributes:
     def carry_over(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         """Carry over every text that a feature holds."""
         values = [value for value in node.values[feature] if isinstance(value, Text)]
-        several = bool(use.to) and reach(element, use.to[0])[1].many
         for index, value in enumerate(values):
             try:
-                if index and not several:
+                if index and not self._takes_several(node, element, use):
                     raise ValueError(f"{use.to[0]} takes one only, the first")
                 self._one(node, feature, value, element, use)
             except ValueError as fault:
@@ -44,13 +45,19 @@ class Attributes:
             return
         value: Constant = use.absent
         if isinstance(value, str):
-            value = _WORD.sub(lambda word: _word(node, word[1]), value)
+            value = WORD.sub(lambda word: _word(node, word[1]), value)
             value = self._unique(node, feature, value, element, use)
-        for path in _paths(node, use):
-            put(element, path, value)
-        said = str(value).lower() if isinstance(value, bool) else str(value)
+        text = Text(said(value), node.line)
+        if use.beside or use.bearing is not None:
+            self._draft.assumed[node, feature] = text.text
+        else:
+            try:
+                self._put(node, feature, text, element, use, value)
+            except ValueError as fault:
+                self._record.value(Category.LOST, str(fault), node, feature, text)
+                return
         reason = use.changed if use.void and use.changed else f"{feature} is not given"
-        self._record.value(Category.DEFAULTED, f"{reason}: {said}", node, feature)
+        self._record.value(Category.DEFAULTED, f"{reason}: {text.text}", node, feature)
 
     def find_device(self, node: SourceNode, element: Element, lookup: DeviceLookup, use: Use) -> bool:
         """Set the device of the robot's type that does an action; return whether there is one.
@@ -58,8 +65,8 @@ class Attributes:
         Args:
             use: what becomes of the action's name.
         """
-        said = node.text(lookup.action)
-        action = use.values.get(said, said)
+        named = node.text(lookup.action)
+        action = use.values.get(named, named)
         type_name = next(
             (name for each in self._draft.around(node) if (name := text_of(each, "typeName"))), ""
         )
@@ -80,10 +87,36 @@ class Attributes:
         else:
             text = scaled(self._renamed(node, feature, value, use), use.times)
             text = self._unique(node, feature, text, element, use)
-            for path in _paths(node, use):
-                put(element, path, text)
-            if use.changed and not use.void:
-                self._record.value(Category.CHANGED, use.changed, node, feature, value)
+            self._put(node, feature, value, element, use, text)
+            changed = use.changed if not use.void else ""
+            if changed or use.times != 1.0:
+                reason = changed or f"is multiplied by {use.times:g}"
+                self._record.value(Category.CHANGED, reason, node, feature, value)
+
+    def _put(
+        self, node: SourceNode, feature: str, source: Text, element: Element, use: Use, value: Constant
+    ) -> None:
+        """Set a value wherever it goes, and tell of the further places that it goes to."""
+        keep = self._keep(node, element, use)
+        for path in use.to:
+            put(element, path, value, keep)
+        for path in _further(node, use):
+            put(element, path, value, keep)
+            self._record.value(Category.DEFAULTED, _FURTHER, node, f"{path} from {feature}", source)
+
+    def _keep(self, node: SourceNode, element: Element, use: Use) -> Keep | None:
+        """Return what gives elements a place that are made on the way and only referred to."""
+        if not use.hoist:
+            return None
+        root = self._draft.outermost(node, element)
+        target = metaclass_of(root).by_name.get(use.hoist)
+        if target is None or not target.many:
+            raise ValueError(f"{metaclass_of(root).name} has no {use.hoist} to hold it")
+        held_by: list[Element] = getattr(root, target.attribute)
+        return held_by.append
+
+    def _takes_several(self, node: SourceNode, element: Element, use: Use) -> bool:
+        return bool(use.to) and reach(element, use.to[0], self._keep(node, element, use))[1].many
 
     def _doubt(self, reason: str, node: SourceNode, feature: str, value: Text) -> None:
         self._record.value(Category.DOUBTFUL, reason, node, feature, value)
@@ -104,9 +137,7 @@ class Attributes:
         """Return a text that no sibling has: the text itself, or with a number behind it."""
         if not use.unique or node.parent is None:
             return text
-        made = self._draft.made
-        near = [made[each] for each in node.parent.nodes(node.feature) if each in made]
-        taken = {label_of(each) for each in near if each is not element}
+        taken = {label_of(each) for each in self._near(node, element)}
         number, found = 2, text
         while found in taken:
             number, found = number + 1, f"{text}_{number}"
@@ -115,12 +146,23 @@ class Attributes:
             self._record.value(Category.CHANGED, reason, node, feature)
         return found
 
+    def _near(self, node: SourceNode, element: Element) -> Iterator[Element]:
+        """Yield the elements made of what stands beside a node: in its feature, or of the same class."""
+        beside = node.parent.values.items() if node.parent is not None else ()
+        for feature, values in beside:
+            for value in values:
+                made = self._draft.made.get(value) if isinstance(value, SourceNode) else None
+                if made is None or made is element:
+                    continue
+                if feature == node.feature or metaclass_of(made) is metaclass_of(element):
+                    yield made
 
-def _paths(node: SourceNode, use: Use) -> tuple[str, ...]:
-    """Return where a value goes, with the further paths if their condition holds."""
+
+def _further(node: SourceNode, use: Use) -> tuple[FeaturePath, ...]:
+    """Return the further paths that a value goes to, if their condition holds."""
     if use.also is None or not all(is_given(node, feature) for feature in use.also.given):
-        return use.to
-    return (*use.to, *use.also.to)
+        return ()
+    return use.also.to
 
 
 def is_given(node: SourceNode, feature: str) -> bool:
@@ -138,7 +180,7 @@ def _is_zero(text: str) -> bool:
 
 
 def _word(node: SourceNode, name: str) -> str:
-    return str(node.index + 1) if name == "number" else node.text(name)
+    return str(node.index + 1) if name == NUMBER else node.text(name)
 
 
 def _is_void(text: str, use: Use) -> bool:

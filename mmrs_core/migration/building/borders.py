@@ -7,26 +7,23 @@ from collections.abc import Sequence
 from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import number
 from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.building.shapes import Corner, widened
+from mmrs_core.migration.building.shapes import Corner, border_of
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.sources.nodes import SourceNode, Text
 
 
-def without_repeats(
-    node: SourceNode, feature: str, vertices: Sequence[SourceNode], record: Record
-) -> tuple[SourceNode, ...]:
+def without_repeats(vertices: Sequence[SourceNode], record: Record) -> tuple[SourceNode, ...]:
     """Return vertices without those that equal the one before; the first follows the last."""
     kept: list[SourceNode] = []
+    left_out: list[SourceNode] = []
     for vertex in vertices:
-        if not kept or _values(vertex) != _values(kept[-1]):
-            kept.append(vertex)
+        repeats = bool(kept) and _values(vertex) == _values(kept[-1])
+        (left_out if repeats else kept).append(vertex)
     if len(kept) > 1 and _values(kept[0]) == _values(kept[-1]):
-        kept.pop()
-    if len(kept) < len(vertices):
-        left_out = Text(f"{len(vertices) - len(kept)} of {len(vertices)}", node.line)
-        reason = "vertices that repeat the one before are left out"
-        record.value(Category.CHANGED, reason, node, feature, left_out)
+        left_out.append(kept.pop())
+    for vertex in left_out:
+        record.item(Category.CHANGED, "repeats the vertex beside it, so it is left out", vertex)
     return tuple(kept)
 
 
@@ -50,12 +47,15 @@ def border_around(
     registry: Registry,
     record: Record,
 ) -> Sequence[Element]:
-    """Return the vertices of a border; for one that holds no area, those of a border around it."""
+    """Return the vertices of a border; for one that bounds no area, those of a border that holds them all.
+
+    A border with a vertex that has no place on the Earth stays as it is.
+    """
     known = tuple(place for each in vertices if (place := _place(each)) is not None)
-    ring = widened(known, metres) if known else None
-    if ring is None:
+    mended = border_of(known, metres) if known and len(known) == len(vertices) else None
+    if mended is None:
         return vertices
     key = metaclass_of(vertices[0]).key
-    reason = f"the border holds no area, so it is drawn {metres:g} m around its vertices: draw it anew"
-    record.value(Category.DOUBTFUL, reason, node, feature, Text(f"of {len(known)} vertices", node.line))
-    return [registry.create(*key, latitude=north, longitude=east) for north, east in ring]
+    places = ", ".join(f"({north!r}, {east!r})" for north, east in known)
+    record.value(Category.DOUBTFUL, f"{mended.reason}: draw it anew", node, feature, Text(places, node.line))
+    return [registry.create(*key, latitude=north, longitude=east) for north, east in mended.corners]

@@ -9,12 +9,14 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.attributes import Attributes, is_given
 from mmrs_core.migration.building.borders import border_around, without_repeats
 from mmrs_core.migration.building.converting import put
+from mmrs_core.migration.building.copying import copied
 from mmrs_core.migration.building.drafts import Draft
 from mmrs_core.migration.building.robot_types import RobotTypes
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import DialectMapping, Rule, Use
 from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.rules.values import said
 from mmrs_core.migration.sources.nodes import STRAY, Link, SourceNode
 from mmrs_core.migration.sources.structure import Sort, Structure
 
@@ -93,8 +95,7 @@ class Builder:
             self._record.element(Category.CHANGED, rule.changed, node)
         for path, value in rule.set.items():
             put(element, path, value)
-            said = str(value).lower() if isinstance(value, bool) else str(value)
-            self._record.element(Category.DEFAULTED, f"{path} is {said} for all of this class", node)
+            self._record.element(Category.DEFAULTED, f"{path} is {said(value)} for all of this class", node)
         uses = self._mapping.uses(node.kind, rule, self._structure)
         for feature in self._in_order(node, uses):
             use = uses.get(feature)
@@ -107,17 +108,18 @@ class Builder:
                 self._use(node, feature, element, use)
 
     def _in_order(self, node: SourceNode, uses: Mapping[str, Use]) -> list[str]:
-        """Return the features to go through: attributes first, what is contained last."""
+        """Return the features to go through: attributes first, then what is contained, copies of it last."""
         known = {feature.name: feature.sort for feature in self._structure.features(node.kind)}
         names = [name for name in known if name in uses or name in node.values]
         names.sort(key=lambda name: _ORDER[known[name]])
+        names.sort(key=lambda name: name in uses and bool(uses[name].first_of) and name not in node.values)
         return [*names, *(name for name in dict.fromkeys((*uses, *node.values)) if name not in known)]
 
     def _use(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         values = node.values.get(feature, [])
         needed = use.given or use.beside
         if not values:
-            self._attributes.default(node, feature, element, use)
+            self._default(node, feature, element, use)
         elif use.drop:
             self._record.value(Category.LOST, use.drop, node, feature)
         elif needed and not is_given(node, needed):
@@ -130,6 +132,26 @@ class Builder:
             self._attributes.carry_over(node, feature, element, use)
             self._contain(node, feature, element, use)
 
+    def _default(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
+        """Give a feature what stands for a value or an element that the source does not have."""
+        first = next((self.draft.made.get(each) for each in node.nodes(use.first_of)), None)
+        if use.make is not None:
+            made = self._registry.create(*use.make.to)
+            for path, value in use.make.set.items():
+                put(made, path, value)
+            values = "; ".join(f"{path} {said(value)}" for path, value in use.make.set.items())
+            what = f"{metaclass_of(made).name}{values and f' ({values})'}"
+            self._record.value(Category.DEFAULTED, f"{feature} is not given: {what}", node, feature)
+            self._hold(node, feature, element, use, [made])
+        elif first is not None:
+            reason = f"{feature} is not given: the first of {use.first_of} is taken"
+            self._record.value(Category.DEFAULTED, reason, node, feature)
+            self._hold(node, feature, element, use, [copied(first, self._registry)])
+        else:
+            self._attributes.default(node, feature, element, use)
+            if use.bearing is not None and use.absent is not None:
+                self.draft.later.append((node, feature, element, use))
+
     # what is contained
 
     def _contain(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
@@ -137,13 +159,17 @@ class Builder:
         if not inner:
             return
         rule = self._mapping.rule(inner[0].kind, use.rule, self._structure)
-        if rule is not None and rule.merge:
+        if rule is not None and rule.merge and rule.to is not None:
+            if not self._registry.metaclass(*rule.to).accepts(element):
+                reason = f"goes into {rule.to[1]}, and this is a {metaclass_of(element).name}"
+                self._record.value(Category.LOST, reason, node, feature)
+                return
             self._fill(inner[0], element, rule)
             for further in inner[1:]:
                 self._record.element(Category.LOST, f"{feature} holds one only, the first", further)
             return
         if use.distinct:
-            inner = without_repeats(node, feature, inner, self._record)
+            inner = without_repeats(inner, self._record)
         made: Sequence[Element] = [
             found for each in inner if (found := self._element(each, use.rule)) is not None
         ]
@@ -155,12 +181,16 @@ class Builder:
         self, node: SourceNode, feature: str, element: Element, use: Use, made: Sequence[Element]
     ) -> None:
         """Put new elements where they belong; the first is referred to where they belong elsewhere."""
-        outermost = [element, *self.draft.around(node)][-1]
+        outermost = self.draft.outermost(node, element)
         if use.hoist and use.hoist not in metaclass_of(outermost).by_name:
             reason = f"{metaclass_of(outermost).name} has no {use.hoist} to hold it"
             self._record.value(Category.LOST, reason, node, feature)
             return
-        owner, target = reach(outermost, use.hoist) if use.hoist else reach(element, use.to[0])
+        owner, target = (
+            (outermost, metaclass_of(outermost).feature(use.hoist))
+            if use.hoist
+            else reach(element, use.to[0])
+        )
         fitting = [each for each in made if target.containment and target.type.accepts(each)]
         if len(fitting) < len(made):
             self._record.value(Category.LOST, f"{target.name} does not take it", node, feature)
@@ -171,4 +201,8 @@ class Builder:
             if len(fitting) > 1:
                 self._record.value(Category.LOST, f"{target.name} takes one only, the first", node, feature)
         if use.hoist and fitting:
-            setattr(element, metaclass_of(element).feature(use.to[0]).attribute, fitting[0])
+            referring, reference = reach(element, use.to[0])
+            if reference.type.accepts(fitting[0]):
+                setattr(referring, reference.attribute, fitting[0])
+            else:
+                self._record.value(Category.LOST, f"{use.to[0]} does not take it", node, feature)

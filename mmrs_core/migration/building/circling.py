@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
+from math import inf, isfinite, pi, sin
 
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import container_of, metaclass_of, root_of
@@ -12,14 +14,49 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.migration.building.converting import number_in
 from mmrs_core.migration.building.drafts import Draft
 from mmrs_core.migration.building.headings import towards
+from mmrs_core.migration.building.robot_types import RobotTypes, Speeds
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Ring, Rule
 from mmrs_core.migration.sources.nodes import SourceNode
 
+MOST_ROUNDS = 10
+"""So many at most, flown the slower the longer they are to last."""
 
-def draw_ring(node: SourceNode, rule: Rule, draft: Draft, registry: Registry, record: Record) -> None:
-    """Let the move that a node became go round its centre once, over way points that further moves lead to.
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A circle as the source describes it.
+
+    Attributes:
+        radius: metres.
+        up: metres from the centre.
+        turn: degrees from one way point to the next, clockwise from above.
+        points: of one round.
+        duration: seconds; 0 where nobody said.
+    """
+
+    radius: float
+    up: float
+    turn: float
+    points: int
+    duration: float
+
+    @property
+    def length(self) -> float:
+        """Metres of one round, from way point to way point."""
+        return 2 * self.points * self.radius * sin(pi / self.points)
+
+    def offsets(self, rounds: int) -> list[tuple[float, float, float]]:
+        """Return metres east, north and up of the centre, around and back to the first."""
+        angles = [(index % self.points) * self.turn for index in range(rounds * self.points + 1)]
+        return [(*towards(angle, self.radius), round(self.up, 3)) for angle in angles]
+
+
+def draw_ring(
+    node: SourceNode, rule: Rule, draft: Draft, types: RobotTypes, registry: Registry, record: Record
+) -> None:
+    """Let the move that a node became go round its centre, over way points that further moves lead to.
 
     The move's target is the centre before, and the first way point, north of the centre, afterwards.
     """
@@ -30,18 +67,71 @@ def draw_ring(node: SourceNode, rule: Rule, draft: Draft, registry: Registry, re
         record.element(Category.LOST, "no centre to go round is known", node)
         return
     try:
-        offsets = _offsets(node, ring, number(centre, "altitude") or 0.0)
+        circle = _circle(node, ring, draft, number(centre, "altitude") or 0.0)
     except ValueError as fault:
         record.element(Category.DOUBTFUL, f"{fault}, so the robot only goes to the centre", node)
         return
-    moves = [first, *(_further(first, index, registry) for index in range(2, len(offsets) + 1))]
+    rounds, speed = _rounds(circle, types.speeds(robot))
+    _tell_of(circle, rounds, speed, node, ring, record)
+    offsets = circle.offsets(rounds)
+    moves = [first, *_further(first, len(offsets) - 1, robot, registry)]
     at = robot.moves.index(first) + 1
     robot.moves[at:at] = moves[1:]
     for move, (x, y, z) in zip(moves, offsets, strict=True):
         move.target = bl.RelativeCoordinate(x=x, y=y, z=z, reference=centre)
         _behaviour(robot).targets.append(move.target)
+    for move in moves[1:]:
+        move.speed = speed
     _join(robot, moves)
     moves[-1].postActions.extend(list(first.postActions))
+
+
+def _circle(node: SourceNode, ring: Ring, draft: Draft, altitude: float) -> Circle:
+    """Return the circle that a node describes.
+
+    Args:
+        altitude: of its centre, in metres.
+
+    Raises:
+        ValueError: if a figure is no number, or the radius not above 0.
+    """
+    radius = number_in(draft.said(node, ring.radius) or "0")
+    if not 0 < radius < inf:
+        raise ValueError(f"{ring.radius} is {radius:g} m")
+    height, duration = draft.said(node, ring.height), draft.said(node, ring.duration)
+    up = number_in(height) - altitude if height else 0.0
+    turn = 360 / ring.points * (1 if draft.said(node, ring.clockwise).lower() == "true" else -1)
+    return Circle(radius, up, turn, ring.points, max(0.0, number_in(duration or "0")))
+
+
+def _rounds(circle: Circle, speeds: Speeds | None) -> tuple[int, float | None]:
+    """Return how many rounds last as long as the circle does, and at which speed they are flown.
+
+    None for a speed: at the robot's own, since no speed that it has makes the rounds last so long.
+    """
+    if circle.duration <= 0.0 or not isfinite(circle.duration):
+        return 1, None
+    fastest = speeds.around(circle.radius) if speeds is not None else 0.0
+    rounds = max(1, min(MOST_ROUNDS, int(circle.duration * fastest / circle.length)))
+    speed = rounds * circle.length / circle.duration
+    fits = speeds is None or speeds.slowest <= speed <= speeds.fastest
+    return rounds, round(speed, 3) or None if fits else None
+
+
+def _tell_of(
+    circle: Circle, rounds: int, speed: float | None, node: SourceNode, ring: Ring, record: Record
+) -> None:
+    if node.text(ring.height):
+        reason = "the altitude of a circle counts from its centre here"
+        record.value(Category.CHANGED, reason, node, ring.height)
+    if circle.duration <= 0.0:
+        return
+    times = "once" if rounds == 1 else f"{rounds} times"
+    reason = f"a circle is flown by rounds here: {times} at {speed} m/s takes so long"
+    if speed is None:
+        reason = f"the robot goes round {times}, and no speed that it has makes that last so long"
+    category = Category.CHANGED if speed is not None else Category.LOST
+    record.value(category, reason, node, ring.duration)
 
 
 def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> None:
@@ -54,26 +144,20 @@ def _join(robot: bl.Robot, moves: Sequence[bl.GoTo]) -> None:
     robot.moveTransitions[at:at] = between
 
 
-def _offsets(node: SourceNode, ring: Ring, altitude: float) -> list[tuple[float, float, float]]:
-    """Return metres east, north and up of the centre, around and back to the first.
-
-    Raises:
-        ValueError: if the radius or height is no number, or the radius not above 0.
-    """
-    radius = number_in(node.text(ring.radius) or "0")
-    if radius <= 0:
-        raise ValueError(f"{ring.radius} is {radius:g} m")
-    up = number_in(node.text(ring.height)) - altitude if node.text(ring.height) else 0.0
-    turn = 360 / ring.points * (1 if node.text(ring.clockwise).lower() == "true" else -1)
-    around = [(index % ring.points) * turn for index in range(ring.points + 1)]
-    return [(*towards(angle, radius), round(up, 3)) for angle in around]
-
-
-def _further(first: bl.GoTo, index: int, registry: Registry) -> bl.GoTo:
-    name = f"{first.name}_{index}" if first.name else None
-    made = registry.create(*metaclass_of(first).key, name=name)
-    assert isinstance(made, bl.GoTo)  # as the first is
-    return made
+def _further(first: bl.GoTo, count: int, robot: bl.Robot, registry: Registry) -> list[bl.GoTo]:
+    """Return further moves like the first, each with a name that no other move of the robot has."""
+    taken = {move.name for move in robot.moves}
+    found: list[bl.GoTo] = []
+    number = 1
+    for _ in range(count):
+        number += 1
+        while first.name and f"{first.name}_{number}" in taken:
+            number += 1
+        name = f"{first.name}_{number}" if first.name else None
+        made = registry.create(*metaclass_of(first).key, name=name)
+        assert isinstance(made, bl.GoTo)  # as the first is
+        found.append(made)
+    return found
 
 
 def _behaviour(robot: bl.Robot) -> bl.Behaviour:

@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.metaclass import Enumeration, Feature
 from mmrs_core.migration.rules.mapping import Constant
-from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.rules.paths import FeaturePath, Keep, reach
+from mmrs_core.migration.rules.values import parsed
 
 
-def put(element: Element, path: str, value: Constant) -> None:
+def put(element: Element, path: FeaturePath, value: Constant, keep: Keep | None = None) -> None:
     """Set the feature at the end of a path.
 
+    Args:
+        keep: gives a place to what is made on the way and only referred to.
+
     Raises:
-        ValueError: if the value is not of the feature's type; the message begins with the value.
+        ValueError: if the value is not of the feature's type; the message begins with the value. If what
+            stands on the way is of a class without that feature.
     """
-    owner, feature = reach(element, path)
+    owner, feature = reach(element, path, keep)
     found = parsed(feature, value)
     if feature.many:
         getattr(owner, feature.attribute).append(found)
     else:
         setattr(owner, feature.attribute, found)
-
-
-def parsed(feature: Feature, value: Constant) -> object:
-    """Return a value as the feature holds it; a whole number may be written with a fraction of 0.
-
-    Raises:
-        ValueError: if it is not of the feature's type.
-    """
-    kind = feature.type
-    if not isinstance(kind, DataType | Enumeration):
-        raise ValueError(f"{value!r}: {feature.name} holds elements, not values")
-    text = str(value).lower() if isinstance(value, bool) else str(value)
-    if isinstance(kind, DataType) and kind.python is int and text.endswith(".0"):
-        text = text.removesuffix(".0")
-    return kind.parse(text)
 
 
 def scaled(text: str, factor: float) -> str:

@@ -20,6 +20,7 @@ class Draft:
         later: the uses that have to wait until every element stands: (node, feature, element, use).
         waits: the nodes that become conditions of transitions, with their rules.
         rings: the nodes that become way points around a circle, with their rules.
+        assumed: the texts that stand for what the source does not say and no feature gets as it is.
     """
 
     roots: list[Element] = field(default_factory=list)
@@ -27,6 +28,7 @@ class Draft:
     later: list[tuple[SourceNode, str, Element, Use]] = field(default_factory=list)
     waits: list[tuple[SourceNode, Rule]] = field(default_factory=list)
     rings: list[tuple[SourceNode, Rule]] = field(default_factory=list)
+    assumed: dict[tuple[SourceNode, str], str] = field(default_factory=dict)
 
     def around(self, node: SourceNode) -> Iterator[Element]:
         """Yield the elements made of the nodes around a node, nearest first."""
@@ -35,3 +37,11 @@ class Draft:
             if above in self.made:
                 yield self.made[above]
             above = above.parent
+
+    def outermost(self, node: SourceNode, element: Element) -> Element:
+        """Return the root that the element made of a node belongs to, or will."""
+        return [element, *self.around(node)][-1]
+
+    def said(self, node: SourceNode, feature: str) -> str:
+        """Return the first text that a feature holds, or what stands for it; empty if nothing does."""
+        return node.text(feature) or self.assumed.get((node, feature), "")

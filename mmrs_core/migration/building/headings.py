@@ -30,7 +30,7 @@ def set_heading(
 ) -> None:
     """Give a move a heading for the angle that a feature holds; what hinders it is recorded."""
     assert use.bearing is not None  # asked before
-    value, *further = node.values[feature]
+    value, *further = node.values.get(feature) or [Text(draft.said(node, feature), node.line)]
     if further:
         record.value(Category.LOST, "is more than one angle, of which the first counts", node, feature)
     own = use.bearing.base == "self"
@@ -38,7 +38,7 @@ def set_heading(
     robot = next((each for each in draft.around(node) if isinstance(each, bl.Robot)), None)
     base = element if own else robot.home if robot is not None else None
     behaviour = root_of(owner) if owner is not None else None
-    target = metaclass_of(owner).by_name.get(use.to[0]) if owner is not None else None
+    target = metaclass_of(owner).by_name.get(use.to[0].last) if owner is not None else None
     if (
         not isinstance(value, Text)
         or owner is None

@@ -19,7 +19,7 @@ from mmrs_core.migration.building.headings import set_heading
 from mmrs_core.migration.findings import Category
 from mmrs_core.migration.recording import Record
 from mmrs_core.migration.rules.mapping import Counterpart, Rule, Use
-from mmrs_core.migration.rules.paths import reach
+from mmrs_core.migration.rules.paths import FeaturePath, reach
 from mmrs_core.migration.sources.nodes import Link, SourceNode, Text
 
 
@@ -55,7 +55,12 @@ class Linker:
         self._set(node, feature, element, use.to, targets)
 
     def _set(
-        self, node: SourceNode, feature: str, element: Element, paths: Iterable[str], targets: list[Element]
+        self,
+        node: SourceNode,
+        feature: str,
+        element: Element,
+        paths: Iterable[FeaturePath],
+        targets: list[Element],
     ) -> None:
         for path in paths:
             owner, target = reach(element, path)
@@ -148,7 +153,7 @@ class Linker:
         ]
         waiting = list(_transitions(robots[0], wait.among, wait.at.get(node.feature, ()), move))
         for transition in waiting:
-            self._set(node, wait.slot, transition, (wait.add,), own)
+            self._set(node, wait.slot, transition, (FeaturePath((), wait.add, wait.add),), own)
         if waiting:
             self._record.element(Category.CHANGED, rule.changed or f"becomes {wait.add} of transitions", node)
         else:

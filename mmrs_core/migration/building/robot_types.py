@@ -3,10 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from math import sqrt
 from shlex import quote
 
+from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages.element import Element
-from mmrs_core.languages.grounding.values import children, text
+from mmrs_core.languages.grounding.values import child, children, number, text
+
+SHARE_OF_LARGEST_SPEED = {"SAFE": 0.5, "NORMAL": 0.75, "AGGRESSIVE": 1.0}
+"""At which a robot goes by its travel mode where nobody says how fast."""
+
+
+@dataclass(frozen=True, slots=True)
+class Speeds:
+    """Speeds of a robot, in metres per second.
+
+    Attributes:
+        slowest, fastest: that its type has.
+        usual: by its travel mode.
+        acceleration: the largest, in metres per second squared; None where nobody knows.
+    """
+
+    slowest: float
+    fastest: float
+    usual: float
+    acceleration: float | None = None
+
+    def around(self, radius: float) -> float:
+        """Return the speed on a circle: the usual one, or the one that the largest acceleration allows."""
+        if self.acceleration is None:
+            return self.usual
+        return min(self.usual, sqrt(max(0.0, self.acceleration) * radius))
 
 
 class RobotTypes:
@@ -28,7 +56,9 @@ class RobotTypes:
             otherwise: the type that stands in for one that is not known; empty: none does.
         """
         if name in self.named and name != self.named[name]:
-            return self.named[name], f"the robot type {name!r} is taken for {self.named[name]!r}"
+            taken = self.named[name]
+            told = f"the robot type {name!r} is taken for {taken!r}"
+            return taken, told if taken in self.known else f"{told}, and no such type is known: {_how(taken)}"
         if name in self.known:
             return name, ""
         unknown, option = f"no robot type {name!r} is known", quote(f"{name}=NAME")
@@ -37,7 +67,19 @@ class RobotTypes:
                 otherwise,
                 f"{unknown}; {otherwise!r} stands in for it: say what it is by --type {option}",
             )
-        return name, f"{unknown}: write robots/{name}.xmi, or say what it is by --type {option}"
+        return name, f"{unknown}: {_how(name)}, or say what it is by --type {option}"
+
+    def speeds(self, robot: bl.Robot) -> Speeds | None:
+        """Return the speeds of a robot by its type and travel mode; None where they are not known."""
+        robot_type = self.known.get(robot.typeName or "")
+        capability = next(iter(children(robot_type, "movementCapabilities")), None)
+        speed = child(capability, "speed") if capability is not None else None
+        fastest = number(speed, "max") if speed is not None else None
+        if capability is None or speed is None or fastest is None:
+            return None
+        share = SHARE_OF_LARGEST_SPEED.get(robot.travelMode or "", 1.0)
+        slowest = number(speed, "min") or 0.0
+        return Speeds(slowest, fastest, max(slowest, share * fastest), number(capability, "maxAcceleration"))
 
     def device_for(self, type_name: str, action: str) -> str:
         """Return the id of the only device of a type that supports an action, or an empty text."""
@@ -49,3 +91,8 @@ class RobotTypes:
             if any(text(each, "name") == action for each in children(device, "supportedActions"))
         ]
         return found[0] if len(found) == 1 else ""
+
+
+def _how(name: str) -> str:
+    """Return how a robot type of a name becomes known."""
+    return f"migrate the file that describes it, too, or write robots/{name}.xmi"

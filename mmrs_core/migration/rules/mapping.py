@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from mmrs_core.migration.rules.paths import FeaturePath
 from mmrs_core.migration.sources.documents import KnownDocument
 from mmrs_core.migration.sources.metamodels import Dialect
 from mmrs_core.migration.sources.structure import Structure
@@ -22,7 +23,20 @@ class Also:
     """
 
     given: tuple[str, ...]
-    to: tuple[str, ...]
+    to: tuple[FeaturePath, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Make:
+    """An element that is made where the source has none.
+
+    Attributes:
+        to: (nsURI, name) of its class.
+        set: its values, by path in it.
+    """
+
+    to: tuple[str, str]
+    set: Mapping[FeaturePath, Constant]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +79,8 @@ class Use:
         times: what numbers are multiplied by.
         values: new texts by old ones.
         absent: what the target gets where the source has nothing; may hold ``{feature}`` and ``{number}``.
+        make: the element that the target gets where the source has none.
+        first_of: a source feature whose first element the target gets where the source has none.
         void: texts that mean that nothing is known.
         changed: how the meaning has changed.
         rule: the variant of the rule (written ``as``) by which contained elements are turned, or empty.
@@ -73,18 +89,21 @@ class Use:
         below: a source feature that this number has to be less than, or it is left out.
         distinct: leave out an element that equals the one before it.
         widen: metres by which a border without an area is widened; 0: it stays as it is.
-        hoist: the feature of the root that gets the contained element, which is then referred to.
+        hoist: the feature of the root that gets what is contained, or made on the way of a path, and is
+            then referred to.
         unique: make texts unique among siblings by a number behind them.
         robot_type: the text names a robot type.
         otherwise: the robot type that stands in for one that is not known; empty: none does.
     """
 
-    to: tuple[str, ...] = ()
+    to: tuple[FeaturePath, ...] = ()
     also: Also | None = None
     drop: str = ""
     times: float = 1.0
     values: Mapping[str, str] = field(default_factory=dict)
     absent: Constant | None = None
+    make: Make | None = None
+    first_of: str = ""
     void: tuple[str, ...] = ()
     changed: str = ""
     rule: str = ""
@@ -124,12 +143,14 @@ class Ring:
 
     Attributes:
         radius, height, clockwise: the source features that describe the circle.
-        points: how many way points there are.
+        duration: the source feature that says for how many seconds; empty: one round, however long it takes.
+        points: how many way points a round has.
     """
 
     radius: str
     height: str
     clockwise: str
+    duration: str
     points: int
 
 
@@ -139,11 +160,11 @@ class DeviceLookup:
 
     Attributes:
         action: the source feature that names the action.
-        to: the feature of the new element that gets the device's id.
+        to: where the device's id goes in the new element.
     """
 
     action: str
-    to: str
+    to: FeaturePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +179,7 @@ class Rule:
         merge: its features go into the element made of its container.
         set: constants by path in the new element.
         changed: how the meaning has changed.
-        uses: by source feature.
+        uses: by source feature, those of supertypes included.
         robot_type: it makes robot types, which others name.
     """
 
@@ -167,7 +188,7 @@ class Rule:
     drop: str = ""
     unreferred: str = ""
     merge: bool = False
-    set: Mapping[str, Constant] = field(default_factory=dict)
+    set: Mapping[FeaturePath, Constant] = field(default_factory=dict)
     changed: str = ""
     uses: Mapping[str, Use] = field(default_factory=dict)
     wait: Wait | None = None

@@ -11,6 +11,7 @@ from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
 from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.notation import declared_structure
+from mmrs_core.migration.rules.paths import Classes
 from mmrs_core.migration.rules.rules_file import read_rules
 from mmrs_core.migration.rules.toml_places import line_of
 from mmrs_core.migration.rules.toml_tables import Table
@@ -53,7 +54,7 @@ def read_mapping(path: Path, registry: Registry) -> DialectMapping:
 def _with_line(message: str, path: str, text: str) -> str:
     """Return a message that begins with a file and keys in it, with the line of the deepest key."""
     said = message.removeprefix(f"{path}: ")
-    line = line_of(text, re.split(r": |\.", said))
+    line = line_of(text, said.split(": "), re.split(r": |\.", said))
     return f"{path}:{line}: {said}" if line else message
 
 
@@ -70,7 +71,7 @@ def _mapping(top: Table, registry: Registry) -> DialectMapping:
         name=top.take("name", str, "") or top.where,
         dialect=dialect,
         structure=structure,
-        rules=read_rules(top.table("rules"), languages, registry, structure),
+        rules=read_rules(top.table("rules"), Classes(registry, languages), structure),
         types=top.table("types").text_by_key(),
         documents=tuple(_document(name, table) for name, table in top.table("documents").tables().items()),
     )

@@ -1,56 +1,46 @@
-"""Reads the rules of a mapping file: what becomes of each class and of each feature."""
+"""Reads the rules of a mapping file: what becomes of each class."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from dataclasses import replace
 
 from mmrs_core.languages.metaclass import Metaclass
-from mmrs_core.languages.registry import Registry
-from mmrs_core.migration.rules.mapping import (
-    Also,
-    Bearing,
-    Constant,
-    Counterpart,
-    DeviceLookup,
-    Ring,
-    Rule,
-    Use,
-    Wait,
-)
-from mmrs_core.migration.rules.paths import feature_at
+from mmrs_core.migration.rules.fitting import unfitting
+from mmrs_core.migration.rules.mapping import DeviceLookup, Ring, Rule, Use, Wait
+from mmrs_core.migration.rules.paths import Classes
 from mmrs_core.migration.rules.sense import nonsense
 from mmrs_core.migration.rules.toml_tables import Table
+from mmrs_core.migration.rules.uses_file import for_class, read_constants, read_paths, read_use
 from mmrs_core.migration.sources.structure import Structure
 
 ROBOT_TYPE = ("urn:mmrs:robot:1.0", "Robot")
 
 
-def read_rules(
-    packages: Table, languages: Mapping[str, str], registry: Registry, structure: Structure
-) -> dict[str, Rule]:
+def read_rules(packages: Table, classes: Classes, structure: Structure) -> dict[str, Rule]:
     """Return the rules by ``package.Class`` and ``package.Class/variant``.
 
     Raises:
-        UnreadableError: if a key is misspelt, a class, feature or literal does not exist on either side, or
-            a rule makes no sense.
+        UnreadableError: if a key is misspelt, a class, feature or literal does not exist on either side, a
+            value is not of the type it goes to, or a rule makes no sense.
     """
     rules: dict[str, Rule] = {}
-    for package, classes in packages.tables().items():
-        for name, table in classes.tables().items():
-            rule = _rule(f"{package}.{name}", table, languages, registry)
+    for package, kinds in packages.tables().items():
+        for name, table in kinds.tables().items():
+            rule = _rule(f"{package}.{name}", table, classes)
             _check_source(rule, table, structure)
             rules[rule.source] = rule
-    for rule in rules.values():
-        _check_inherited(rule, rules, packages, registry, structure)
-    for fault in nonsense(rules, registry, structure):
+    for fault in nonsense(rules, structure):
+        raise packages.fault(fault)
+    rules = {name: _with_inherited(rule, rules, packages, classes, structure) for name, rule in rules.items()}
+    for fault in unfitting(rules, classes.registry, structure):
         raise packages.fault(fault)
     return rules
 
 
-def _rule(source: str, table: Table, languages: Mapping[str, str], registry: Registry) -> Rule:
+def _rule(source: str, table: Table, classes: Classes) -> Rule:
     to = table.take("to", str, "")
-    metaclass = _metaclass(to, table, languages, registry) if to else None
+    metaclass = _metaclass(to, table, classes) if to else None
     rule = Rule(
         source=source,
         to=metaclass.key if metaclass is not None else None,
@@ -58,109 +48,31 @@ def _rule(source: str, table: Table, languages: Mapping[str, str], registry: Reg
         drop=table.take("drop", str, ""),
         unreferred=table.take("unreferred", str, ""),
         merge=table.take("merge", bool, False),
-        set=_constants(table.table("set"), metaclass),
+        set=read_constants(table.table("set"), metaclass, classes),
         changed=table.take("changed", str, ""),
-        uses={name: _use(table, name, value, metaclass) for name, value in _features(table)},
+        uses=_uses(table, metaclass, classes),
         wait=_wait(table.table("wait")) if "wait" in table else None,
         ring=_ring(table.table("ring")) if "ring" in table else None,
-        device=_device(table.table("device")) if "device" in table else None,
+        device=_device(table.table("device"), metaclass, classes) if "device" in table else None,
     )
     table.done()
     return rule
 
 
-def _metaclass(to: str, table: Table, languages: Mapping[str, str], registry: Registry) -> Metaclass:
-    prefix, _, name = to.partition(":")
-    if prefix not in languages:
-        raise table.fault(f"to: {to!r}: {prefix!r} is none of the languages ({', '.join(languages)})")
+def _metaclass(to: str, table: Table, classes: Classes) -> Metaclass:
     try:
-        metaclass = registry.metaclass(languages[prefix], name)
+        return classes.named(to)
     except ValueError as fault:
         raise table.fault(f"to: {fault}") from None
-    if metaclass.abstract:
-        raise table.fault(f"to: {to} is abstract")
-    return metaclass
 
 
-def _features(table: Table) -> list[tuple[str, object]]:
-    inner = table.table("features")
-    return [(name, inner.take(name, object, "")) for name in inner.keys]
-
-
-def _constants(table: Table, metaclass: Metaclass | None) -> dict[str, Constant]:
-    found = {path: table.take(path, object, "") for path in table.keys}
-    for path, value in found.items():
-        if not isinstance(value, str | float | bool | int):
-            raise table.fault(f"{path}: expected a text, number or truth value")
-        _check_path(path, table, metaclass)
-    return cast(dict[str, Constant], found)
-
-
-def _check_path(path: str, table: Table, metaclass: Metaclass | None) -> None:
-    if metaclass is None:
-        return
-    try:
-        feature_at(metaclass, path)
-    except ValueError as fault:
-        raise table.fault(str(fault)) from None
-
-
-def _use(rule: Table, name: str, value: object, metaclass: Metaclass | None) -> Use:
-    table = Table(f"{rule.where}: {name}", {"to": value} if isinstance(value, str | list) else value)
-    absent = table.take("absent", object, None)
-    if not isinstance(absent, str | float | bool | int | None):
-        raise table.fault("absent: expected a text, number or truth value")
-    use = Use(
-        to=table.texts("to"),
-        also=_also(table.table("also"), metaclass) if "also" in table else None,
-        drop=table.take("drop", str, ""),
-        times=table.take("times", float, 1.0),
-        values=table.table("values").text_by_key(),
-        absent=absent,
-        void=table.texts("void"),
-        changed=table.take("changed", str, ""),
-        rule=table.take("as", str, ""),
-        beside=table.take("with", str, ""),
-        given=table.take("given", str, ""),
-        below=table.take("below", str, ""),
-        distinct=table.take("distinct", bool, False),
-        widen=table.take("widen", float, 0.0),
-        hoist=table.take("hoist", str, ""),
-        unique=table.take("unique", bool, False),
-        robot_type=table.take("robot_type", bool, False),
-        otherwise=table.take("otherwise", str, ""),
-        counterpart=_counterpart(table.table("counterpart")) if "counterpart" in table else None,
-        bearing=_bearing(table.table("bearing")) if "bearing" in table else None,
-    )
-    table.done()
-    if sum(map(bool, (use.to, use.drop, use.beside))) != 1:
-        raise table.fault("needs one of 'to', 'drop' and 'with': where it goes, or why it does not")
-    for path in use.to if use.bearing is None or use.bearing.base == "home" else ():
-        _check_path(path, table, metaclass)
-    return use
-
-
-def _also(table: Table, metaclass: Metaclass | None) -> Also:
-    found = Also(table.texts("given"), table.texts("to"))
-    table.done()
-    for path in found.to:
-        _check_path(path, table, metaclass)
-    return found
-
-
-def _counterpart(table: Table) -> Counterpart:
-    found = Counterpart(
-        table.take("of", str, ""), table.take("within", str, ""), table.take("make", bool, False)
-    )
-    table.done()
-    return found
-
-
-def _bearing(table: Table) -> Bearing:
-    found = Bearing(table.take("base", str, "home"), table.take("distance", float, 0.0))
-    if found.base not in ("self", "home") or found.distance <= 0:
-        raise table.fault("needs base = 'self' or 'home', and a distance above 0 in metres")
-    table.done()
+def _uses(rule: Table, metaclass: Metaclass | None, classes: Classes) -> Mapping[str, Use]:
+    inner = rule.table("features")
+    found = {}
+    for name in inner.keys:
+        value = inner.take(name, object, "")
+        table = Table(f"{rule.where}: {name}", {"to": value} if isinstance(value, str | list) else value)
+        found[name] = read_use(table, metaclass, classes)
     return found
 
 
@@ -176,34 +88,41 @@ def _wait(table: Table) -> Wait:
     return found
 
 
-def _device(table: Table) -> DeviceLookup:
-    found = DeviceLookup(table.take("action", str, ""), table.take("to", str, ""))
+def _device(table: Table, metaclass: Metaclass | None, classes: Classes) -> DeviceLookup:
+    action, to = table.take("action", str, ""), read_paths(table, "to", metaclass, classes)
+    if len(to) != 1:
+        raise table.fault("to: expected one path, which gets the device's id")
     table.done()
-    return found
+    return DeviceLookup(action, to[0])
 
 
 def _ring(table: Table) -> Ring:
-    radius, height, clockwise = (table.take(name, str, "") for name in ("radius", "height", "clockwise"))
+    names = ("radius", "height", "clockwise", "duration")
+    radius, height, clockwise, duration = (table.take(name, str, "") for name in names)
     points = table.take("points", int, 12)
     if points < 3:
         raise table.fault("points: needs at least 3")
-    found = Ring(radius, height, clockwise, points)
     table.done()
-    return found
+    return Ring(radius, height, clockwise, duration, points)
 
 
-def _check_inherited(
-    rule: Rule, rules: Mapping[str, Rule], packages: Table, registry: Registry, structure: Structure
-) -> None:
-    """Do nothing if what rules of supertypes say of features suits the class that a rule leads to."""
-    kind = rule.source.partition("/")[0]
-    above = [rules[name] for name in structure.ancestry(kind) if name in rules]
-    metaclass = registry.metaclass(*rule.to) if rule.to is not None else None
-    for other in above:
-        for feature, use in other.uses.items():
-            table = Table(f"{packages.where}: {rule.source}: {feature}, as {other.source} says", {})
-            for path in use.to if feature not in rule.uses and use.bearing is None else ():
-                _check_path(path, table, metaclass)
+def _with_inherited(
+    rule: Rule, rules: Mapping[str, Rule], packages: Table, classes: Classes, structure: Structure
+) -> Rule:
+    """Return a rule with what those of the supertypes say of further features."""
+    if rule.to is None:
+        return rule
+    metaclass, uses = classes.registry.metaclass(*rule.to), dict(rule.uses)
+    for name in structure.ancestry(rule.source.partition("/")[0]):
+        for feature, use in rules[name].uses.items() if name in rules else ():
+            if feature in uses:
+                continue
+            try:
+                uses[feature] = for_class(use, metaclass, classes)
+            except ValueError as fault:
+                where = f"{rule.source.replace('.', ': ', 1)}: {feature}, as {name} says"
+                raise packages.fault(f"{where}: {fault}") from None
+    return replace(rule, uses=uses)
 
 
 def _check_source(rule: Rule, table: Table, structure: Structure) -> None:

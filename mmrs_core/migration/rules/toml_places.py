@@ -11,18 +11,21 @@ _TRANSPARENT = "features"
 """The table that messages leave out: what is in it, they tell of the class."""
 
 
-def line_of(text: str, keys: Sequence[str]) -> int:
+def line_of(text: str, *ways: Sequence[str]) -> int:
     r"""Return the line, from 1, of the deepest of nested keys that is found; 0 if not even the first is.
 
     Lines inside texts of several lines may be taken for keys; nobody writes such texts in mappings.
 
+    Args:
+        ways: the keys from the root; several, where it is not known which of their dots divide keys.
+
     >>> line_of('name = "x"\n[rules.port.Boat]\nto = "y"', ("rules", "port", "Boat", "to"))
     3
     """
-    keys = [key for key in keys if key != _TRANSPARENT]
+    wanted = [[key for key in keys if key != _TRANSPARENT] for keys in ways]
     best, deepest = 0, 0
     for number, path in _paths(text):
-        depth = _shared(path, keys)
+        depth = max(_shared(path, keys) for keys in wanted)
         if depth > deepest:
             best, deepest = number, depth
     return best

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,15 +56,27 @@ def open_document(path: Path, known: Iterable[KnownDocument]) -> Opened:
         UnreadableError: if it cannot be read, is neither XML nor JSON, or is of no known form.
     """
     file, data = str(path), read_bytes(path)
-    start = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
-    if start in (b"{", b"["):
+    start = _first_letter(data)
+    if start in ("{", "["):
         return _json(Tree(data, file), known)
+    if start != "<":
+        is_json = path.suffix.lower() == ".json"
+        reason = "no model: its root is no object and no list" if is_json else "neither XML nor JSON"
+        raise UnreadableError(f"{file}:1: {reason}")
     document = parse_xmi(data, file)
     claims = [root.claim for root in document.roots]
     if any(claim is not None and claim.document == ECORE for claim in claims):
         named = ", ".join(table.ns_uri for table in parse_tables(data, file))
         return Opened(file, f"a metamodel, {named}: nothing to migrate")
     return Opened(file, "a model", document)
+
+
+def _first_letter(data: bytes) -> str:
+    """Return the first letter that is no blank, whichever Unicode encoding the text is in."""
+    letters = data[:4096].translate(None, b"\0").removeprefix(BOM_UTF8)
+    for mark in (BOM_UTF16_LE, BOM_UTF16_BE):
+        letters = letters.removeprefix(mark)
+    return letters.lstrip()[:1].decode("latin-1")
 
 
 def _json(tree: Tree, known: Iterable[KnownDocument]) -> Opened:

@@ -62,21 +62,35 @@ def candidates(given: Sequence[Path], document: SourceDocument) -> Iterator[Path
 
 
 def metamodels_for(document: SourceDocument, given: Sequence[Path], dialect: Dialect) -> dict[str, Found]:
-    """Return the metamodels at hand by package; of several, the one whose nsURI the document names.
+    """Return the metamodels at hand by package, those that are given before those that the document leads to.
+
+    Of several, the one whose nsURI or file the document names is taken, else the first.
 
     Raises:
         UnreadableError: if a metamodel that was given is none; one that only lies beside the model is
             passed over.
     """
-    wanted = {root.claim.document for root in document.roots if root.claim}
-    wanted |= {uri for uri, _ in document.locations}
-    chosen: dict[str, Found] = {}
+    named = _named_by(document)
+    chosen: dict[str, tuple[tuple[bool, bool], Found]] = {}
     for found in _readable(dict.fromkeys(candidates(given, document)), frozenset(given)):
         package = dialect.package(found.table.ns_uri)
-        exact = found.table.ns_uri in wanted
-        if package and (package not in chosen or (exact and chosen[package].table.ns_uri not in wanted)):
-            chosen[package] = found
-    return chosen
+        exact = found.table.ns_uri in named or found.file.name in named
+        rank = (_is_given(found.file, given), exact)
+        if package and (package not in chosen or rank > chosen[package][0]):
+            chosen[package] = (rank, found)
+    return {package: found for package, (_, found) in chosen.items()}
+
+
+def _named_by(document: SourceDocument) -> set[str]:
+    """Return the nsURIs, and the names of the .ecore files, by which a document names its metamodels."""
+    claims = {node.claim.document for root in document.roots for node in root.inside() if node.claim}
+    locations = {text.partition("#")[0] for pair in document.locations for text in pair}
+    files = {text.replace("\\", "/").rpartition("/")[2] for text in claims | locations}
+    return claims | locations | {file for file in files if file.endswith(".ecore")}
+
+
+def _is_given(file: Path, given: Iterable[Path]) -> bool:
+    return any(file == each or file.parent == each for each in given)
 
 
 def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
@@ -84,7 +98,7 @@ def _readable(files: Iterable[Path], given: frozenset[Path]) -> Iterator[Found]:
         try:
             yield from (Found(file, table) for table in read_tables(file))
         except UnreadableError:
-            if file in given or file.parent in given:
+            if _is_given(file, given):
                 raise
 
 

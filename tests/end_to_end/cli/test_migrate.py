@@ -40,7 +40,8 @@ def test_types_that_a_project_has_already_are_known_to_what_is_migrated_later(mm
 def test_a_mission_without_its_robot_types_is_not_valid(mmrs, project):
     code, out, err = mmrs("migrate", FLYAQ / "orchard-mission.json", "-o", project)
     assert code == 1
-    assert "no robot type 'Heron' is known: write robots/Heron.xmi" in out
+    assert "no robot type 'Heron' is known: migrate the file that describes it, too" in out
+    assert out.endswith(f"{project}: not valid\n")
     assert "Heron" in err
 
 
@@ -138,6 +139,50 @@ def test_a_name_may_be_said_to_stand_for_a_robot_type(mmrs, project):
     code, _, err = mmrs("migrate", *files, "-o", project, "--type", "Heron")
     assert code == 2
     assert "'Heron' is not written as OLD=NAME" in err
+
+
+def test_a_name_that_occurs_nowhere_stands_for_no_robot_type(mmrs, project):
+    code, _, err = mmrs("migrate", FLYAQ / "orchard-mission.json", "-o", project, "--type", "nix=Foo")
+    assert code == 2
+    assert "'nix': no robot type of this name occurs; these files name 'Heron'" in " ".join(err.split())
+    assert not project.exists()
+
+
+def test_a_behaviour_without_its_robot_type_says_what_it_needs(mmrs, project):
+    code, out, _ = mmrs("migrate", FLYAQ / "round.json", "-o", project)
+    assert code == 0
+    assert f"{project}/behaviour.xmi: to simulate or generate it, the robot type 'Heron' is needed" in out
+    assert out.endswith(f"{project}/behaviour.xmi: valid\n")
+    assert mmrs("simulate", project)[0] != 0
+    told = json.loads(mmrs("migrate", FLYAQ / "round.json", "-o", project, "--json")[1])
+    assert [verdict["missing"] for verdict in told["verdicts"]] == [["Heron"]]
+    _, out, _ = mmrs("migrate", FLYAQ / "round.json", FLYAQ / "Heron.xmi", "-o", project, "--force")
+    assert "is needed" not in out
+    assert mmrs("simulate", project)[0] == 0
+
+
+def test_what_a_folder_holds_already_is_judged_with_what_is_migrated_into_it(mmrs, project):
+    mmrs("migrate", FLYAQ / "orchard-mission.json", "-o", project)
+    assert mmrs("validate", project)[0] == 1
+    code, out, err = mmrs("migrate", FLYAQ / "orchard-context.json", "-o", project)
+    assert code == 1
+    assert out.endswith(f"{project}: not valid\n")
+    assert "its type 'Heron' is not known" in err
+
+
+def test_a_folder_that_cannot_be_judged_is_not_called_valid(mmrs, project):
+    mmrs("migrate", *ORCHARD, "-o", project)
+    (project / "context.json").write_text("{}")
+    code, out, err = mmrs("migrate", FLYAQ / "orchard-mission.json", "-o", project)
+    assert code == 3
+    assert out.endswith(f"{project}: not valid\n")
+    assert "has both context.xmi and context.json" in err
+
+
+def test_robot_types_alone_are_valid_but_no_mission_yet(mmrs, project):
+    code, out, _ = mmrs("migrate", FLYAQ / "Heron.xmi", "-o", project)
+    assert code == 0
+    assert out.endswith(f"{project}: valid, with no mission beside it yet\n")
 
 
 def test_a_mapping_that_is_none_is_refused_before_anything_is_written(mmrs, project):

@@ -1,5 +1,6 @@
 """What becomes of the behaviours of 2015."""
 
+from itertools import pairwise
 from math import hypot
 
 import pytest
@@ -77,14 +78,80 @@ def test_the_place_of_a_goto_becomes_a_target_of_the_behaviour(behaviour, moves)
 
 def test_a_circle_becomes_way_points_around_its_centre(flown, behaviour, moves, told):
     ring = [move for move in behaviour.robots[0].moves if move.name.startswith("around")]
-    assert len(ring) == 13
+    assert len(ring) == 3 * 12 + 1
     centre = ring[0].target.reference
     assert (centre.latitude, centre.altitude) == (46.0015, 30.0)
     for move in ring:
         assert move.target.reference is centre
         assert hypot(move.target.x, move.target.y) == pytest.approx(12.0, abs=0.001)
         assert move.target.z == 5.0
-    assert told(flown, "duration 30.0 of Circle 'around'")
+    assert told(flown, "3 times at 7.454 m/s takes so long: duration 30.0 of Circle 'around'")
+    assert [move.speed for move in ring] == [None, *([7.454] * 36)]
+
+
+def test_rounds_last_as_long_as_the_circle(behaviour):
+    ring = [move for move in behaviour.robots[0].moves if move.name.startswith("around")]
+    ways = (
+        hypot(one.target.x - other.target.x, one.target.y - other.target.y) for one, other in pairwise(ring)
+    )
+    assert sum(ways) / ring[1].speed == pytest.approx(30.0, abs=0.01)
+
+
+def test_without_its_robot_type_a_circle_is_one_round_that_lasts_as_long(migrated, model, flyaq, told):
+    found = migrated(flyaq / "round.xmi")
+    ring = [move for move in model(found, "behaviour.xmi").robots[0].moves if "around" in move.name]
+    assert len(ring) == 13
+    assert told(found, "once at 2.485 m/s takes so long")
+
+
+def test_a_circle_longer_than_any_rounds_is_told(migrated, model, flyaq, changed, told):
+    found = migrated(changed('duration="30.0"', 'duration="30000.0"'), flyaq / "Heron.xmi")
+    ring = [move for move in model(found, "behaviour.xmi").robots[0].moves if "around" in move.name]
+    assert len(ring) == 10 * 12 + 1
+    assert told(found, "LOST: the robot goes round 10 times, and no speed that it has makes that last")
+
+
+@pytest.mark.parametrize(
+    ("given", "value", "assumed"),
+    [
+        ('clockwise="true"', "clockwise", "clockwise is not given: false"),
+        ('altitude="35.0" clockwise', "altitude", "altitude is not given: 0.0"),
+        ('radius="12.0"', "radius", "radius is not given: 0.0"),
+        ('duration="30.0"', "duration", "duration is not given: 0.0"),
+    ],
+)
+def test_what_a_circle_does_not_say_is_what_2015_took_it_for(migrated, told, changed, given, value, assumed):
+    rest = given.partition(" ")[2]
+    assert told(migrated(changed(given, rest)), f"DEFAULTED: {assumed}: {value} of Circle 'around'")
+
+
+def test_a_circle_that_does_not_say_which_way_goes_the_other_way(migrated, model, changed):
+    found = model(migrated(changed('clockwise="true"', "")), "behaviour.xmi")
+    fourth = next(move for move in found.robots[0].moves if move.name == "around_4")
+    assert (fourth.target.x, fourth.target.y) == (-12.0, 0.0)
+
+
+def test_a_circle_without_an_altitude_lies_on_the_ground(migrated, model, changed):
+    found = model(migrated(changed('altitude="35.0" clockwise', "clockwise")), "behaviour.xmi")
+    assert next(move for move in found.robots[0].moves if move.name == "around_4").target.z == -30.0
+
+
+def test_circles_of_one_name_make_moves_of_different_names(migrated, model, changed, told):
+    circle = (
+        '<movements xsi:type="behaviour:Circle" name="around" radius="1"><targetPosition/></movements>'
+        '<movements xsi:type="behaviour:Hover" name="around_3"/>'
+    )
+    found = migrated(changed("<slots", f"{circle}<slots"))
+    names = [move.name for move in model(found, "behaviour.xmi").robots[0].moves]
+    assert len(set(names)) == len(names) == 2 * 13 + 8
+    assert told(found, "'around' is taken already, so this one is called 'around_2'")
+
+
+def test_a_direction_that_is_not_given_is_north(migrated, model, changed, told):
+    found = migrated(changed(' direction="90.0"', ""))
+    move = next(move for move in model(found, "behaviour.xmi").robots[0].moves if move.name == "east")
+    assert (move.heading.target.x, move.heading.target.y) == (0.0, 100_000.0)
+    assert told(found, "DEFAULTED: direction is not given: 0.0: direction of HeadTo 'east'")
 
 
 def test_a_clockwise_circle_goes_from_north_to_east(moves):
@@ -107,12 +174,12 @@ def test_the_way_leads_through_the_whole_circle(behaviour):
         way.append(following[way[-1]])
     assert len(following) == len(transitions)
     assert way[2:4] == ["out", "around"]
-    assert way[-5:] == ["around_13", "east", "watch", "down", "end"]
-    assert [each.fluid for each in transitions if each.to.name.startswith("around_")] == [True] * 12
+    assert way[-5:] == ["around_37", "east", "watch", "down", "end"]
+    assert [each.fluid for each in transitions if each.to.name.startswith("around_")] == [True] * 36
 
 
 def test_what_follows_a_circle_is_done_at_its_end(moves):
-    assert [action.name for action in moves[0]["around_13"].postActions] == ["ready"]
+    assert [action.name for action in moves[0]["around_37"].postActions] == ["ready"]
     assert list(moves[0]["around"].postActions) == []
 
 
@@ -138,7 +205,7 @@ def test_the_heading_at_a_place_becomes_that_of_the_move(moves):
 
 
 def test_a_notification_reaches_the_slot_of_the_receiver(flown, behaviour, moves, told):
-    (notify,) = moves[0]["around_13"].postActions
+    (notify,) = moves[0]["around_37"].postActions
     assert notify.slot is behaviour.robots[1].slots[0]
     assert notify.active is True
     assert told(flown, "the slot was the sender's; it is the receiver's slot of the same name here")

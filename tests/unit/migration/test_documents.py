@@ -35,6 +35,25 @@ def test_a_behaviour_is_no_list_although_it_holds_drones(what, flyaq):
     assert what(flyaq / "round.json") == "a model"
 
 
+@pytest.mark.parametrize("text", ["3", '"x"', "null", " true"])
+def test_json_that_is_no_model_is_told_so(what, written, text):
+    with pytest.raises(UnreadableError, match=r"x\.json:1: no model: its root is no object"):
+        what(written("x.json", text))
+
+
+def test_what_is_neither_xml_nor_json_is_told_so(what, written):
+    with pytest.raises(UnreadableError, match=r"README\.txt:1: neither XML nor JSON"):
+        what(written("README.txt", "How to fly\n"))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_files_in_any_unicode_encoding_are_recognised(what, flyaq, tmp_path, encoding):
+    for name in ("round.json", "Heron.xmi"):
+        text = (flyaq / name).read_text().replace("UTF-8", encoding.upper().removesuffix("-SIG"))
+        (tmp_path / name).write_bytes(text.encode(encoding))
+        assert what(tmp_path / name) == "a model"
+
+
 @pytest.mark.parametrize("text", ["", "hello", '{"a": 1}', "[1, 2]", "[]", "{", "<a>"])
 def test_what_is_no_model_is_refused_by_its_name(what, written, text):
     with pytest.raises(UnreadableError, match=r"x\.txt"):

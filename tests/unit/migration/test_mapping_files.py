@@ -6,6 +6,7 @@ import pytest
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.migration.rules.mapping_file import read_mapping
+from mmrs_core.resources import shipped
 
 GOOD = """
 [languages]
@@ -30,7 +31,7 @@ def read(written, registry):
 def test_a_mapping_is_read(read):
     found = read(GOOD)
     assert found.rules["port.Hull"].to == ("urn:mmrs:robot:1.0", "Robot")
-    assert found.rules["port.Hull"].uses["title"].to == ("name",)
+    assert [str(path) for path in found.rules["port.Hull"].uses["title"].to] == ["name"]
     assert found.dialect.package("urn:example:port") == "port"
     assert found.dialect.package("file:/home/me/port.ecore") == "port"
 
@@ -105,6 +106,93 @@ def test_a_fault_of_a_mapping_says_where_it_is(read, old, new, message):
         read(GOOD.replace(old, new, 1) if "Hull" not in old else GOOD.replace(old, new))
     assert message in str(fault.value)
     assert re.search(r"m\.toml:\d+: ", str(fault.value))
+
+
+FLYAQ = (shipped("migrations") / "flyaq-2015.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'set.altitudeReference = "ORIGIN"',
+            'set.altitudeReference = "MOON"',
+            "set: altitudeReference: 'MOON' is no literal of AltitudeReference (ELLIPSOID, MSL, ORIGIN)",
+        ),
+        ('set.altitudeReference = "ORIGIN"', 'set.reserve = "x"', "set: reserve: 'x': not a"),
+        (
+            'set.altitudeReference = "ORIGIN"',
+            "set.geoidSeparation = true",
+            "set: geoidSeparation: 'true': not a",
+        ),
+        ('set.altitudeReference = "ORIGIN"', 'set.team = "x"', "set: team: 'x': team holds elements"),
+        ("absent = 50.0", 'absent = "four"', "gridResolution: absent: 'four': not a"),
+        ('absent = "NORMAL"', 'absent = "NORMALLY"', "absent: 'NORMALLY' is no literal of GoToType"),
+        ('absent = "{type}_{number}"', 'absent = "{nope}_{number}"', "absent: 'nope' is no declared feature"),
+        ('hoist = "targets"', 'hoist = "nowhere"', "home: hoist: 'nowhere': no class that a rule leads to"),
+        ('radius = "radius"', 'radius = "name"', "Circle: ring: radius: name holds no number"),
+        ('clockwise = "clockwise"', 'clockwise = "way"', "ring: clockwise: 'way' is no declared feature"),
+        ('below = "maxHeight"', 'below = "name"', "minHeight: below: name holds no number"),
+        ('below = "maxHeight"', 'below = "greatest"', "below: 'greatest' is no declared feature"),
+        ('given = "maxPayload"', 'given = "payload"', "given: 'payload' is no declared feature of drone.Fl"),
+        ('given = ["maxPayload",', 'given = ["payload",', "also: given: 'payload' is no declared feature"),
+        ('radius = { with = "targetPosition"', 'radius = { with = "x"', "radius: with: 'x' is no declared"),
+        ('of = "receiver"', 'of = "name"', "slot: counterpart: of: name is no reference"),
+        ('within = "slots"', 'within = "boxes"', "counterpart: within: 'boxes': no class that a rule"),
+        ('action = "actionName"', 'action = "parameters"', "device: action: parameters is no attribute"),
+        ('wait = { slot = "slot"', 'wait = { slot = "name"', "wait: slot: name is no reference"),
+        ('add = "waitFor"', 'add = "waits"', "wait: add: 'waits': no transition has such a"),
+        ('add = "waitFor"', 'add = "slots"', "wait: add: 'slots': no transition has such a reference"),
+        ("at = { preActions", "at = { beforehand", "wait: at: 'beforehand' is no declared feature of any"),
+        ('as = "home"', 'as = "house"', "home: as: no rule has the variant 'house'"),
+        ('first_of = "shell"', 'first_of = "name"', "initialPosition: first_of: name is no contained"),
+        ("widen = 1.0", "widen = -1.0", "shell: widen: expected metres, not -1"),
+        (
+            'features.drones = "robots"',
+            'features.drones = { to = "robots", times = 2 }',
+            "times: means nothing",
+        ),
+        (
+            'name = "name"',
+            'name = { to = "name", distinct = true }',
+            "distinct: means nothing for name",
+        ),
+        ('giro = { to = "gyro"', 'giro = { to = "gps"', "gps: to: gps takes one value only, and giro goes"),
+        ('crs = { to = "crs"', 'crs = { to = "altitudeReference"', "absent: 'wgs84' is no literal of Alti"),
+        ('tasks = "tasks"', 'tasks = "crs"', "tasks: to: crs holds values, and tasks holds elements"),
+        ('name = "name"', 'name = "team"', "name: to: team holds elements, and name is an attribute"),
+        ('from = "from"', 'from = "name"', "from: to: name holds values, and from holds elements"),
+        ('swarm = "team"', 'swarm = { to = "team", hoist = "tasks" }', "team contains, so nothing is to be"),
+        (', hoist = "targets", as = "home"', ', as = "home"', "home only refers: needs 'hoist'"),
+        ("absent = 0.0, bearing", 'absent = "north", bearing', "direction: absent: expected a number"),
+        ('"targetPosition", absent = false', '"targetPosition", absent = "no"', "expected true or false"),
+        ('{ TakeSnapshot = "TakePicture" }', "{ TakeSnapshot = 2 }", "TakeSnapshot: expected a text, not 2"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_anything_is_read(read, old, new, message):
+    assert old in FLYAQ
+    line = FLYAQ.partition(old)[0].count("\n") + 1
+    with pytest.raises(UnreadableError) as fault:
+        read(FLYAQ.replace(old, new, 1))
+    assert message in str(fault.value)
+    told = int(re.search(r"m\.toml:(\d+): ", str(fault.value))[1])
+    assert line - 10 <= told <= line + 10, "told far from where it is"
+
+
+def test_a_constant_and_a_feature_for_one_value_are_refused(read):
+    with pytest.raises(UnreadableError, match=r"name takes one value only, and set: name goes there already"):
+        read(GOOD.replace("[rules.port.Hull.features]", 'set.name = "x"\n[rules.port.Hull.features]'))
+
+
+def test_a_wrong_constant_at_the_end_of_a_path_has_its_line(read):
+    text = GOOD.replace("[rules.port.Hull.features]", 'set."size.height" = "x"\n[rules.port.Hull.features]')
+    with pytest.raises(UnreadableError, match=r"m\.toml:11: .*set: size\.height: 'x': not a"):
+        read(text)
+
+
+def test_constants_of_a_rule_that_makes_nothing_are_refused(read):
+    with pytest.raises(UnreadableError, match="port: Named: set: means nothing without 'to'"):
+        read(GOOD + '[rules.port.Named]\nset.name = "x"\n')
 
 
 @pytest.mark.parametrize(

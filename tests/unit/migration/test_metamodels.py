@@ -1,6 +1,7 @@
 """Metamodels at hand go before what the mapping declares."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
@@ -66,6 +67,29 @@ def test_of_two_metamodels_that_of_the_same_spelling_is_taken(colour, written):
     written("b.ecore", ECORE.format(name="drone", uri="http://www.flyaq.it/drone", own="colour"))
     assert colour(written("Tern.xmi", MODEL.format(uri="http://www.flyaq.it/drone", more=""))) == [UNMAPPED]
     assert colour(written("Tern.xmi", MODEL.format(uri="http://www.flyaql.it/drone", more=""))) == [UNKNOWN]
+
+
+def test_of_two_metamodels_the_one_whose_file_the_model_names_is_taken(migrated, mapping, written, told):
+    for name, uri, own in (
+        ("a", "flyaql", "weight"),
+        ("birds", "flyaq", "colour"),
+        ("c", "flyaql", "height"),
+    ):
+        written(f"{name}.ecore", ECORE.format(name="drone", uri=f"http://www.{uri}.it/drone", own=own))
+    model = '{"eClass": "file:/C:/far/away/birds.ecore#//Drone", "name": "Tern", "colour": "white"}'
+    files = {**mapping.dialect.files, "drone": ("drone.ecore", "birds.ecore")}
+    by = replace(mapping, dialect=replace(mapping.dialect, files=files))
+    found = migrated(written("Tern.json", model), by=by)
+    assert [each.name for each in found.sources[0].metamodels.values()] == ["birds.ecore"]
+    assert told(found, "colour") == [UNMAPPED]
+
+
+def test_a_metamodel_that_is_given_goes_before_the_one_that_the_model_names(colour, written):
+    written("drone.ecore", ECORE.format(name="drone", uri="http://www.flyaq.it/drone", own="weight"))
+    given = written("far/birds.ecore", ECORE.format(name="x", uri="http://www.flyaql.it/drone", own="colour"))
+    file = written("Tern.xmi", MODEL.format(uri="http://www.flyaq.it/drone", more=""))
+    assert colour(file) == [UNKNOWN]
+    assert colour(file, metamodels=(given,)) == [UNMAPPED]
 
 
 def test_a_broken_metamodel_beside_a_model_is_passed_over(colour, written):

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from shapely.geometry import LinearRing
 
 
 @pytest.fixture
@@ -55,7 +56,10 @@ def test_numbers_written_as_texts_are_numbers(mission):
 
 def test_a_border_that_repeats_its_first_vertex_loses_the_repetition(orchard, mission, told):
     assert len(mission.tasks[0].shell) == 4
-    assert told(orchard, "vertices that repeat the one before are left out: shell 1 of 5")
+    assert told(
+        orchard,
+        "repeats the vertex beside it, so it is left out: shell Coordinate (latitude 46.0010;",
+    )
 
 
 def test_a_point_may_be_a_list_of_one(mission):
@@ -110,7 +114,8 @@ def test_a_task_of_an_unknown_extension_is_told_and_left_out(migrated, model, to
 
 def test_a_robot_type_that_nobody_knows_is_told(migrated, flyaq, told):
     assert told(
-        migrated(flyaq / "orchard-mission.json"), "no robot type 'Heron' is known: write robots/Heron.xmi"
+        migrated(flyaq / "orchard-mission.json"),
+        "no robot type 'Heron' is known: migrate the file that describes it, too, or write robots/Heron.xmi",
     )
 
 
@@ -132,7 +137,10 @@ def test_an_obstacle_without_an_area_is_drawn_around_its_vertices(orchard, conte
     assert len(pole.shell) == 4
     north = max(vertex.latitude for vertex in pole.shell)
     assert (north - 46.004) * 111_320 == pytest.approx(1.0, abs=0.01)
-    assert told(orchard, "DOUBTFUL: the border holds no area, so it is drawn 1 m around its vertices")
+    assert told(
+        orchard,
+        "so one is drawn 1 m around its vertices: draw it anew: shell (46.004, 11.004)",
+    )
 
 
 def test_a_greatest_height_of_zero_is_unlimited(orchard, context, told):
@@ -158,6 +166,53 @@ def test_every_finding_knows_its_line(orchard, flyaq):
     lines = {file.name: file.read_text().count("\n") for file in flyaq.iterdir() if file.is_file()}
     for finding in orchard.findings:
         assert 0 < finding.place.line <= lines[finding.place.file.rpartition("/")[2]]
+
+
+@pytest.mark.parametrize(("task", "first"), [(0, "shell"), (3, "points")])
+def test_an_initial_position_that_is_not_given_is_the_first_vertex(
+    migrated, model, told, changed, task, first
+):
+    found = migrated(changed(lambda text: text["tasks"][task].pop("initialPosition")))
+    made = model(found, "mission.xmi").tasks[task]
+    vertex = getattr(made, first)[0]
+    assert made.initialPosition is not vertex
+    assert (made.initialPosition.latitude, made.initialPosition.longitude) == (
+        vertex.latitude,
+        vertex.longitude,
+    )
+    assert told(found, f"DEFAULTED: initialPosition is not given: the first of {first} is taken")
+
+
+@pytest.mark.parametrize("altitude", [None, 0, "0.0"])
+def test_a_point_without_an_altitude_is_flown_to_at_2_m_as_in_2015(migrated, model, told, changed, altitude):
+    found = migrated(changed(lambda text: text["tasks"][2]["point"][0].update({"altitude": altitude})))
+    assert model(found, "mission.xmi").tasks[2].point.altitude == 2.0
+    assert told(found, "DEFAULTED: 0 is what was written where no height is known; the 2015 platform")
+
+
+def test_a_point_that_is_not_on_the_earth_keeps_a_border_as_it_was(migrated, model, flyaq, written):
+    text = json.loads((flyaq / "orchard-context.json").read_text())
+    shell = text["obstacles"][0]["shell"]
+    shell[0]["latitude"] = 4600
+    found = model(migrated(written("odd.json", json.dumps(text))), "context.xmi")
+    assert [vertex.latitude for vertex in found.obstacles[0].shell] == [4600.0, 46.004]
+
+
+def test_an_obstacle_whose_border_crosses_itself_becomes_the_hull_of_it(
+    migrated, model, told, flyaq, written
+):
+    text = json.loads((flyaq / "orchard-context.json").read_text())
+    bow = ((46.0, 11.0), (46.001, 11.001), (46.0, 11.001), (46.001, 11.0))
+    for area in (*text["obstacles"], *text["noFlyAreas"]):
+        area["shell"] = [{"latitude": north, "longitude": east} for north, east in bow]
+    text["emergencyAreas"] = [{"name": "lawn", "shell": text["obstacles"][0]["shell"]}]
+    found = migrated(written("bow.json", json.dumps(text)))
+    place = model(found, "context.xmi")
+    for area in (*place.obstacles, *place.forbiddenAreas):
+        assert {(each.latitude, each.longitude) for each in area.shell} == set(bow)
+        assert LinearRing([(each.latitude, each.longitude) for each in area.shell]).is_simple
+    assert [(each.latitude, each.longitude) for each in place.emergencyAreas[0].shell] == list(bow)
+    assert len(told(found, "the border crosses or touches itself, so the hull of its vertices is taken")) == 3
 
 
 @pytest.mark.parametrize("latitude", ["NaN", "1e308", "-Infinity", "4600"])

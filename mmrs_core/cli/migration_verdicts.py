@@ -1,0 +1,110 @@
+"""Whether migrated models are valid, with what their folders held already: as ``mmrs validate`` says it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from mmrs_core.analysis.constraints import check_constraints
+from mmrs_core.analysis.fixes.repair import Diagnosis
+from mmrs_core.cli.diagnosing import Subject
+from mmrs_core.cli.journey import Workshop
+from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
+from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages.conformance import check_conformance
+from mmrs_core.languages.element import Element
+from mmrs_core.languages.modelset import ModelSet, context_in, model_in, robot_files_in
+from mmrs_core.languages.reading import read_model
+
+Root = TypeVar("Root", bound=Element)
+
+_ROBOTS = "robots"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What there is to say of a folder, or of a behaviour.
+
+    Attributes:
+        path: what ``mmrs validate`` is to be called with.
+        alone: whether it is robot types and a context only, which make no mission yet.
+        unreadable: why it cannot be judged; empty where it can.
+        missing: the robot types that a behaviour names and that are not beside it.
+    """
+
+    path: Path
+    valid: bool
+    faults: tuple[Diagnostic, ...] = ()
+    alone: bool = False
+    unreadable: str = ""
+    missing: tuple[str, ...] = ()
+
+
+def verdicts_on(files: Iterable[Path], workshop: Workshop) -> tuple[Verdict, ...]:
+    """Return what is to be said of the folders that models were written to, and of every behaviour there."""
+    folders: dict[Path, list[Path]] = {}
+    for file in files:
+        folder = file.parent.parent if file.parent.name == _ROBOTS else file.parent
+        folders.setdefault(folder, []).append(file)
+    return tuple(verdict for folder, own in folders.items() for verdict in _of_folder(folder, own, workshop))
+
+
+def _of_folder(folder: Path, files: Sequence[Path], workshop: Workshop) -> Iterator[Verdict]:
+    behaviours = [file for file in files if file.stem == "behaviour"]
+    try:
+        if model_in(folder, "mission") is not None:
+            yield _judged(Subject(workshop, folder))
+        elif len(behaviours) < len(files) or not behaviours:
+            faults = in_order(_faults_of(_with_rest(folder, files), workshop))
+            yield Verdict(folder, not has_errors(faults), faults, alone=True)
+        for file in behaviours:
+            yield _judged(Subject(workshop, file))
+    except UnreadableError as fault:
+        yield Verdict(folder, valid=False, unreadable=str(fault))
+
+
+def _judged(subject: Subject) -> Verdict:
+    try:
+        found = subject.diagnose({})
+    except InvalidModelError as error:
+        return Verdict(subject.file, valid=False, faults=error.diagnostics)
+    valid = found.complete and not has_errors(found.faults)
+    return Verdict(subject.file, valid, found.faults, missing=tuple(_missing(found)))
+
+
+def _missing(found: Diagnosis) -> Iterator[str]:
+    """Yield the names of the robot types that a behaviour names and nobody knows."""
+    known = {each.name for each in found.robots if isinstance(each, robot.Robot)}
+    programs = _of((root for model in found.models for root in model.roots), behaviour.Behaviour)
+    named = dict.fromkeys(each.typeName or "" for program in programs for each in program.robots)
+    yield from (name for name in named if name and name not in known)
+
+
+def _with_rest(folder: Path, files: Iterable[Path]) -> list[Path]:
+    place = context_in(folder)
+    rest = (*robot_files_in(folder / _ROBOTS), *([place] if place else []))
+    return [file for file in dict.fromkeys((*files, *rest)) if file.stem != "behaviour"]
+
+
+def _faults_of(files: Iterable[Path], workshop: Workshop) -> Iterator[Diagnostic]:
+    """Yield the faults of robot types and of a context that no mission holds together."""
+    contributions = workshop.contributions
+    registry = contributions.languages
+    models = [read_model(file, registry) for file in files]
+    for model in models:
+        yield from model.diagnostics
+        yield from check_conformance(model, registry)
+    roots = [root for model in models for root in model.roots]
+    place = next(iter(_of(roots, context.Context)), None)
+    types = {each.name or "": each for each in _of(roots, robot.Robot)}
+    # a blank mission carries the rest; its own faults do not count
+    carried = ModelSet(mission.Mission(), place, types, tuple(models))
+    checked = check_constraints(carried, contributions.constraints, registry)
+    yield from (fault for fault in checked if fault.place.file)
+
+
+def _of(roots: Iterable[Element], kind: type[Root]) -> list[Root]:
+    return [root for root in roots if isinstance(root, kind)]
