@@ -32,6 +32,7 @@ def test_a_vehicle_without_the_key_is_not_heard(controllers, hangar, tmp_path, t
     code, said = made.run("fleet.py", *links, "--signing-key", key_file(tmp_path), "--patience", "2")
     assert code == 5
     assert "no vehicle at" in said
+    assert "frames from there could not be read, or are not signed with the key" in said
     assert not vehicles["alpha"].autopilot.history
 
 
