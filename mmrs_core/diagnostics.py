@@ -7,6 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
+LONGEST_TEXT = 2000
+"""Characters of a message or a hint, in which a model may say a megabyte, and that ten thousand times."""
+
 
 class Severity(Enum):
     """How much a fault matters; only errors stop a mission."""
@@ -42,7 +45,7 @@ class Diagnostic:
     Attributes:
         code: two or more capitals and three digits, such as ``MML014``; stable.
         severity: how much it matters.
-        message: lower case, no full stop, the culprit first.
+        message: lower case, no full stop, the culprit first; cut where it is longer than anybody reads.
         place: where it stands.
         hint: how to mend it; may be empty.
         expected: what there ought to be instead; may be empty.
@@ -54,6 +57,13 @@ class Diagnostic:
     place: Place = Place()
     hint: str = ""
     expected: str = ""
+
+    def __post_init__(self) -> None:
+        """Cut texts that are too long."""
+        for name in ("message", "hint", "expected"):
+            text = getattr(self, name)
+            if len(text) > LONGEST_TEXT:
+                object.__setattr__(self, name, f"{text[: LONGEST_TEXT - 3]}...")
 
     def __str__(self) -> str:
         """Return one line in the form compilers use; beneath it where, what was expected, and the hint."""

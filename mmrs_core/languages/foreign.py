@@ -80,6 +80,8 @@ def _root_needs(path: Path, registry: Registry) -> frozenset[str]:
 
 def missing_from(model: Model, registry: Registry, certainly: bool = False) -> frozenset[str]:
     """Return the nsURIs that elements of unknown classes need, or may need unless `certainly`."""
+    if not any(part.diagnostics for part in (model, *model.linked)):
+        return frozenset()  # of each of them there would be one
     unknown = [
         element
         for part in (model, *model.linked)

@@ -14,6 +14,7 @@ from mmrs_core.errors import UnreadableError
 LARGEST_FILE = 512 * 1024 * 1024
 DEEPEST_NESTING = 400
 MOST_ATTRIBUTES = 10_000
+LONGEST_NAMESPACE = 2000
 _SHORTEST_ATTRIBUTE = len(' a=""')
 _TAG = re.compile(rb"<[^\s<>/=]+")
 _WHOLE_TAG = re.compile(rb"""[^>"']*(?:"[^"]*"[^>"']*|'[^']*'[^>"']*)*>""")
@@ -94,7 +95,7 @@ class Document:
         self.parser.ordered_attributes = True
         self.parser.XmlDeclHandler = self._declaration
         self.parser.StartDoctypeDeclHandler = self._doctype
-        self.parser.StartNamespaceDeclHandler = self.namespaces.open
+        self.parser.StartNamespaceDeclHandler = self._bind
         self.parser.EndNamespaceDeclHandler = self.namespaces.close
 
     @property
@@ -172,6 +173,12 @@ class Document:
             end(tag)
 
         return uncounted
+
+    def _bind(self, prefix: str | None, uri: str | None) -> None:
+        if uri and len(uri) > LONGEST_NAMESPACE:  # every element of it would hold it
+            message = f"a namespace of more than {LONGEST_NAMESPACE} characters"
+            raise UnreadableError(f"{self.file}:{self.line}: {message}")
+        self.namespaces.open(prefix, uri)
 
     def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
         if self._declared:

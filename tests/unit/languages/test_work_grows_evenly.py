@@ -129,3 +129,18 @@ def test_metamodels_of_files_are_given_back(tmp_path):
     del registry, model
     gc.collect()
     assert len(classes) == 0
+
+
+def test_long_names_are_not_repeated_in_every_message(graph):
+    text = graph_of(f'<k n="{"a" * 200_000}">{"<bogus/>" * 2_000}</k>')
+    tracemalloc.start()
+    try:
+        assert len(read_text(text, "a.xmi", graph).diagnostics) == 2_000
+        assert tracemalloc.get_traced_memory()[1] < 60 * len(text)
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_namespace_longer_than_any_is_refused(graph):
+    with pytest.raises(UnreadableError, match=r"a\.xmi:1: a namespace of more than 2000 characters"):
+        read_text(graph_of('<k xsi:type="q:T"/>', f'xmlns:q="urn:{"a" * 2000}"'), "a.xmi", graph)
