@@ -225,7 +225,7 @@ def test_everything_knows_the_line_that_it_was_read_from():
 
 
 def test_a_behaviour_without_robots_is_refused():
-    assert faults() == [("/", "/ has no robots")]
+    assert faults() == [("/", "Behaviour has no robots")]
 
 
 @pytest.mark.parametrize(
@@ -250,9 +250,9 @@ def test_every_move_but_stop_has_one_way_on():
     assert faults(each) == [
         (
             "/robots[0]/moveTransitions[1]",
-            "/robots[0]/moveTransitions[1] leaves a move that another transition leaves already",
+            "MoveTransition robots[0]/moveTransitions[1] leaves a move that another transition leaves already",
         ),
-        ("/robots[0]/moves[1]", "/robots[0]/moves[1] is followed by no move, and is no Stop"),
+        ("/robots[0]/moves[1]", "HoldPosition robots[0]/moves[1] is followed by no move, and is no Stop"),
     ]
 
 
@@ -261,7 +261,7 @@ def test_nothing_leaves_a_stop_or_leads_into_a_start():
     back = [bl.MoveTransition(from_=start, to=stop), bl.MoveTransition(from_=stop, to=start)]
     each = bl.Robot(id="r", typeName="t", moves=[start, stop], moveTransitions=back)
     assert [message for _, message in faults(each)] == [
-        "/robots[0]/moveTransitions[1] leaves a Stop or leads into a Start"
+        "MoveTransition robots[0]/moveTransitions[1] leaves a Stop or leads into a Start"
     ]
 
 
@@ -280,7 +280,7 @@ def test_robots_wait_for_own_slots_only():
 def test_a_notify_leads_to_a_slot():
     lost = bl.UnicastNotify(slot=bl.Slot(name="nowhere"))
     found = faults(robot(moves=[bl.HoldPosition(duration=1, preActions=[lost, bl.MulticastNotify()])]))
-    assert [message.split(" ", 1)[1] for _, message in found] == [
+    assert [message.split(" ", 2)[2] for _, message in found] == [
         "notifies a slot that no robot has",
         "notifies no slot",
     ]
