@@ -250,7 +250,8 @@ def test_every_move_but_stop_has_one_way_on():
     assert faults(each) == [
         (
             "/robots[0]/moveTransitions[1]",
-            "MoveTransition robots[0]/moveTransitions[1] leaves a move that another transition leaves already",
+            "MoveTransition robots[0]/moveTransitions[1]"
+            " leaves a move that another transition leaves already",
         ),
         ("/robots[0]/moves[1]", "HoldPosition robots[0]/moves[1] is followed by no move, and is no Stop"),
     ]
