@@ -21,9 +21,7 @@ def test_a_type_that_states_no_largest_payload_carries_nothing():
 def test_a_type_carries_up_to_its_largest_payload():
     strong = replace(MEASURED, max_payload=0.8)
     assert capability_for(strong, 0.8) == MEASURED.capabilities[0]
-    with pytest.raises(
-        InfeasibleError, match=r"at most 0\.8 kg, not the 0\.9 kg that it is to"
-    ):
+    with pytest.raises(InfeasibleError, match=r"at most 0\.8 kg, not the 0\.9 kg that it is to"):
         capability_for(strong, 0.9)
 
 
