@@ -177,6 +177,12 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "one element for each key: in a map, and wherever the metamodel names eKeys",
             "give one of them another key, or take it away: references would lead to the wrong one",
         ),
+        "ECO014": Code(
+            "a value that Eclipse may understand otherwise than its text suggests",
+            "a date such as 2024-05-01T10:11:12.123+0200; a class that every Java has",
+            "write it in the form that EMF itself writes",
+            Severity.WARNING,
+        ),
         "MIG001": Code(
             "a model of an older version of its language, migrated while it was read",
             "a model of the installed version",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 
 from mmrs_core.diagnostics import Diagnostic, Severity
@@ -18,6 +19,7 @@ from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import MOST_FAULTS
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.soundness import Sound, soundness
+from mmrs_core.languages.values.texts import described, shown
 
 _OFTEN = 16
 """Compiling costs as much as asking all rules of so many elements."""
@@ -113,7 +115,8 @@ class _Check:
         if feature.is_id and values[0] is not None:
             other = self._ids.setdefault(_as_java(values[0]), element)
             if other is not element:
-                message = f"{values[0]}: an identifier used twice; first at {place_of(other)}"
+                what = values[0] if isinstance(values[0], str) else described(values[0])
+                message = f"{what}: an identifier used twice; first at {place_of(other)}"
                 yield _fault("ECO012", element, message)
 
     def _references(
@@ -123,7 +126,7 @@ class _Check:
             if isinstance(value, Unknown):
                 continue
             if not isinstance(value, Element) or not feature.type.accepts(value):
-                what = type(value).__name__ if isinstance(value, Element) else repr(value)
+                what = type(value).__name__ if isinstance(value, Element) else described(value)
                 message = f"{_owner(element)}: {feature.name} holds {what}, takes {feature.type.name}"
                 yield _fault("ECO005", element, message)
             elif feature.containment:
@@ -160,18 +163,24 @@ def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagno
     if isinstance(kind, Enumeration):
         if not kind.accepts(value):
             hint = nearest(value, kind.names) if isinstance(value, str) else ""
-            message = f"{where} is {value!r}, not one of {', '.join(kind.names)}"
+            message = f"{where} is {described(value)}, not one of {', '.join(kind.names)}"
             yield _fault("ECO004", element, message, hint)
         return
     if not kind.accepts(value):
-        yield _fault("ECO003", element, f"{where} is {value!r}, not {_kind_words(kind)}")
-    elif kind.python is float and not math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
-        yield _fault("ECO009", element, f"{where} is {kind.render(value)}, not a finite number", _FINITE)
-    elif kind.python is int:
-        try:
-            kind.parse(str(value))
-        except ValueError as fault:
-            yield _fault("ECO003", element, f"{where}: {fault}")
+        yield _fault("ECO003", element, f"{where} is {described(value)}, not {_kind_words(kind)}")
+        return
+    try:
+        text = kind.render(value)
+    except ValueError as fault:
+        yield _fault("ECO003", element, f"{where}: {fault}")
+        return
+    if isinstance(value, float) and not math.isfinite(value):
+        yield _fault("ECO009", element, f"{where} is {text}, not a finite number", _FINITE)
+    elif kind.doubt is not None and (doubt := kind.doubt(value)):
+        why, _, advice = doubt.partition("; ")
+        yield replace(
+            _fault("ECO014", element, f"{where} is {shown(text)}, {why}", advice), severity=Severity.WARNING
+        )
 
 
 def _contained(element: Element, feature: Feature, value: Element) -> Iterator[Diagnostic]:
@@ -207,7 +216,7 @@ def _repeated(
     for value in values:
         mark = key(value)
         if mark in seen:
-            what = _owner(value) if isinstance(value, Element) else repr(value)
+            what = _owner(value) if isinstance(value, Element) else described(value)
             yield _fault("ECO006", element, f"{_owner(element)}: {feature.name} holds {what} twice")
             return
         seen.add(mark)
@@ -242,7 +251,7 @@ def _mark(value: object) -> object:
 
 
 def _key_words(value: object) -> str:
-    return _owner(value) if isinstance(value, Element) else "not set" if value is None else repr(value)
+    return _owner(value) if isinstance(value, Element) else "not set" if value is None else described(value)
 
 
 def _wanted(feature: Feature) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, SupportsIndex
 from mmrs_core.diagnostics import Place
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.naming import nearest
+from mmrs_core.languages.values.dates import WrittenDate
 
 _HIDDEN_STEP = re.compile(r"/@([^./\[]+)(?:\.([0-9]+))?")
 
@@ -263,6 +264,10 @@ def _same(value: object, default: object) -> bool:
     """Compare as Java's equals does: 0.0 is not -0.0, and true is not 1."""
     if isinstance(value, float) and isinstance(default, float):
         return repr(value) == repr(default)
+    if isinstance(value, bytes):  # arrays of Java equal none but themselves
+        return False
+    if isinstance(value, WrittenDate) or isinstance(default, WrittenDate):
+        return value == default and getattr(value, "text", "") == getattr(default, "text", "")
     return value == default and isinstance(value, bool) == isinstance(default, bool)
 
 

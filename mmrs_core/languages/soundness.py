@@ -12,6 +12,7 @@ from collections.abc import Callable
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.metamodels.classes import bare_name
+from mmrs_core.languages.values.real import LARGEST_SINGLE, render_real, render_single
 
 Stands = Callable[[Element], bool]
 Sound = Callable[[Element, Stands], bool]
@@ -62,9 +63,13 @@ def _usual(index: int, feature: Feature, bound: dict[str, object]) -> str:
     if isinstance(kind, Enumeration):
         bound[f"k{index}"] = frozenset(kind.names)
         return f"v.__class__ is str and v in k{index}"
-    if kind.python is float:
+    if kind.render is render_real:
         return "v.__class__ is float and v - v == 0.0"  # neither infinite nor no number
-    if kind.python in (str, bool):
+    if kind.render is render_single:
+        return f"v.__class__ is float and -{LARGEST_SINGLE!r} <= v <= {LARGEST_SINGLE!r}"
+    if kind.bits is not None:
+        return f"v.__class__ is int and {-(1 << kind.bits - 1)} <= v < {1 << kind.bits - 1}"
+    if kind.render is str or kind.python is bool:
         return f"v.__class__ is {kind.python.__name__}"
     return "False"
 

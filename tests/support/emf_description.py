@@ -136,8 +136,8 @@ def _told(value, kind):
         return str((value - datetime(1970, 1, 1, tzinfo=UTC)) // timedelta(milliseconds=1))
     if isinstance(value, Decimal):
         sign, digits, exponent = value.as_tuple()
-        number = int("".join(map(str, digits)))
-        return f"{-number if sign else number}E{exponent}"
+        number = "".join(map(str, digits)).lstrip("0")
+        return f"{'-' if sign and number else ''}{number or 0}E{exponent}"
     if isinstance(value, bytes):
         return value.hex()
     if isinstance(value, bool) or not isinstance(value, str):

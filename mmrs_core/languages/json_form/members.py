@@ -27,6 +27,7 @@ from mmrs_core.languages.json_form.values import is_character, parsed, takes_num
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
+from mmrs_core.languages.values.texts import words_of
 
 _HELPED_FAULTS = 200
 """Beyond this many faults nobody reads which name was probably meant, and looking for it takes time."""
@@ -160,7 +161,7 @@ class Members:
         """Yield the values of a list, or the one that is there; what stands inside them is passed over."""
         sort, key, text, place, begin = event
         if isinstance(text, Words) and feature.many:
-            yield from ((sort, key, part, place, begin) for part in text.split())
+            yield from ((sort, key, part, place, begin) for part in words_of(text))
             return
         for each in self._opened(event):
             skip(each, self._events)

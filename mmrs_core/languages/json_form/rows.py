@@ -10,6 +10,15 @@ from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form.values import EXACT, is_character, quoted
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
+from mmrs_core.languages.values.real import (
+    LARGEST_SINGLE,
+    render_real,
+    render_schema_real,
+    render_schema_single,
+    render_single,
+)
+from mmrs_core.languages.values.texts import LAST_UNIT
+from mmrs_core.languages.values.truth import render_boolean
 
 _Text = Callable[[Any], str | None]  # it is asked about values of one class only
 """The text of a value; None where that takes more care."""
@@ -23,7 +32,7 @@ class Row(NamedTuple):
         read: gets its bare slot; raises AttributeError where that is empty.
         key: its key, up to the value.
         quiet: whether nothing is written where nothing is in it, whatever the file says.
-        usual: the class of most of its values; NoneType where they all take more care.
+        usual: the class of most of its values; `Row` itself, which is none's, where they all take more care.
         text: the text of such a value.
     """
 
@@ -55,31 +64,43 @@ def _usual(feature: Feature) -> tuple[type, _Text]:
     kind = feature.type
     odd = feature.default != feature.default  # NaN, which is the default although it does not equal it
     if feature.many or odd or isinstance(kind, Metaclass):
-        return type(None), quoted
+        return Row, quoted
     if isinstance(kind, Enumeration):
         return str, {each.name: quoted(each.literal) for each in kind.literals}.get
-    return _TEXTS.get(kind.python, (type(None), quoted)) if _is_simple(kind) else (type(None), quoted)
-
-
-def _is_simple(kind: DataType) -> bool:
-    return kind.python is not str or kind.render is str or is_character(kind)
+    if kind.python is int:
+        return int, _whole(kind)
+    if is_character(kind):
+        return str, _character
+    return _TEXTS.get(kind.render, (Row, quoted))
 
 
 def _real(value: float) -> str | None:
     return repr(value) if math.isfinite(value) else None
 
 
-def _whole(value: int) -> str | None:
-    return str(value) if -EXACT < value < EXACT else None
+def _single(value: float) -> str | None:
+    return repr(value) if abs(value) <= LARGEST_SINGLE else None
+
+
+def _character(value: str) -> str | None:
+    return quoted(value) if len(value) == 1 and value <= LAST_UNIT else None
+
+
+def _whole(kind: DataType) -> _Text:
+    bound = EXACT if kind.bits is None else min(EXACT, 1 << kind.bits - 1)
+    return lambda value: str(value) if -bound < value < bound else None
 
 
 def _truth(value: bool) -> str:
     return "true" if value else "false"
 
 
-_TEXTS: dict[type, tuple[type, _Text]] = {
-    float: (float, _real),
-    int: (int, _whole),
-    bool: (bool, _truth),
+_TEXTS: dict[Callable[[object], str], tuple[type, _Text]] = {
+    render_real: (float, _real),
+    render_schema_real: (float, _real),
+    render_single: (float, _single),
+    render_schema_single: (float, _single),
+    render_boolean: (bool, _truth),
     str: (str, quoted),
 }
+"""By how a type is written in XMI."""

@@ -7,7 +7,7 @@ import re
 from decimal import Decimal
 from json.encoder import encode_basestring
 
-from mmrs_core.languages.datatypes import DataType, shown
+from mmrs_core.languages.datatypes import DataType, render_real, shown
 from mmrs_core.languages.json_form.stream import LIST, NUMBER, OBJECT, TEXT, WORD
 from mmrs_core.languages.json_form.tree import Leaf, Words
 from mmrs_core.languages.metaclass import Enumeration
@@ -26,18 +26,23 @@ def quoted(text: str) -> str:
 
 
 def written(kind: DataType | Enumeration, value: object) -> str:
-    """Return a value as it stands in a file; `kind` must accept it."""
+    """Return a value as it stands in a file; `kind` must accept it.
+
+    Raises:
+        ValueError: if no file could hold it, as `DataType.render` says.
+    """
     if isinstance(kind, Enumeration):
         return quoted(kind.render(value))
+    if kind.render is render_real and isinstance(value, float) and math.isfinite(value):
+        return repr(value)
+    text = kind.render(value)
     if kind.java_class in _CHARACTERS:
         return quoted(str(value))
-    if kind.python is bool:
-        return "true" if value else "false"
     if kind.python is float and math.isfinite(value):  # type: ignore[arg-type]  # it is accepted
         return repr(float(value))  # type: ignore[arg-type]
-    if kind.python is int and abs(int(value)) < EXACT:  # type: ignore[call-overload]
-        return str(value)
-    return quoted(kind.render(value))
+    if kind.python is bool or (kind.python is int and abs(int(value)) < EXACT):  # type: ignore[call-overload]
+        return text
+    return quoted(text)
 
 
 def parsed(kind: DataType | Enumeration, sort: int, text: str) -> object:

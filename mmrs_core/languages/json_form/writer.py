@@ -15,6 +15,7 @@ from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.references.positions import Positions
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.values.texts import described
 
 _Children = tuple[Feature, tuple[object, ...]]
 _Piece = str | tuple[Element, Feature | None, int]
@@ -168,8 +169,11 @@ class JsonWriter:
             for value in values:
                 if not kind.accepts(value) and not is_null(feature, value):
                     where = f"{path_of(element)}: {feature.name}"
-                    raise ValueError(f"{where}: {value!r} is not of the type {kind.name}")
-            parts = ["null" if value is None else written(kind, value) for value in values]
+                    raise ValueError(f"{where}: {described(value)} is not of the type {kind.name}")
+            try:
+                parts = ["null" if value is None else written(kind, value) for value in values]
+            except ValueError as fault:
+                raise ValueError(f"{path_of(element)}: {feature.name}: {fault}") from None
         if feature.many:
             return f"[{', '.join(parts)}]"
         return parts[0] if parts else "null"

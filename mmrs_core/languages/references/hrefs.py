@@ -30,7 +30,7 @@ def linked_file(document: str, base: Path, root: Path) -> Path:
     Raises:
         ValueError: if it is absolute, has a scheme such as ``file:`` or ``http:``, or leaves the root.
     """
-    path = unquote(document)
+    path = unquote(document.partition("?")[0])  # EMF's URIs may have a query, which says nothing of the file
     project = _WORKSPACE.fullmatch(path)
     if project is not None:
         base, path = _project_folder(project[1], base, root), project[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -16,6 +17,9 @@ from mmrs_core.languages.references.documents import Draft, Pending, Quick
 from mmrs_core.languages.references.hidden import hidden_in, note_links
 from mmrs_core.languages.references.hrefs import linked_file
 from mmrs_core.languages.registry import Registry
+
+_BLANKS = re.compile("[ \t\n\r\f]+")
+"""What stands between references; others may stand in an identifier."""
 
 _HELPED_FAULTS = 20
 """Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""
@@ -81,7 +85,7 @@ def _left(pending: Iterable[Pending | Quick], draft: Draft) -> Iterator[Pending]
 
 def _uris(text: str) -> Iterator[str]:
     """Yield the URIs in a text, without the types that may stand before references to other files."""
-    words = text.split()
+    words = [word for word in _BLANKS.split(text) if word]
     for index, word in enumerate(words):
         following = words[index + 1] if index + 1 < len(words) else ""
         if not (":" in word and "#" not in word and not word.startswith("/") and "#" in following):

@@ -10,11 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 
 from mmrs_core.languages.datatypes import DataType, render_real
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.metamodels.classes import bare_name
+from mmrs_core.languages.values.real import LARGEST_SINGLE, render_single
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute
 
 DEEPEST_CALL = 50
@@ -74,7 +76,7 @@ def _factory(metaclass: Metaclass) -> _Factory | None:
     ]
     if any(feature.nullable or feature.name == "href" for _, feature in features):
         return None
-    bound: dict[str, object] = {"Unusual": UnusualError, "clean": clean, "real": render_real}
+    bound: dict[str, object] = {"Unusual": UnusualError, "clean": clean, "written": written}
     bound |= {"opened": ">\n", "empty": "/>\n", "deepest": DEEPEST_CALL}
     bound["pads"] = ["  " * depth for depth in range(DEEPEST_CALL + 1)]
     children: list[tuple[int, Feature]] = []
@@ -128,7 +130,9 @@ def _value(index: int, feature: Feature, bound: dict[str, object]) -> list[str]:
     guard, text = _rendering(kind, index, bound)
     lines = ["if v is not None:", f"    if {guard}: raise Unusual"]
     indent = "    "
-    if feature.default is not None and not feature.unsettable:
+    if isinstance(feature.default, datetime):  # what its text says counts as well
+        return ["if v is not None: raise Unusual"]
+    if feature.default is not None and not (feature.unsettable or isinstance(feature.default, bytes)):
         bound[f"d{index}"] = feature.default
         zeros = f" or repr(v) != repr(d{index})" if isinstance(feature.default, float) else ""
         lines.append(f"    if v != d{index}{zeros}:")
@@ -143,13 +147,16 @@ def _rendering(kind: DataType | Enumeration, index: int, bound: dict[str, object
         return f"v.__class__ is not str or v not in k{index}", f"k{index}[v]"
     if kind.render is str and kind.python is str:
         return "v.__class__ is not str", "v if v.isalnum() else clean(v)"
-    if kind.render is str and kind.python is int:
-        return "v.__class__ is not int", "v"
-    if kind.render is render_real:
+    if kind.bits is not None:
+        lowest, highest = -(1 << kind.bits - 1), (1 << kind.bits - 1) - 1
+        return f"v.__class__ is not int or not {lowest} <= v <= {highest}", "v"
+    if kind.render in (render_real, render_single):
         # between these bounds Python and Java agree
-        return "v.__class__ is not float", "repr(v) if 1e-3 <= v < 1e7 else real(v)"
+        bound[f"k{index}"] = render_real
+        large = f" or abs(v) > {LARGEST_SINGLE!r} and v - v == 0.0" if kind.render is render_single else ""
+        return f"v.__class__ is not float{large}", f"repr(v) if 1e-3 <= v < 1e7 else k{index}(v)"
     bound[f"k{index}"] = kind
-    return f"not k{index}.accepts(v)", f"clean(k{index}.render(v))"
+    return f"not k{index}.accepts(v)", f"written(k{index}, v)"
 
 
 def _inside(children: list[tuple[int, Feature]]) -> list[str]:
@@ -166,6 +173,14 @@ def _inside(children: list[tuple[int, Feature]]) -> list[str]:
             f"            except (Unusual, TypeError): slowly(e, f{index}, c, depth + 1)",
         ]
     return [*lines, "    add(pads[depth] + tail)", "else:", "    add(t + empty)"]
+
+
+def written(kind: DataType, value: object) -> str:
+    """Return the text of a value as it stands in an attribute; raises `UnusualError` if none holds it."""
+    try:
+        return clean(kind.render(value))
+    except ValueError:
+        raise UnusualError from None
 
 
 def clean(text: str) -> str:

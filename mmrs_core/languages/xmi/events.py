@@ -24,6 +24,10 @@ Tell = Callable[[str], None]
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 XSI_TYPE = f"{XSI} type"
+_SEVEN_BITS = ("ASCII", "US-ASCII")
+_OTHER_XMI = re.compile(r"http://schema\.omg\.org/spec/XMI/2\.[0-9]|http://www\.omg\.org/spec/XMI/20[0-9]{6}")
+"""How later versions of XMI than 2.0 call it; what we read of them means the same."""
+_XMI_NAMES = ("XMI", "type", "id", "idref", "uuid", "version", "label", "Documentation", "Extension")
 
 
 class Listener(Protocol):
@@ -133,12 +137,16 @@ class Document:
         try:
             self.parser.Parse(self.data, True)
         except expat.ExpatError as fault:
-            reason = expat.errors.messages[fault.code]
-            raise UnreadableError(f"{self.file}:{fault.lineno}: not well-formed XML: {reason}") from None
+            raise UnreadableError(f"{self.file}:{fault.lineno}: {self._reason(fault)}") from None
         except (LookupError, ValueError) as fault:
             if self._begun:
                 raise
             raise UnreadableError(f"{self.file}: not readable as XML: {fault}") from None
+
+    def _reason(self, fault: expat.ExpatError) -> str:
+        if self.encoding.upper() in _SEVEN_BITS and not self.data.isascii():
+            return f"not {self.encoding}, as its first line says; save it as UTF-8 and say so"
+        return f"not well-formed XML: {expat.errors.messages[fault.code]}"
 
     def tell(self, start: Start, end: Tell, text: Tell) -> None:
         """Send the following events to these functions; a listener may change its mind at any event."""
@@ -175,9 +183,12 @@ class Document:
         return uncounted
 
     def _bind(self, prefix: str | None, uri: str | None) -> None:
+        """Bind a prefix; names of other versions of XMI become those of ours as the parser makes them."""
         if uri and len(uri) > LONGEST_NAMESPACE:  # every element of it would hold it
             message = f"a namespace of more than {LONGEST_NAMESPACE} characters"
             raise UnreadableError(f"{self.file}:{self.line}: {message}")
+        if uri and _OTHER_XMI.fullmatch(uri):
+            self.parser.intern.update({f"{uri} {name}": f"{XMI} {name}" for name in _XMI_NAMES})
         self.namespaces.open(prefix, uri)
 
     def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:

@@ -9,6 +9,7 @@ from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft, Pending
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.values.texts import words_of
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
 from mmrs_core.languages.xmi.unknowns import prefixes_in
 
@@ -17,9 +18,17 @@ _XMI_TYPE = f"{XMI} type"
 _NIL = f"{XSI} nil"
 _ID = f"{XMI} id"
 _UUID = f"{XMI} uuid"
+_IDREF = f"{XMI} idref"
 _WRAPPER = f"{XMI} XMI"
 HARMLESS = frozenset(
-    (_TYPE, _XMI_TYPE, f"{XMI} version", f"{XSI} schemaLocation", f"{XSI} noNamespaceSchemaLocation", _UUID)
+    (
+        _TYPE,
+        _XMI_TYPE,
+        f"{XMI} version",
+        f"{XSI} schemaLocation",
+        f"{XSI} noNamespaceSchemaLocation",
+        _UUID,
+    )
 )
 
 
@@ -115,6 +124,9 @@ class XmiReader:
             self._open.append((element, metaclass, feature))
         elif feature.containment:
             self._contained(element, feature, attributes)
+        elif identifier := _value(attributes, _IDREF):
+            self._refer(element, feature, identifier)
+            self._open.append((element, metaclass, feature))
         else:
             self._fault("XMI006", f"{feature.name}: a reference as an element needs an href", element)
             self._ignored = 1
@@ -238,12 +250,12 @@ class XmiReader:
             self._draft.source.blanks.add((element, feature))
 
     def _attribute(self, element: Element, feature: Feature, text: str) -> None:
-        if feature.many and not text.strip():
+        if feature.many and not text.strip(" "):
             self._leave_blank(element, feature)
         elif feature.is_reference:
             self._refer(element, feature, text)
         elif feature.many:
-            for word in text.split():
+            for word in words_of(text):
                 self._value(element, feature, word)
         else:
             self._value(element, feature, text)

@@ -15,6 +15,7 @@ from mmrs_core.languages.links import LinkedList
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.metamodels.classes import bare_name
 from mmrs_core.languages.references.documents import Pending
+from mmrs_core.languages.values.real import LARGEST_SINGLE, parse_single
 
 if TYPE_CHECKING:
     from mmrs_core.languages.element import Element, Source
@@ -56,7 +57,6 @@ def maker(
         "append": list.append,
         "Pending": Pending,
         "metaclass": metaclass,
-        "real": parse_real,
     }
     check = [] if feature.many else _vacancy(owner, feature)
     lines = [
@@ -106,10 +106,13 @@ def _body(metaclass: Metaclass, features: tuple[Feature | None, ...], bound: dic
             lines += [f"    s = s{index}", f"    if {text} == s: {text} = s", f"    else: s{index} = {text}"]
             lines.append(f"    {slot} = {text}")
             shared.append(f"s{index}")
-        elif isinstance(feature.type, DataType) and feature.type.parse is parse_real:
+        elif isinstance(feature.type, DataType) and feature.type.parse in (parse_real, parse_single):
             # of what Python takes, Java refuses these and words, and words are not finite
             usual = f"{text}.isascii() and '_' not in {text} and r - r == 0.0"
-            lines += [f"    r = float({text})", f"    {slot} = r if {usual} else real({text})"]
+            if feature.type.parse is parse_single:
+                usual += f" and -{LARGEST_SINGLE!r} <= r <= {LARGEST_SINGLE!r}"
+            bound[f"p{index}"] = feature.type.parse
+            lines += [f"    r = float({text})", f"    {slot} = r if {usual} else p{index}({text})"]
         else:
             bound[f"p{index}"] = feature.type.parse  # type: ignore[union-attr]  # it is an attribute
             lines.append(f"    {slot} = p{index}({text})")

@@ -10,6 +10,7 @@ from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
 from mmrs_core.languages.references.addresses import Addresses
 from mmrs_core.languages.registry import Registry
+from mmrs_core.languages.values.texts import described
 from mmrs_core.languages.xmi.escapes import NO_XML, in_attribute, in_text
 from mmrs_core.languages.xmi.events import XMI, XSI
 from mmrs_core.languages.xmi.unknowns import text_of
@@ -212,8 +213,11 @@ class XmiWriter:
     def _rendered(self, element: Element, feature: Feature, value: object) -> str:
         kind = feature.type
         if isinstance(kind, Metaclass) or not kind.accepts(value):
-            raise ValueError(f"{_where(element, feature)}: {value!r} is not of the type {kind.name}")
-        text = kind.render(value)
+            raise ValueError(f"{_where(element, feature)}: {described(value)} is not of the type {kind.name}")
+        try:
+            text = kind.render(value)
+        except ValueError as fault:
+            raise ValueError(f"{_where(element, feature)}: {fault}") from None
         bad = NO_XML.search(text)
         if bad is not None:
             code = ord(bad.group())

@@ -17,6 +17,7 @@ HERE = Path(__file__).parent
 PROJECT = HERE.parents[2]
 JARS = [Path("/usr/share/java") / f"eclipse-emf-{name}.jar" for name in ("common", "ecore", "ecore-xmi")]
 OPTIONS = ("-Xshare:auto", "-XX:TieredStopAtLevel=1", "-Xmx512m", "-Dfile.encoding=UTF-8")
+ELSEWHERE = "Asia/Kathmandu"  # whose clocks are 5 h 45 min before UTC, in summer as well
 LONGEST_ANSWER = 300  # seconds
 
 
@@ -81,8 +82,8 @@ class Referee:
 
 
 @pytest.fixture(scope="session")
-def referee(tmp_path_factory, need_program, every_metamodel):
-    """Return the referee, who knows all our metamodels and the foreign ones."""
+def command(tmp_path_factory, need_program):
+    """Return a function that gives the command for a referee whose machine stands in a time zone."""
     java = need_program("java", "Eclipse EMF judges metamodels and models")
     javac = need_program("javac", "the referee is compiled for the tests")
     missing = [jar.name for jar in JARS if not jar.is_file()]
@@ -95,7 +96,21 @@ def referee(tmp_path_factory, need_program, every_metamodel):
     subprocess.run(
         [javac, "-encoding", "UTF-8", "-cp", path, "-d", classes, *sources], check=True, timeout=120
     )
-    referee = Referee([java, *OPTIONS, "-cp", path, "Referee"], every_metamodel)
+    return lambda zone: [java, *OPTIONS, f"-Duser.timezone={zone}", "-cp", path, "Referee"]
+
+
+@pytest.fixture(scope="session")
+def referee(command, every_metamodel):
+    """Return the referee, who knows all our metamodels and the foreign ones; the zone is UTC."""
+    referee = Referee(command("UTC"), every_metamodel)
+    yield referee
+    referee.close()
+
+
+@pytest.fixture(scope="session")
+def elsewhere(command):
+    """Return a referee who lives in another time zone, and knows no metamodel."""
+    referee = Referee(command(ELSEWHERE), ())
     yield referee
     referee.close()
 

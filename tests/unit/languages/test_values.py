@@ -46,25 +46,29 @@ def test_other_words_are_no_truth_values(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" tame="{text}"/>')) == ["XMI005"]
 
 
-@pytest.mark.parametrize("text", ["1_000", " 5 ", "4294967296", "-2147483649", "5.0", "", "٣", "9" * 5000])
+@pytest.mark.parametrize("text", ["1_000", " 5 ", "4294967296", "-2147483649", "5.0", "", "𝟛", "9" * 5000])
 def test_what_java_takes_for_no_int_is_a_fault(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" teeth="{text}"/>')) == ["XMI005"]
 
 
-@pytest.mark.parametrize(("text", "value"), [("+5", 5), ("-2147483648", -(2**31)), ("2147483647", 2**31 - 1)])
+@pytest.mark.parametrize(
+    ("text", "value"), [("+5", 5), ("-2147483648", -(2**31)), ("0" * 30 + "5", 5), ("٣", 3)]
+)
 def test_what_java_takes_for_an_int_is_read(lion, text, value):
     assert lion(f'teeth="{text}"').teeth == value
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("1.5d", 1.5), ("2F", 2.0), (".5", 0.5), ("3.", 3.0), ("1E-3", 0.001), (" 4 ", 4.0)]
+    ("text", "value"),
+    [("1.5d", 1.5), ("2F", 2.0), (".5", 0.5), ("3.", 3.0), ("1E-3", 0.001), (" 4 ", 4.0), ("0x1.8p3", 12.0)],
 )
 def test_javas_notation_of_real_numbers_is_read(lion, text, value):
     assert lion(f'weight="{text}"').weight == value
 
 
 @pytest.mark.parametrize(
-    "text", ["nan", "inf", "infinity", "1,5", "1_0.0", "0x1p3", "", "1.5 m", "٣.٥", "１"]
+    "text",
+    ["nan", "inf", "infinity", "1,5", "1_0.0", "0x1", "0x1_0p3", "", "1.5 m", "٣.٥", "１", "\u00a05.0"],
 )
 def test_other_notations_of_real_numbers_are_faults(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" weight="{text}"/>')) == ["XMI005"]
@@ -102,20 +106,13 @@ def test_a_date_keeps_its_instant(lion, zoo):
     assert b'born="2024-05-01T10:11:12.123+0200"' in to_xmi([leo._mmrs_container], zoo)
 
 
-def test_a_date_without_milliseconds_or_zone_is_read_as_utc(lion):
-    assert lion('born="2024-05-01T10:11:12"').born == datetime(2024, 5, 1, 10, 11, 12, tzinfo=UTC)
-    assert lion('born="2024-05-01"').born == datetime(2024, 5, 1, tzinfo=UTC)
-
-
 def test_a_date_in_another_zone_is_written_with_that_zone(zoo):
     zone = timezone(timedelta(hours=-3, minutes=-30))
     leo = zoo.create("urn:test:zoo", "Lion", name="L", born=datetime(2024, 1, 2, 3, 4, 5, 6000, zone))
     assert b'born="2024-01-02T03:04:05.006-0330"' in to_xmi([leo], zoo)
 
 
-@pytest.mark.parametrize(
-    "text", ["2024-13-01", "2024-02-30T00:00:00", "yesterday", "2024-05-01T10:11:12+9999"]
-)
+@pytest.mark.parametrize("text", ["2024-05", "yesterday", "2024-05-01T10:11:12.123 CEST", "12024-01-01"])
 def test_no_date_is_a_fault(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" born="{text}"/>')) == ["XMI005"]
 
@@ -126,7 +123,7 @@ def test_the_rarer_types_are_read(lion):
     assert values == (b"\x0a\xff", -128, 2**63 - 1, "x", Decimal("1.50"), "#fff")
 
 
-@pytest.mark.parametrize("text", ['cage="128"', 'chip="0af"', 'chip="zz"', 'grade="xy"', 'price="dear"'])
+@pytest.mark.parametrize("text", ['cage="128"', 'chip="0a ff"', 'chip="zz"', 'grade="xy"', 'price="dear"'])
 def test_wrong_values_of_the_rarer_types_are_faults(read_zoo, text):
     assert faults(read_zoo(f'<animals xsi:type="zoo:Lion" name="L" {text}/>')) == ["XMI005"]
 

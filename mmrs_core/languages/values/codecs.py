@@ -1,0 +1,112 @@
+"""How the values of each Java class are read and written, and those of EMF's XML types."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from decimal import Decimal
+from typing import NamedTuple
+
+from mmrs_core.languages.values import binary, dates, decimals, real, schema_times, texts, truth, whole
+
+
+class Codec(NamedTuple):
+    """What the values of a Java class are in Python, and as text.
+
+    Attributes:
+        python: the class of its values.
+        parse: reads a value from text; raises ValueError, whose message begins with the text.
+        render: writes a value as EMF does; raises ValueError if EMF could not read it again as that value.
+        default: what a primitive type of Java holds that was never set; else None.
+        bits: of a whole number, sign included; None for any number, and for what is no whole number.
+        doubt: says of a value what it is not certain that Eclipse understands; mostly nothing.
+    """
+
+    python: type
+    parse: Callable[[str], object]
+    render: Callable[[object], str]
+    default: object = None
+    bits: int | None = None
+    doubt: Callable[[object], str] | None = None
+
+
+def _whole(bits: int | None, default: object = None) -> Codec:
+    return Codec(int, whole.reader(bits), whole.writer(bits), default, bits)
+
+
+def _truth(default: object = None) -> Codec:
+    return Codec(bool, truth.parse_boolean, truth.render_boolean, default)
+
+
+_TEXT = Codec(str, str, str)
+_DOUBLE = Codec(float, real.parse_real, real.render_real)
+_SINGLE = Codec(float, real.parse_single, real.render_single)
+_CHARACTER = Codec(str, texts.parse_character, texts.render_character)
+
+_BY_JAVA_CLASS: dict[str, Codec] = {
+    "boolean": _truth(False),
+    "java.lang.Boolean": _truth(),
+    "byte": _whole(8, 0),
+    "java.lang.Byte": _whole(8),
+    "short": _whole(16, 0),
+    "java.lang.Short": _whole(16),
+    "int": _whole(32, 0),
+    "java.lang.Integer": _whole(32),
+    "long": _whole(64, 0),
+    "java.lang.Long": _whole(64),
+    "java.math.BigInteger": _whole(None),
+    "float": _SINGLE._replace(default=0.0),
+    "java.lang.Float": _SINGLE,
+    "double": _DOUBLE._replace(default=0.0),
+    "java.lang.Double": _DOUBLE,
+    "java.math.BigDecimal": Codec(Decimal, decimals.parse_decimal, decimals.render_decimal),
+    "char": _CHARACTER._replace(default="\0"),
+    "java.lang.Character": _CHARACTER,
+    "byte[]": Codec(bytes, binary.parse_bytes, binary.render_bytes),
+    "java.util.Date": Codec(datetime, dates.parse_date, dates.render_date, doubt=dates.doubt_of_date),
+    "java.lang.Object": Codec(str, texts.parse_java_object, texts.render_java_object),
+    "java.lang.Class": Codec(
+        str, texts.parse_class_name, texts.render_class_name, doubt=texts.doubt_of_class
+    ),
+}
+
+_WORDS = Codec(str, texts.collapsed, texts.render_collapsed)
+_XML_CODECS = {
+    "Base64Binary": Codec(bytes, binary.parse_base64, binary.render_base64),
+    "HexBinary": Codec(bytes, binary.parse_schema_bytes, binary.render_bytes),
+    "Duration": Codec(str, schema_times.parse_duration, schema_times.render_duration),
+    **dict.fromkeys(
+        ("Date", "DateTime", "Time", "GDay", "GMonth", "GMonthDay", "GYear", "GYearMonth"),
+        Codec(str, schema_times.parse_moment, schema_times.render_moment),
+    ),
+    **dict.fromkeys(
+        ("Token", "Language", "Name", "NCName", "ID", "IDREF", "IDREFS", "IDREFSBase", "ENTITY", "ENTITIES"),
+        _WORDS,
+    ),
+    **dict.fromkeys(("ENTITIESBase", "NMTOKEN", "NMTOKENS", "NMTOKENSBase"), _WORDS),
+    **dict.fromkeys(("QName", "NOTATION"), Codec(str, texts.parse_qualified, texts.render_qualified)),
+}
+_SCHEMA_CODECS: dict[str, Codec] = {
+    "boolean": Codec(bool, truth.parse_schema_boolean, truth.render_boolean),
+    "double": Codec(float, real.parse_schema_real, real.render_schema_real),
+    "float": Codec(float, real.parse_schema_single, real.render_schema_single),
+    "java.math.BigDecimal": Codec(Decimal, decimals.parse_schema_decimal, decimals.render_schema_decimal),
+}
+"""Of the Java classes that EMF's XML types read otherwise than Ecore's."""
+_OBJECTS = {"java.lang.Boolean": "boolean", "java.lang.Double": "double", "java.lang.Float": "float"}
+
+
+def codec_of(java_class: str) -> Codec:
+    """Return how Ecore's types of a Java class are read and written; as plain texts where it is not known."""
+    return _BY_JAVA_CLASS.get(java_class, _TEXT)
+
+
+def schema_codec_of(name: str, java_class: str) -> Codec:
+    """Return the same for one of EMF's XML types."""
+    codec = _BY_JAVA_CLASS.get(java_class, _TEXT)
+    if name in _XML_CODECS:
+        return _XML_CODECS[name]
+    if codec.python is int:
+        return codec._replace(parse=whole.schema_reader(codec.bits))
+    other = _SCHEMA_CODECS.get(_OBJECTS.get(java_class, java_class))
+    return codec if other is None else other._replace(default=codec.default)
