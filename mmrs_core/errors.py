@@ -19,6 +19,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mmrs_core.diagnostics import Diagnostic
 
 
@@ -37,9 +39,37 @@ class InternalError(MmrsError):
 
 
 class UnreadableError(MmrsError):
-    """An input that cannot be read as a model at all."""
+    """An input that cannot be read as a model at all.
+
+    Attributes:
+        code: of the fault, as diagnostics have it; empty where the input is no file of a model.
+        reason: what is wrong, without the place.
+        file: in which it is, if there is a code.
+        line: counted from 1; 0 where it is not known.
+        diagnostics: this fault and those of other files that were to be read together with it, if any were.
+    """
 
     exit_code = 3
+
+    def __init__(
+        self,
+        message: str,
+        diagnostics: Sequence[Diagnostic] = (),
+        *,
+        code: str = "",
+        reason: str = "",
+        file: str = "",
+        line: int = 0,
+    ) -> None:
+        super().__init__(message)
+        self.diagnostics = tuple(diagnostics)
+        self.code, self.reason, self.file, self.line = code, reason or message, file, line
+
+    @classmethod
+    def of(cls, code: str, reason: str, file: Path | str, line: int = 0) -> UnreadableError:
+        """Return the error for a fault of that code, in a file, on a line if it is known."""
+        where = f"{file}:{line}" if line else f"{file}"
+        return cls(f"{where}: {reason}", code=code, reason=reason, file=str(file), line=line)
 
 
 class InvalidModelError(MmrsError):

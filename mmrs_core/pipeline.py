@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
-from mmrs_core.errors import InvalidModelError, UnsupportedError
+from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
@@ -88,9 +88,15 @@ def valid_models(
     """Return models without errors, and their warnings.
 
     Raises:
+        UnreadableError: with all diagnostics, if a file cannot be read at all.
         InvalidModelError: with all diagnostics, if any is an error.
     """
+    from mmrs_core.languages.codes import is_refusal
+
     models, faults = read_models(mission, contributions, context=context, robots=robots)
+    refused = next(filter(is_refusal, faults), None)
+    if refused is not None:
+        raise UnreadableError(f"{refused.place}: {refused.message}", in_order(faults))
     if models is not None:
         faults = in_order((*faults, *check_models(models, contributions)))
     if models is None or has_errors(faults):

@@ -12,10 +12,11 @@ from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import report
 from mmrs_core.contributions.rules import barriers
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
-from mmrs_core.errors import InvalidModelError
+from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour as bl
 from mmrs_core.languages import context as contexts
 from mmrs_core.languages import robot as robots_language
+from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.grounding.scenes import (
     areas_of,
@@ -28,6 +29,7 @@ from mmrs_core.languages.grounding.values import children
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import context_in, robot_files_in
 from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.registry import Registry
 from mmrs_core.pipeline import Place, program_of
 from mmrs_core.scene import Area, Part
 
@@ -103,10 +105,26 @@ def read_behaviour_files(
     types = tuple(robots) or robot_files_in(file.parent / "robots")
     registry = workshop.contributions.languages
     files = (file, *([place] if place else []), *types)
-    models = [read_model(each, registry, unsaved=unsaved) for each in files]
+    models = _read_all(files, registry, unsaved)
     if not unsaved:
         workshop.have_read(models, place)
     return _as_files(file, models, place)
+
+
+def _read_all(files: Sequence[Path], registry: Registry, unsaved: Mapping[Path, bytes] | None) -> list[Model]:
+    """Return what files hold; whether one or all of them cannot be read, everything is told at once."""
+    models: list[Model] = []
+    refused: list[UnreadableError] = []
+    for file in files:
+        try:
+            models.append(read_model(file, registry, unsaved=unsaved))
+        except UnreadableError as error:
+            refused.append(error)
+    if refused:
+        faults = [fault for error in refused for fault in refusal(error)]
+        faults += [fault for model in models for fault in model.diagnostics]
+        raise UnreadableError(str(refused[0]), in_order(faults))
+    return models
 
 
 def _as_files(file: Path, models: Sequence[Model], place: Path | None = None) -> BehaviourFiles:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,13 +12,15 @@ from mmrs_core.cli.any_model import faults_in, is_foreign, read_foreign
 from mmrs_core.cli.behaviours import faults_of, is_behaviour, read_behaviour_files
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.diagnostics import Diagnostic, Severity, in_order
-from mmrs_core.errors import InvalidModelError
+from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import read_model
 from mmrs_core.pipeline import check_models, read_models
 
 _NOT_FINITE = "ECO009"
+_FOREIGN, _BEHAVIOUR, _MISSION = "foreign", "behaviour", "mission"
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ class Subject:
 
     def examined(self) -> Diagnosis:
         """Return all faults, and let observers know; errors as in `diagnose`."""
-        doing = "checking the behaviour" if self._is_behaviour() else "checking the models"
+        doing = "checking the behaviour" if self._sort() is _BEHAVIOUR else "checking the models"
         found: list[Diagnosis] = []
 
         def check() -> tuple[Diagnostic, ...]:
@@ -45,15 +48,29 @@ class Subject:
         return found[0]
 
     def diagnose(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
-        """Return all faults, with other texts for some files.
+        """Return all faults, with other texts for some files; a file that cannot be read is one of them.
 
         Raises:
-            UnreadableError: if a file is missing or no model at all.
+            UnreadableError: if it is no file of a model that is missing or no model at all.
             InvalidModelError: if the behaviour's file, as it is, holds no behaviour.
         """
-        if self.metamodels or is_foreign(self.workshop, self.file):
-            return self._alone(unsaved)
-        return self._behaviour(unsaved) if self._is_behaviour() else self._mission(unsaved)
+        ways = {_FOREIGN: self._alone, _BEHAVIOUR: self._behaviour, _MISSION: self._mission}
+        try:
+            return ways[self._sort()](unsaved)
+        except UnreadableError as error:
+            faults = refusal(error)
+            if not faults:
+                raise
+            return Diagnosis(False, in_order(faults), ())
+
+    def _sort(self) -> str:
+        """Return what the file is; one that cannot be read is what its name says."""
+        try:
+            if self.metamodels or is_foreign(self.workshop, self.file):
+                return _FOREIGN
+            return _BEHAVIOUR if is_behaviour(self.workshop, self.file) else _MISSION
+        except UnreadableError:
+            return {"mission": _MISSION, "behaviour": _BEHAVIOUR}.get(self.file.stem, _FOREIGN)
 
     def _alone(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         """Return the faults of a model by its metamodels only: nobody knows what else belongs to it."""
@@ -62,9 +79,6 @@ class Subject:
         breaches = (fault for each in models for fault in check_conformance(each, found.registry))
         faults = (*faults_in(found), *(_as_emf_takes_it(fault) for fault in breaches))
         return Diagnosis(True, in_order(faults), models)
-
-    def _is_behaviour(self) -> bool:
-        return is_behaviour(self.workshop, self.file)
 
     def _mission(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         contributions = self.workshop.contributions
@@ -81,7 +95,11 @@ class Subject:
         """Return the files that faults are in, where there is no mission to hold them together."""
         names = dict.fromkeys(fault.place.file for fault in faults if fault.place.file)
         registry = self.workshop.contributions.languages
-        return tuple(read_model(Path(name), registry, unsaved=unsaved) for name in names)
+        found = []
+        for name in names:
+            with suppress(UnreadableError):  # that is among the faults
+                found.append(read_model(Path(name), registry, unsaved=unsaved))
+        return tuple(found)
 
     def _behaviour(self, unsaved: Mapping[Path, bytes]) -> Diagnosis:
         files = read_behaviour_files(

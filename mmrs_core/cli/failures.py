@@ -11,7 +11,14 @@ import typer
 from mmrs_core.cli.journey import RefusedError
 from mmrs_core.cli.output import report, say_json, tell
 from mmrs_core.cli.settings import DEBUG, Settings
-from mmrs_core.errors import InfeasibleError, InternalError, InvalidModelError, MmrsError, UnsupportedError
+from mmrs_core.errors import (
+    InfeasibleError,
+    InternalError,
+    InvalidModelError,
+    MmrsError,
+    UnreadableError,
+    UnsupportedError,
+)
 
 if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
@@ -62,6 +69,10 @@ def failure_of(error: Exception) -> Failure:
         case InfeasibleError():
             reasons = tuple(reason for reason in error.reasons if reason != str(error))
             return Failure(error.exit_code, str(error), reasons)
+        case UnreadableError():
+            from mmrs_core.languages.codes import refusal
+
+            return Failure(error.exit_code, str(error), (), refusal(error))
         case RefusedError():
             from mmrs_core.cli.verdict_words import verdict_line
 

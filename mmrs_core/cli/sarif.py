@@ -14,7 +14,8 @@ from mmrs_core.cli.output import say_json
 from mmrs_core.cli.reports import STANDARD_OUTPUT
 from mmrs_core.cli.sarif_places import ROOT, Places
 from mmrs_core.diagnostics import Diagnostic, Severity
-from mmrs_core.errors import InvalidModelError
+from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.writing import replace_file
 
 if TYPE_CHECKING:
@@ -140,9 +141,10 @@ def refusals_in(file: Path | None, workshop: Workshop, subject: str) -> Iterator
     """Write the faults of a model that is refused inside into a SARIF file, too."""
     try:
         yield
-    except InvalidModelError as error:
+    except (InvalidModelError, UnreadableError) as error:
         if file is not None:
-            write_sarif(file, error.diagnostics, workshop.contributions, subject=subject)
+            faults = refusal(error) if isinstance(error, UnreadableError) else error.diagnostics
+            write_sarif(file, faults, workshop.contributions, subject=subject)
         raise
 
 

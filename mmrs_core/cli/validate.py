@@ -14,6 +14,7 @@ from mmrs_core.cli.output import counted, report, say, say_json, tell
 from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.errors import UnreadableError
 
 if TYPE_CHECKING:
     from mmrs_core.analysis.fixes.repair import Diagnosis, Proposal, Repair
@@ -76,6 +77,14 @@ def validate(
     elif sarif != STANDARD_OUTPUT:
         say(_summary(project, found, repair, changed))
         _tell_of(proposals, project, asked=fix)
+    return _exit_code(found)
+
+
+def _exit_code(found: Diagnosis) -> int:
+    from mmrs_core.languages.codes import is_refusal
+
+    if any(map(is_refusal, found.faults)):
+        return UnreadableError.exit_code
     return 0 if _is_valid(found) else 1
 
 
@@ -88,7 +97,8 @@ def _is_valid(found: Diagnosis) -> bool:
 def _summary(project: Path, found: Diagnosis, repair: Repair | None, changed: bool) -> str:
     counts = _counts(found.faults)
     mended = counted(len(repair.applied), "fault") if repair is not None and changed else ""
-    words = f"{project}: {'valid' if _is_valid(found) else 'not valid'}" + (f" ({counts})" if counts else "")
+    known = "not read wholly" if _exit_code(found) == UnreadableError.exit_code else "not valid"
+    words = f"{project}: {'valid' if _is_valid(found) else known}" + (f" ({counts})" if counts else "")
     return f"{words}; {mended} mended" if mended else words
 
 

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from mmrs_core.diagnostics import Diagnostic, Severity
+from mmrs_core.diagnostics import Diagnostic, Place, Severity
+from mmrs_core.errors import UnreadableError
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +184,46 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "write it in the form that EMF itself writes",
             Severity.WARNING,
         ),
+        "FIL001": Code(
+            "a file that is not there",
+            "a file of that name",
+            "correct the path, or put the file there",
+        ),
+        "FIL002": Code(
+            "a file that the system does not give",
+            "a file that whoever runs this may read",
+            "permit its reading, or name another file",
+        ),
+        "FIL003": Code(
+            "a file larger than any model",
+            "a model within the bounds of what is read",
+            "divide the model into several files, or name the right file",
+        ),
+        "FIL004": Code(
+            "text that is not well-formed XML",
+            "XML in which every tag is closed by its own",
+            "mend the line, or the one in front of it; a file cut short has to be copied anew",
+        ),
+        "FIL005": Code(
+            "a DOCTYPE, which could make a model read other files",
+            "a model without DOCTYPE",
+            "take the DOCTYPE away: models need none",
+        ),
+        "FIL006": Code(
+            "more in one place than any model has",
+            "a model within the bounds of what is read",
+            "look whether the file is a model at all",
+        ),
+        "FIL007": Code(
+            "text that is not well-formed JSON",
+            "JSON in UTF-8, each key once in its object",
+            "mend the line, or the one in front of it; a file cut short has to be copied anew",
+        ),
+        "FIL008": Code(
+            "more faults than anybody would read",
+            "a model of the languages that are installed",
+            "mend what the first fault is about: most others follow from it",
+        ),
         "MIG001": Code(
             "a model of an older version of its language, migrated while it was read",
             "a model of the installed version",
@@ -225,6 +266,11 @@ CODES: Mapping[str, Code] = MappingProxyType(
             "robot types with different names",
             "give each type its own name",
         ),
+        "PRJ003": Code(
+            "a project of which it cannot be told which files are meant",
+            "one mission.xmi or mission.json, and beside it at most one context of that form",
+            "name the mission's file, or give the files of the project these names",
+        ),
         "PRJ002": Code(
             "a file of a project that does not hold what belongs there",
             "one mission in mission.xmi, one context in context.xmi, robot types in robots",
@@ -232,6 +278,19 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
     }
 )
+
+
+def refusal(error: UnreadableError) -> tuple[Diagnostic, ...]:
+    """Return the faults for which something cannot be read; none where it is no file of a model."""
+    if error.diagnostics or not error.code:
+        return error.diagnostics
+    place = Place(error.file, error.line)
+    return (explained(Diagnostic(error.code, Severity.ERROR, error.reason, place)),)
+
+
+def is_refusal(fault: Diagnostic) -> bool:
+    """Return whether a fault keeps a whole file from being read."""
+    return fault.code.startswith("FIL") or fault.code == "PRJ003"
 
 
 def explained(fault: Diagnostic) -> Diagnostic:

@@ -41,9 +41,8 @@ def check_conformance(model: Model, registry: Registry) -> tuple[Diagnostic, ...
     faults = (fault for element in doubtful for fault in check.element(element))
     found = tuple(islice(faults, MOST_FAULTS + 1))
     if len(found) > MOST_FAULTS:
-        raise UnreadableError(
-            f"{model.file}: more than {MOST_FAULTS} faults; the first is: {found[0].message}"
-        )
+        message = f"more than {MOST_FAULTS} faults; the first is: {found[0].message}"
+        raise UnreadableError.of("FIL008", message, model.file)
     return found
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
-from mmrs_core.languages.codes import explained
+from mmrs_core.languages.codes import explained, refusal
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element, Unknown, metaclass_of, place_of
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.reading import Reading
@@ -55,7 +56,7 @@ def project_files(
     if place.is_dir():
         found = model_in(place, "mission")
         if found is None or not found.is_file():
-            raise UnreadableError(f"{place}: no mission.xmi in this folder")
+            raise UnreadableError.of("PRJ003", "no mission.xmi in this folder", place)
         mission_file = found
     folder = mission_file.parent
     if context is None:
@@ -71,7 +72,8 @@ def model_in(folder: Path, name: str) -> Path | None:
     """
     found = [file for ending in _ENDINGS if os.path.lexists(file := folder / f"{name}{ending}")]
     if len(found) > 1:
-        raise UnreadableError(f"{folder}: has both {found[0].name} and {found[1].name}; keep one of them")
+        both = f"has both {found[0].name} and {found[1].name}; keep one of them"
+        raise UnreadableError.of("PRJ003", both, folder)
     return found[0] if found else None
 
 
@@ -84,13 +86,13 @@ def context_in(folder: Path) -> Path | None:
     """
     file = model_in(folder, "context")
     if file is not None and file.is_symlink() and not file.exists():
-        raise UnreadableError(f"{file}: a link that leads nowhere")
+        raise UnreadableError.of("FIL001", "a link that leads nowhere", file)
     if file is not None:
         return file
     for other in sorted(folder.iterdir()) if folder.is_dir() else ():
         wanted = other.name.casefold()
         if wanted in ("context.xmi", "context.json"):
-            raise UnreadableError(f"{other}: is taken for no context unless its name is {wanted}")
+            raise UnreadableError.of("PRJ003", f"is taken for no context unless its name is {wanted}", other)
     return None
 
 
@@ -108,7 +110,10 @@ def read_project(
     registry: Registry,
     unsaved: Mapping[Path, bytes] | None = None,
 ) -> tuple[ModelSet | None, tuple[Diagnostic, ...]]:
-    """Return the models of a project and the faults of their files; None if there is no mission among them.
+    """Return the models of a project and the faults of their files.
+
+    There are no models if there is no mission among them, or a file cannot be read at all: then whatever
+    the others say is checked by itself, and not against each other.
 
     Args:
         mission: the project's folder, or the mission's file.
@@ -118,13 +123,17 @@ def read_project(
         unsaved: texts to be read instead of what files hold, by real path.
 
     Raises:
-        UnreadableError: if a file is missing, not well-formed, has a DOCTYPE, is too large or too deep.
+        UnreadableError: if it cannot be told which files belong to the project.
     """
     mission_file, context_file, robot_files = project_files(mission, context, robots)
     files = [mission_file, *([context_file] if context_file else []), *robot_files]
     reading = Reading(registry, _common_folder(files), unsaved)
-    drafts = [reading.open(file) for file in files]
+    opened = [_opened(reading, file) for file in files]
     reading.follow()
+    drafts = [draft for draft in opened if isinstance(draft, Draft)]
+    if len(drafts) < len(files):
+        refused = [fault for each in opened if isinstance(each, UnreadableError) for fault in refusal(each)]
+        return None, (*refused, *_told(reading, drafts, registry))
     main = reading.model(drafts[0])
     models = (main, *main.linked)
     faults = [fault for model in models for fault in model.diagnostics]
@@ -135,6 +144,24 @@ def read_project(
     if found is None:
         return None, tuple(map(explained, faults))
     return ModelSet(found, place or None, types, models), tuple(map(explained, faults))  # type: ignore[arg-type]
+
+
+def _opened(reading: Reading, file: Path) -> Draft | UnreadableError:
+    """Return a file, or why it cannot be read."""
+    try:
+        return reading.open(file)
+    except UnreadableError as refused:
+        return refused
+
+
+def _told(reading: Reading, drafts: Sequence[Draft], registry: Registry) -> Iterator[Diagnostic]:
+    """Yield the faults of files that are not checked against each other."""
+    if not drafts:
+        return
+    main = reading.model(drafts[0])
+    for model in (main, *main.linked):
+        yield from model.diagnostics
+        yield from check_conformance(model, registry)
 
 
 def _common_folder(files: Sequence[Path]) -> Path:

@@ -34,7 +34,7 @@ class Reading:
         self._unsaved = unsaved or {}
         self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
-        self._refused: dict[Path, str] = {}
+        self._refused: dict[Path, tuple[str, str, str, int]] = {}
         self._unresolved: list[Draft] = []
 
     def open(self, path: Path) -> Draft:
@@ -45,13 +45,14 @@ class Reading:
         """
         real = real_path(path)
         if real in self._refused:
-            raise UnreadableError(self._refused[real])
+            raise UnreadableError.of(*self._refused[real])
         if real not in self._drafts:
             try:
                 data = self._unsaved[real] if real in self._unsaved else read_bytes(path)
                 self._drafts[real] = self.parse(data, Source(str(path), real))
             except UnreadableError as refusal:
-                self._refused[real] = str(refusal)  # a thousand references must not read it a thousand times
+                # a thousand references must not read it a thousand times
+                self._refused[real] = refusal.code, refusal.reason, refusal.file or str(path), refusal.line
                 raise
         return self._drafts[real]
 

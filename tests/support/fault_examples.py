@@ -18,15 +18,16 @@ from mmrs_core.behaviour.program import Action, RobotProgram
 from mmrs_core.cli.pages.diagnostics_page import Example
 from mmrs_core.contributions.checks import Check, CheckInput, Verdict
 from mmrs_core.diagnostics import Diagnostic
-from mmrs_core.errors import InvalidModelError
+from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import mission, robot
+from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.modelset import read_project
-from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.reading import read_model, read_text
 from mmrs_core.languages.registry import MetamodelSource, Registry, core_registry, registry_with
 from mmrs_core.languages.writing import to_xmi
 from mmrs_core.scene import Part
@@ -119,6 +120,7 @@ _HEAD = (
     '<mission:Mission xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
     ' xmlns:mission="urn:mmrs:mission:1.0">\n'
 )
+_PROGRAM = re.compile(r"root = |^m\.|^read|^write")
 _WHOLE = re.compile(r"<\w+:|<[A-Z]")
 ZOO = ROOT / "tests" / "fixtures" / "models" / "zoo.ecore"
 READING = ROOT / "tests" / "fixtures" / "diagnostics" / "reading_cases.py"
@@ -137,6 +139,8 @@ def reading_cases(
         "GROUNDED": lambda edit: _of_ground(edit, fresh_models()),
         "VERSIONS": _of_version,
         "LINES": lambda line: _of_log(line, folder),
+        "RAW": _of_raw,
+        "OPENED": lambda program: _of_program_on_files(program, folder),
     }
     for table, finder in finders.items():
         found |= {code: (finder, *case) for code, case in tables[table].items()}
@@ -148,7 +152,7 @@ def reading_examples(folder: Path, fresh_models: Callable[[], object]) -> dict[s
     found = {}
     for code, (finder, failing, passing) in reading_cases(folder, fresh_models).items():
         message = next(fault.message for fault in finder(failing) if fault.code == code)
-        language = "python" if "root = " in str(failing) or "m." in str(failing)[:2] else "xml"
+        language = "python" if _PROGRAM.search(str(failing)) else "xml"
         found[code] = Example(
             message.replace(str(folder), "."), _written(failing), _written(passing), language
         )
@@ -225,6 +229,48 @@ def _of_log(line: str, folder: Path) -> tuple[Diagnostic, ...]:
     except InvalidModelError as error:
         return error.diagnostics
     return ()
+
+
+def _of_raw(text: str) -> tuple[Diagnostic, ...]:
+    try:
+        return read_text(
+            text.encode(), "m.json" if text.startswith("{") else "m.xmi", core_registry()
+        ).diagnostics
+    except UnreadableError as error:
+        return refusal(error)
+
+
+def _of_program_on_files(program: str, folder: Path) -> tuple[Diagnostic, ...]:
+    """Return what the last line of a program finds in its folder, in which a mission stands already."""
+    place = Path(mkdtemp(dir=folder))
+
+    def write(name: str, text: str = "", megabytes: int = 0) -> None:
+        with (place / name).open("w", encoding="utf-8") as file:
+            file.write(text)
+            file.truncate(megabytes * 1024 * 1024 or len(text))
+
+    def read(name: str) -> Sequence[Diagnostic]:
+        return read_model(place / name, core_registry()).diagnostics
+
+    def project(name: str) -> Sequence[Diagnostic]:
+        return read_project(place / name, registry=core_registry())[1]
+
+    (place / "robots").mkdir()
+    write("mission.xmi", f"{_HEAD}</mission:Mission>")
+    names = {
+        "read": read,
+        "write": write,
+        "read_project": project,
+        "MISSION": _HEAD,
+        "END": "</mission:Mission>",
+    }
+    *lines, last = program.splitlines()
+    try:
+        exec("\n".join(lines), names)  # noqa: S102  our own fixtures
+        found = tuple(eval(last, names))  # noqa: S307  our own fixtures
+    except UnreadableError as error:
+        found = refusal(error)
+    return tuple(replace(each, message=each.message.replace(f"{place}/", "")) for each in found)
 
 
 _VERDICTS = ROOT / "tests" / "golden" / "analysis" / "expected"

@@ -12,6 +12,7 @@ _CHAPTERS = {
     "XMI": "Reading files",
     "ECO": "Metamodels",
     "MIG": "Versions of languages",
+    "FIL": "Files",
     "PRJ": "Projects",
     "MML": "Missions",
     "CTX": "Contexts",

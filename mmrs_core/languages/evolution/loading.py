@@ -77,7 +77,7 @@ def _unpack(roots: Sequence[Node], registry: Registry, languages: Mapping[str, s
             xml = xml_of(str(node.members[XML]), scope_of(node))
             document = Document(xml.encode(), file)
         except ValueError as fault:
-            raise UnreadableError(f"{file}:{node.line}: {fault}") from None
+            raise UnreadableError.of("FIL004", str(fault), file, node.line) from None
         old = OldXmi(document, lambda ns_uri: not ns_uri or is_known(ns_uri))  # its tag is that of a feature
         document.parse(old)
         _release(document)

@@ -231,7 +231,7 @@ class Beginnings:
             text = self._stream.source(start.begin, event[4]) if xml is None else ""
             unknown = kept(Kept(text, xml, scope), claimed, self._types.languages)
         except ValueError as fault:
-            raise UnreadableError(f"{self._stream.file}:{start.line}: {fault}") from None
+            raise UnreadableError.of("FIL006", str(fault), self._stream.file, start.line) from None
         self._stands(unknown, start.owner, start.feature, start.begin, start.line)
 
 

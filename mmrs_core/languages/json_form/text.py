@@ -151,7 +151,7 @@ class Text:
                 raw, text, number, word, close, bracket = match.groups()
                 key = short.get(raw) or text_of(raw, pos, keys)
                 if key in keys:
-                    self._refuse(f"{key!r}: given twice in one object", pos)
+                    self._refuse("FIL007", f"{key!r}: given twice in one object", pos)
                 keys.add(key)
             place, pos = pos, match.end()
             if text is not None:
@@ -167,7 +167,7 @@ class Text:
             else:
                 opened.append(keys)
                 if len(opened) > DEEPEST:
-                    self._refuse(f"nested deeper than {DEEPEST} levels", pos - 1)
+                    self._refuse("FIL006", f"nested deeper than {DEEPEST} levels", pos - 1)
                 is_object = bracket == b"{"
                 keys = set() if is_object else None
                 self._begun += is_object and not inner
@@ -191,7 +191,7 @@ class Text:
     def _text(self, raw: bytes, place: int, keys: set[str] | None = None) -> str:
         """Return what stands between quotes; short texts are the same object each time."""
         if keys is not None and len(keys) >= MOST_MEMBERS:
-            self._refuse(f"more than {MOST_MEMBERS} members in one object", place)
+            self._refuse("FIL006", f"more than {MOST_MEMBERS} members in one object", place)
         if b"\\" in raw:
             try:
                 text = str(json.loads(b'"%b"' % raw))
@@ -265,10 +265,10 @@ class Text:
         self._refuse_malformed("invalid \\escape" if escaped else "invalid control character at", pos)
 
     def _refuse_malformed(self, reason: str, pos: int) -> NoReturn:
-        self._refuse(f"not well-formed JSON: {reason}", pos)
+        self._refuse("FIL007", f"not well-formed JSON: {reason}", pos)
 
-    def _refuse(self, what: str, pos: int) -> NoReturn:
-        raise UnreadableError(f"{self.file}:{self.line(pos)}: {what}")
+    def _refuse(self, code: str, what: str, pos: int) -> NoReturn:
+        raise UnreadableError.of(code, what, self.file, self.line(pos))
 
 
 def _is_orderly(data: bytes) -> bool:
@@ -286,7 +286,7 @@ def _refuse_crowds(data: bytes, file: str, shortest: int) -> None:
     """Refuse what is nearly nothing but brackets: in memory it would take a hundred times its size."""
     count = data.count(b"{") + data.count(b"[")
     if count > _MANY and count * shortest > len(data):
-        raise UnreadableError(f"{file}: {count} objects and lists with next to nothing in them")
+        raise UnreadableError.of("FIL006", f"{count} objects and lists with next to nothing in them", file)
 
 
 def _as_utf8(data: bytes, file: str) -> bytes:
@@ -299,7 +299,7 @@ def _as_utf8(data: bytes, file: str) -> bytes:
         return data.decode(encoding).encode()
     except UnicodeDecodeError as fault:
         line = data.count(b"\n", 0, fault.start) + 1
-        raise UnreadableError(f"{file}:{line}: not readable as UTF-8 text") from None
+        raise UnreadableError.of("FIL007", "not readable as UTF-8 text", file, line) from None
 
 
 def is_json(file: str) -> bool:

@@ -69,10 +69,8 @@ class Draft:
         """
         if len(self.diagnostics) >= MOST_FAULTS:
             first = self.diagnostics[0]
-            message = (
-                f"{self.source.file}:{line}: more than {MOST_FAULTS} faults; the first is: {first.message}"
-            )
-            raise UnreadableError(message)
+            message = f"more than {MOST_FAULTS} faults; the first is: {first.message}"
+            raise UnreadableError.of("FIL008", message, self.source.file, line)
         path = path_of(element) if element is not None else ""
         self._read_below.append(len(self.roots) - 1)
         self.diagnostics.append(

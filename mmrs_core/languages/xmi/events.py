@@ -137,11 +137,11 @@ class Document:
         try:
             self.parser.Parse(self.data, True)
         except expat.ExpatError as fault:
-            raise UnreadableError(f"{self.file}:{fault.lineno}: {self._reason(fault)}") from None
+            raise UnreadableError.of("FIL004", self._reason(fault), self.file, fault.lineno) from None
         except (LookupError, ValueError) as fault:
             if self._begun:
                 raise
-            raise UnreadableError(f"{self.file}: not readable as XML: {fault}") from None
+            raise UnreadableError.of("FIL004", f"not readable as XML: {fault}", self.file) from None
 
     def _reason(self, fault: expat.ExpatError) -> str:
         if self.encoding.upper() in _SEVEN_BITS and not self.data.isascii():
@@ -156,7 +156,9 @@ class Document:
 
     def refuse_depth(self) -> NoReturn:
         """Raise the error for an element inside more than `DEEPEST_NESTING` others."""
-        raise UnreadableError(f"{self.file}:{self.line}: nested deeper than {DEEPEST_NESTING} levels")
+        raise UnreadableError.of(
+            "FIL006", f"nested deeper than {DEEPEST_NESTING} levels", self.file, self.line
+        )
 
     def _first(self, start: Start) -> Start:
         def first(tag: str, attributes: list[str]) -> None:
@@ -186,7 +188,7 @@ class Document:
         """Bind a prefix; names of other versions of XMI become those of ours as the parser makes them."""
         if uri and len(uri) > LONGEST_NAMESPACE:  # every element of it would hold it
             message = f"a namespace of more than {LONGEST_NAMESPACE} characters"
-            raise UnreadableError(f"{self.file}:{self.line}: {message}")
+            raise UnreadableError.of("FIL006", message, self.file, self.line)
         if uri and _OTHER_XMI.fullmatch(uri):
             self.parser.intern.update({f"{uri} {name}": f"{XMI} {name}" for name in _XMI_NAMES})
         self.namespaces.open(prefix, uri)
@@ -196,7 +198,7 @@ class Document:
             self.encoding = encoding or self.encoding
 
     def _doctype(self, *_: object) -> None:
-        raise UnreadableError(f"{self.file}:{self.line}: DOCTYPE is not accepted in a model")
+        raise UnreadableError.of("FIL005", "DOCTYPE is not accepted in a model", self.file, self.line)
 
 
 def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]:
@@ -206,7 +208,7 @@ def _without_wide_characters(data: bytes, file: str) -> tuple[bytes, str | None]
     try:
         return data.decode("utf-16").encode(), "UTF-8"
     except UnicodeDecodeError:
-        raise UnreadableError(f"{file}: not readable as UTF-16") from None
+        raise UnreadableError.of("FIL004", "not readable as UTF-16", file) from None
 
 
 def _refuse_crowds(data: bytes, file: str) -> None:
@@ -217,7 +219,9 @@ def _refuse_crowds(data: bytes, file: str) -> None:
         if following < 0:
             if _attributes_at(data, begin) > MOST_ATTRIBUTES:
                 line = data.count(b"\n", 0, begin) + 1
-                raise UnreadableError(f"{file}:{line}: more than {MOST_ATTRIBUTES} attributes in one element")
+                raise UnreadableError.of(
+                    "FIL006", f"more than {MOST_ATTRIBUTES} attributes in one element", file, line
+                )
             following = data.find(b"<", begin + window)
         begin = following
 
@@ -247,12 +251,12 @@ def read_bytes(path: Path, largest: int = LARGEST_FILE) -> bytes:
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
-            raise UnreadableError(f"{path}: not a file")
+            raise UnreadableError.of("FIL001", "not a file", path)
         if status.st_size > largest:
-            raise UnreadableError(f"{path}: larger than {largest // (1024 * 1024)} MB")
+            raise UnreadableError.of("FIL003", f"larger than {largest // (1024 * 1024)} MB", path)
         return path.read_bytes()
     except FileNotFoundError:
-        raise UnreadableError(f"{path}: no such file") from None
+        raise UnreadableError.of("FIL001", "no such file", path) from None
     except (OSError, ValueError) as fault:
         reason = fault.strerror.lower() if isinstance(fault, OSError) and fault.strerror else fault
-        raise UnreadableError(f"{path}: cannot be read: {reason}") from None
+        raise UnreadableError.of("FIL002", f"cannot be read: {reason}", path) from None

@@ -160,4 +160,4 @@ def test_every_code_has_a_meaning_and_every_meaning_a_code():
 
     sources = Path(languages.__file__).parent.rglob("*.py")
     text = "".join(source.read_text() for source in sources if source.name != "codes.py")
-    assert set(re.findall(r'"((?:XMI|ECO|PRJ|MIG|GND)\d{3})"', text)) == set(CODES) - {"LOG001"}
+    assert set(re.findall(r'"((?:XMI|ECO|PRJ|MIG|GND|FIL)\d{3})"', text)) == set(CODES) - {"LOG001"}
