@@ -38,8 +38,14 @@ def migration_lines(migration: Migration, project: Path) -> Iterator[str]:
 
 
 def verdict_lines(verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """Yield whether what was written is valid, and what a behaviour still needs to be run."""
+    """Yield whether what was written is valid, and what a behaviour still needs to be run.
+
+    Of valid robot types beside a behaviour, the line of the behaviour says enough.
+    """
+    judged = {verdict.path.parent for verdict in verdicts if not verdict.alone}
     for verdict in verdicts:
+        if verdict.alone and verdict.valid and verdict.path in judged:
+            continue
         for name in verdict.missing:
             yield (
                 f"{verdict.path}: to simulate or generate it, the robot type {name!r} is needed: migrate the"

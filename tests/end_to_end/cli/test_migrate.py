@@ -158,6 +158,7 @@ def test_a_behaviour_without_its_robot_type_says_what_it_needs(mmrs, project):
     assert [verdict["missing"] for verdict in told["verdicts"]] == [["Heron"]]
     _, out, _ = mmrs("migrate", FLYAQ / "round.json", FLYAQ / "Heron.xmi", "-o", project, "--force")
     assert "is needed" not in out
+    assert "no mission" not in out
     assert mmrs("simulate", project)[0] == 0
 
 
