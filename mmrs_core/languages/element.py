@@ -24,13 +24,15 @@ class Source:
         roots: the elements at its top.
         ids: the identifiers that the file itself gave to elements (``xmi:id``).
         blanks: the unsettable features that the file states to be nil or empty; EMF takes them for set.
+        ns_uri: of the metamodel whose description it is, where it is no file but was made of one; else empty.
     """
 
-    __slots__ = ("blanks", "file", "ids", "path", "roots")
+    __slots__ = ("blanks", "file", "ids", "ns_uri", "path", "roots")
 
     def __init__(self, file: str, path: Path | None) -> None:
         self.file = file
         self.path = path
+        self.ns_uri = ""
         self.roots: tuple[Element, ...] = ()
         self.ids: dict[Element, str] = {}
         self.blanks: set[tuple[Element, Feature]] = set()

@@ -11,6 +11,7 @@ from mmrs_core.languages.collector import collector_at_rest
 from mmrs_core.languages.element import Source
 from mmrs_core.languages.evolution.loading import may_be_old, read_json, read_old_xmi
 from mmrs_core.languages.json_form.text import is_json
+from mmrs_core.languages.metamodels.text import package_text
 from mmrs_core.languages.model import Model
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.references.hrefs import real_path
@@ -34,6 +35,7 @@ class Reading:
         self._unsaved = unsaved or {}
         self._root = real_path(root) if root is not None else None
         self._drafts: dict[Path, Draft] = {}
+        self._described: dict[str, Draft] = {}
         self._refused: dict[Path, tuple[str, str, str, int]] = {}
         self._unresolved: list[Draft] = []
 
@@ -56,6 +58,17 @@ class Reading:
                 raise
         return self._drafts[real]
 
+    def described(self, ns_uri: str) -> Draft:
+        """Return a metamodel of the registry as a model of Ecore, whose classes others may refer to."""
+        if ns_uri not in self._described:
+            text = package_text(
+                self._registry.package(ns_uri), lambda other: f"{'' if other == ns_uri else other}#//"
+            )
+            source = Source(ns_uri, None)
+            source.ns_uri = ns_uri
+            self._described[ns_uri] = self.parse(text.encode(), source)
+        return self._described[ns_uri]
+
     def parse(self, data: bytes, source: Source) -> Draft:
         """Read the text of a file; errors as in `open`."""
         draft = Draft(source)
@@ -77,13 +90,18 @@ class Reading:
         with collector_at_rest():
             while self._unresolved:
                 draft = self._unresolved.pop(0)
-                doubled.append((draft, resolve(draft, self.open, self._root, self._registry)))
+                doubled.append((draft, resolve(draft, self, self._root, self._registry)))
             for draft, references in doubled:
                 tell_other_ends(draft, references)
 
     def model(self, draft: Draft) -> Model:
         """Return what a file holds, with the other files read together with it."""
-        others = (self._plain(other) for other in self._drafts.values() if other is not draft)
+        # metamodels that models refer to are read with them, and are no models
+        others = (
+            self._plain(other)
+            for path, other in self._drafts.items()
+            if other is not draft and path.suffix != ".ecore"
+        )
         plain = self._plain(draft)
         return Model(plain.file, plain.roots, plain.diagnostics, tuple(others), plain.broken)
 

@@ -73,9 +73,9 @@ class Assembly:
         for enum in entry.table.enums:
             self._types[ns_uri, enum.name] = Enumeration(ns_uri, enum.name, enum.literals, enum.documentation)
         for kind in entry.table.datatypes:
-            self._types[ns_uri, kind.name] = declared_type(
-                ns_uri, kind.name, kind.java_class, kind.serializable
-            )
+            known = builtin_type(ns_uri, kind.name)
+            declared = declared_type(ns_uri, kind.name, kind.java_class, kind.serializable)
+            self._types[ns_uri, kind.name] = known or declared
         for table in entry.table.classes:
             if (ns_uri, table.name) in self._tables or (ns_uri, table.name) in self._types:
                 raise PluginError(f"{entry.provider}: {ns_uri}: class {table.name} is declared twice")

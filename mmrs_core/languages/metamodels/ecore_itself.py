@@ -112,6 +112,20 @@ ProcessingInstruction
 SimpleAnyType AnyType
 """
 
+_ECORE_TYPES = """
+EBigDecimal EBigInteger EBoolean EBooleanObject EByte EByteArray EByteObject EChar ECharacterObject
+EDate EDouble EDoubleObject EFloat EFloatObject EInt EIntegerObject EJavaClass EJavaObject ELong
+ELongObject EShort EShortObject EString
+"""
+_XML_TYPES = """
+AnySimpleType AnyURI Base64Binary Boolean BooleanObject Byte ByteObject Date DateTime Decimal Double
+DoubleObject Duration ENTITIES ENTITIESBase ENTITY Float FloatObject GDay GMonth GMonthDay GYear
+GYearMonth HexBinary ID IDREF IDREFS IDREFSBase Int IntObject Integer Language Long LongObject
+NCName NMTOKEN NMTOKENS NMTOKENSBase NOTATION Name NegativeInteger NonNegativeInteger
+NonPositiveInteger NormalizedString PositiveInteger QName Short ShortObject String Time Token
+UnsignedByte UnsignedByteObject UnsignedInt UnsignedIntObject UnsignedLong UnsignedShort
+UnsignedShortObject
+"""
 _NOT_IN_FILES = {
     "EDiagnosticChain": "org.eclipse.emf.common.util.DiagnosticChain",
     "EEList": "org.eclipse.emf.common.util.EList",
@@ -128,9 +142,13 @@ _NOT_IN_FILES = {
 
 def built_in() -> tuple[Located, ...]:
     """Return Ecore and EMF's types of XML."""
-    types = tuple(DataTypeTable(name, java, False) for name, java in _NOT_IN_FILES.items())
+    known = tuple(map(DataTypeTable, _ECORE_TYPES.split()))
+    types = (*known, *(DataTypeTable(name, java, False) for name, java in _NOT_IN_FILES.items()))
     ecore = PackageTable(ECORE, "ecore", "ecore", "", tuple(_classes(_ECORE, ECORE)), (), types)
-    xml = PackageTable(XML_TYPES, "type", "ecore.xml.type", "", tuple(_classes(_XML, XML_TYPES)))
+    xml_types = tuple(map(DataTypeTable, _XML_TYPES.split()))
+    xml = PackageTable(
+        XML_TYPES, "type", "ecore.xml.type", "", tuple(_classes(_XML, XML_TYPES)), (), xml_types
+    )
     return Located(ecore, "core", None, None), Located(xml, "core", None, None)
 
 

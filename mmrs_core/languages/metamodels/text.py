@@ -43,6 +43,7 @@ def _package_body(package: Package, address: Address) -> list[str]:
             ("xsi:type", "ecore:EDataType"),
             ("name", datatype.name),
             ("instanceClassName", datatype.java_class),
+            *(() if datatype.serializable else (("serializable", "false"),)),
         )
         body += _element("eClassifiers", kind, [])
     for metaclass in package.metaclasses:

@@ -21,6 +21,7 @@ from mmrs_core.languages.links import LinkedList, raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.hidden import strayed
 from mmrs_core.languages.references.hrefs import relative_href
+from mmrs_core.languages.references.names import Names
 
 _ID = re.compile(r"[^\s#:%/][^\s#:%]*")
 
@@ -35,6 +36,7 @@ class Addresses:
         self._sources = {id(root._mmrs_source) for root in roots if root._mmrs_source is not None}
         self._folder = file.resolve().parent if file is not None else None
         self._entered: dict[int, str] = {}
+        self._names = Names()
 
     def stands_here(self, element: Element) -> bool:
         """Return whether the document holds the element, or the unknown one around it."""
@@ -103,6 +105,8 @@ class Addresses:
                 top = candidate
                 break
         source = top._mmrs_source
+        if source is not None and source.ns_uri and (names := self._names.fragment(top, element)) is not None:
+            return f"{source.ns_uri}#{names}"
         if source is None or source.path is None or top not in source.roots:
             raise ValueError(f"refers to {element!r}, which stands in no file")
         if self._folder is None:
@@ -113,6 +117,8 @@ class Addresses:
         own = _own_id(element)
         if own is not None:
             return own
+        if len(source.roots) == 1 and (names := self._names.fragment(top, element)) is not None:
+            return names
         steps = []
         while element is not top:
             container, feature = element._mmrs_container, element._mmrs_feature

@@ -12,6 +12,7 @@ from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.element import Element, Source, Unknown, path_of
 from mmrs_core.languages.links import raw
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.references.names import Names
 
 MOST_FAULTS = 10_000
 
@@ -50,6 +51,7 @@ class Draft:
     broken: set[tuple[Element, str]] = field(default_factory=set)
     found: dict[str, Element] = field(default_factory=dict)
     lists: dict[str, list[object]] = field(default_factory=dict)
+    names: Names = field(default_factory=Names)
     said_within: dict[str, Unknown] | None = None
     _read_below: list[int] = field(default_factory=list)
 
@@ -151,6 +153,8 @@ class Draft:
         return self.roots[number] if number < len(self.roots) else None
 
     def _step(self, parent: Element | None, step: str) -> Element | None:
+        if parent is not None and not step.startswith("@"):
+            return self.names.inside(parent).get(unquote(step))
         match = _STEP.fullmatch(step)
         metaclass = type(parent)._mmrs_metaclass if parent is not None else None
         if match is None or parent is None or metaclass is None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Protocol
 
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import shown
@@ -24,17 +25,25 @@ _BLANKS = re.compile("[ \t\n\r\f]+")
 _HELPED_FAULTS = 20
 """Looking for what was meant goes over the whole model; beyond this many faults nobody waits for it."""
 
-Opener = Callable[[Path], Draft]
+
+class Library(Protocol):
+    """Where the documents are that others refer to."""
+
+    def open(self, path: Path) -> Draft:
+        """Read another file, or return it when it was read before; UnreadableError if that cannot be."""
+
+    def described(self, ns_uri: str) -> Draft:
+        """Return the description of a metamodel that is at hand, as a model of Ecore."""
 
 
 def resolve(
-    draft: Draft, opener: Opener, root: Path | None, registry: Registry
+    draft: Draft, library: Library, root: Path | None, registry: Registry
 ) -> list[tuple[Pending, Element]]:
     """Set every reference of a file; what leads nowhere becomes a fault of that file.
 
     Args:
         draft: the file; its pending references are emptied.
-        opener: reads another file, or returns it when it was read before.
+        library: where the documents are that it refers to.
         root: the folder that references must not leave; None where there are no files.
         registry: the metamodels that are installed.
 
@@ -45,7 +54,7 @@ def resolve(
     doubled = []
     for reference in _left(pending, draft):
         for uri in _uris(reference.text):
-            target = _target(uri, reference, draft, opener, root, registry)
+            target = _target(uri, reference, draft, library, root, registry)
             if target is not None and _set(reference, target, draft):
                 doubled.append((reference, target))
     note_links(draft)
@@ -93,12 +102,12 @@ def _uris(text: str) -> Iterator[str]:
 
 
 def _target(
-    uri: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None, registry: Registry
+    uri: str, reference: Pending, draft: Draft, library: Library, root: Path | None, registry: Registry
 ) -> Element | None:
     document, _, fragment = uri.rpartition("#") if "#" in uri else ("", "", uri)
     where = draft
     if document:
-        opened = _opened(document, reference, draft, opener, root)
+        opened = _opened(document, reference, draft, library, root, registry)
         if opened is None:
             return None
         where = opened
@@ -147,8 +156,15 @@ def _hint(uri: str, feature: Feature, draft: Draft) -> str:
 
 
 def _opened(
-    document: str, reference: Pending, draft: Draft, opener: Opener, root: Path | None
+    document: str,
+    reference: Pending,
+    draft: Draft,
+    library: Library,
+    root: Path | None,
+    registry: Registry,
 ) -> Draft | None:
+    if registry.has(document):
+        return library.described(document)
     path = draft.source.path
     if path is None or root is None:
         message = f"{reference.feature.name}: {document}: a text that is no file cannot refer to files"
@@ -156,7 +172,7 @@ def _opened(
         return None
     try:
         real = linked_file(document, path.parent, root)
-        return draft if real == path else opener(_as_given(document, draft, real))
+        return draft if real == path else library.open(_as_given(document, draft, real))
     except ValueError as fault:
         _fault("XMI007", f"{reference.feature.name}: {fault}", reference, draft)
     except UnreadableError as fault:

@@ -6,10 +6,13 @@ import pytest
 from emf_description import metamodel_lines, name
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES
 from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
 from mmrs_core.languages.metamodels.parsing import read_tables
+from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with
+from mmrs_core.languages.writing import write_model
 
 pytestmark = pytest.mark.peer
 
@@ -324,6 +327,40 @@ def test_what_emf_calls_a_fault_is_refused_with_its_place(referee, written, form
         read_tables(file)
     assert f"{file}:2: " in str(refused.value)
     assert message in str(refused.value)
+
+
+REFERRING = """<a:A {namespaces} xmlns:a="urn:a" one="ecore:EClass a.ecore#//A">
+  <of xsi:type="ecore:EDataType" href="{ecore}#//EString"/>
+  <of xsi:type="ecore:EClass" href="{ecore}#//EClass"/>
+  <of xsi:type="ecore:EDataType" href="http://www.eclipse.org/emf/2003/XMLType#//Date"/>
+  <of xsi:type="ecore:EClass" href="a.ecore#//A"/>
+  <of xsi:type="ecore:EClass" href="a.ecore#//inner/Ä"/>
+  <of xsi:type="ecore:EClass" href="#//@own/@eClassifiers.0"/>
+  <own name="p" nsURI="urn:p" nsPrefix="p">
+    <eClassifiers xsi:type="ecore:EClass" name="K" eSuperTypes="#//@own/@eClassifiers.1"/>
+    <eClassifiers xsi:type="ecore:EClass" name="L"/>
+  </own>
+</a:A>"""
+
+
+def test_emf_finds_a_model_that_refers_to_metamodels_equal_once_we_wrote_it(referee, written, tmp_path):
+    kind = f"ecore:EClass {ECORE}#//"
+    features = (
+        reference("one", f"{kind}EClass")
+        + reference("of", f"{kind}EClassifier", 'upperBound="-1"')
+        + reference("own", f"{kind}EPackage", 'containment="true"')
+    )
+    inner = f'<eSubpackages name="inner" nsURI="urn:a:inner" nsPrefix="i">{classed("Ä")}</eSubpackages>'
+    text = REFERRING.format(namespaces=NAMESPACES, ecore=ECORE)
+    ecore, model = written({"a.ecore": packaged(classed("A", features) + inner), "a.xmi": text})
+    with referee.knowing(ecore):
+        assert referee.ask("check", model).faults == []
+        registry = registry_of([ecore])
+        found = read_model(model, registry)
+        assert found.diagnostics == check_conformance(found, registry) == ()
+        write_model(found.roots, tmp_path / "again.xmi", registry)
+        assert referee.ask("check", tmp_path / "again.xmi").faults == []
+        assert "EQUAL" in referee.ask("equal", model, tmp_path / "again.xmi").lines
 
 
 def test_ecore_itself_is_to_us_what_it_is_to_emf(referee):
