@@ -180,7 +180,7 @@ CODES: Mapping[str, Code] = MappingProxyType(
         ),
         "ECO014": Code(
             "a value that Eclipse may understand otherwise than its text suggests",
-            "a date such as 2024-05-01T10:11:12.123+0200; a class that every Java has",
+            "a value that means the same to everybody, such as the date 2024-05-01T10:11:12.123+0200",
             "write it in the form that EMF itself writes",
             Severity.WARNING,
         ),

@@ -178,7 +178,7 @@ def _value(element: Element, feature: Feature, value: object) -> Iterator[Diagno
     elif kind.doubt is not None and (doubt := kind.doubt(value)):
         why, _, advice = doubt.partition("; ")
         yield replace(
-            _fault("ECO014", element, f"{where} is {shown(text)}, {why}", advice), severity=Severity.WARNING
+            _fault("ECO014", element, f"{where}: {shown(text)} {why}", advice), severity=Severity.WARNING
         )
 
 

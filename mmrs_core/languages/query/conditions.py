@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from decimal import Decimal
 from math import isfinite
 from typing import Any
@@ -72,7 +72,7 @@ def _is_so(feature: Feature, value: object, condition: Condition) -> bool:
         return _equals(feature, value, condition.value)
     order = _ORDERS[condition.sign]
     if isinstance(value, datetime):
-        return order(value, parse_date(condition.value))
+        return order(value, _moment(condition.value))
     number = _exact(value)
     if number is None:
         raise ValueError(f"{feature.name}: no number and no date, cannot be compared by {condition.sign}")
@@ -87,7 +87,7 @@ def _equals(feature: Feature, value: object, wanted: str) -> bool:
     if isinstance(kind, Enumeration):
         return wanted in (value, kind.render(value))
     if isinstance(value, datetime):
-        return value == parse_date(wanted)
+        return value == _moment(wanted)
     number = _exact(value)
     if number is not None:
         return number == _number(wanted)
@@ -95,6 +95,15 @@ def _equals(feature: Feature, value: object, wanted: str) -> bool:
         text = kind.render(value)
         return wanted in (text, value) or (isinstance(value, bytes) and wanted.upper() == text)
     return str(value) == wanted
+
+
+def _moment(text: str) -> datetime:
+    """Return the date that a person means: by ISO 8601 if it is one, else as a file's text is read."""
+    try:
+        date = datetime.fromisoformat(text)
+    except ValueError:
+        return parse_date(text)
+    return date if date.tzinfo else date.replace(tzinfo=UTC)
 
 
 def _exact(value: object) -> Decimal | float | None:

@@ -162,12 +162,12 @@ def doubt_of_date(value: object) -> str:
     """Return what of a date is not plain from its text, and after a semicolon what to write instead."""
     if not isinstance(value, WrittenDate) or not value.text:
         naive = isinstance(value, datetime) and value.tzinfo is None
-        return "without a zone, taken as UTC" if naive else ""
+        return "has no zone and is written as UTC; state its zone" if naive else ""
     known = _render_plain(value)
     if value.local:
-        return f"read as {known}; Eclipse takes it in the time zone of its machine: {_advice(value)}"
+        return f"is read as {known}, and by Eclipse in the time zone of its machine; {_advice(value)}"
     usual = re.sub(r"-0000$", "+0000", value.text.strip(" "))
-    return "" if usual == known else f"read as {known}, as EMF does; {_advice(value)}"
+    return "" if usual == known else f"is read as {known}, as by Eclipse; {_advice(value)}"
 
 
 def _advice(value: WrittenDate) -> str:

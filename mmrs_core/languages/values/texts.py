@@ -122,4 +122,4 @@ def doubt_of_class(value: object) -> str:
     """Return why it is not certain that Eclipse knows a class; nothing for those that every Java has."""
     if _EVERYWHERE.fullmatch(str(value)):
         return ""
-    return "Eclipse reads it only where a plug-in brings that class"
+    return "is known to Eclipse only where a plug-in brings that class; be sure that one does"

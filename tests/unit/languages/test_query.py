@@ -44,6 +44,8 @@ def roots(read_zoo):
         ("animals[mood=is-hungry]", ["/animals[0]"]),
         ("animals[born<2021-01-01]", ["/animals[1]"]),
         ("animals[born=2020-01-01]", ["/animals[1]"]),
+        ("animals[born=2020-01-01T02:00+02:00]", ["/animals[1]"]),
+        ("animals[born>2019-12-31T23:59:59.5Z]", ["/animals[1]"]),
         ("animals[price>12]", ["/animals[1]"]),
         ("animals[price<=12.5]", ["/animals[1]"]),
         ("animals[price=12.5]", ["/animals[1]"]),

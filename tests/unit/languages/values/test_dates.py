@@ -57,17 +57,17 @@ def test_a_date_equals_any_other_of_its_instant_whatever_its_text():
         (" 2024-05-01T10:11:12.123-0000", ""),
         (
             "2024-05-01T10:11:12.5+0200",
-            "read as 2024-05-01T10:11:12.005+0200, as EMF does; "
+            "is read as 2024-05-01T10:11:12.005+0200, as by Eclipse; "
             "write 2024-05-01T10:11:12.500+0200 if that is meant, else 2024-05-01T10:11:12.005+0200",
         ),
         (
             "2024-05-01T10:11:12.123+02:00",
-            "read as 2024-05-01T10:11:12.123+0000; Eclipse takes it in the time zone of its machine: "
+            "is read as 2024-05-01T10:11:12.123+0000, and by Eclipse in the time zone of its machine; "
             "write 2024-05-01T10:11:12.123+0200 if that is meant, else 2024-05-01T10:11:12.123+0000",
         ),
         (
             "2024-05-01",
-            "read as 2024-05-01T00:00:00.000+0000; Eclipse takes it in the time zone of its machine: "
+            "is read as 2024-05-01T00:00:00.000+0000, and by Eclipse in the time zone of its machine; "
             "write 2024-05-01T00:00:00.000+0000",
         ),
     ],
@@ -88,7 +88,7 @@ def test_a_date_in_a_zone_of_odd_seconds_is_written_in_utc():
 
 def test_a_date_without_zone_is_written_as_utc_and_told():
     assert render_date(datetime(2024, 5, 1)) == "2024-05-01T00:00:00.000+0000"
-    assert doubt_of_date(datetime(2024, 5, 1)) == "without a zone, taken as UTC"
+    assert doubt_of_date(datetime(2024, 5, 1)) == "has no zone and is written as UTC; state its zone"
 
 
 def test_a_date_finer_than_milliseconds_is_refused():
