@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -105,6 +106,30 @@ def refuse_existing(targets: Sequence[Path], force: bool) -> None:
     for target in targets:
         if target.exists() and not force:
             raise ProtectedError(f"{target}: exists, and is not replaced; --force replaces it")
+
+
+def refuse_links_outside(source: Path, target: Path, linked: Sequence[Path]) -> None:
+    """Do nothing, unless a model would refer to files where nobody follows: outside its new folder.
+
+    Args:
+        source: the model.
+        target: the file that it is to go to.
+        linked: files that it refers to, directly or through others.
+
+    Raises:
+        UnsupportedError: if it would, with the command that converts all of them together.
+    """
+    outside = [file for file in linked if not is_followed(file, target.parent)]
+    if outside:
+        named = ", ".join(map(str, outside))
+        together = shlex.join(["mmrs", "convert", *map(str, (source, *linked)), "-o", str(target.parent)])
+        message = f"{target}: would refer to {named}, outside its folder, where references are not followed"
+        raise UnsupportedError(f"{message}; write it beside {source}, or all together: {together}")
+
+
+def is_followed(file: Path, directory: Path) -> bool:
+    """Return whether references to a file are followed from models in a folder."""
+    return file.resolve().is_relative_to(directory.resolve())
 
 
 def converted_together(

@@ -74,7 +74,7 @@ class _Asked:
 
 
 def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
-    from mmrs_core.cli.conversion import converted_together, refuse_existing, targets_in
+    from mmrs_core.cli.conversion import converted_together, is_followed, refuse_existing, targets_in
     from mmrs_core.cli.replacing import replace_files
 
     targets = targets_in(directory, given, asked.to)
@@ -88,7 +88,11 @@ def _together(asked: _Asked, given: Sequence[Path], directory: Path) -> int:
     for each in made:
         say(f"written: {each.target} ({counted(each.elements, 'element')})")
     for file in dict.fromkeys(file for each in made for file in each.beside):
-        tell(f"{file}: note: referred to, and not converted: references lead to where it is")
+        words = "referred to, and not converted: references lead to where it is"
+        lost = (
+            "" if is_followed(file, directory) else f", outside {directory}: only Eclipse follows them there"
+        )
+        tell(f"{file}: note: {words}{lost}")
     return 0
 
 
@@ -104,7 +108,7 @@ def _as_json(made: Converted) -> dict[str, object]:
 
 def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     from mmrs_core.cli.any_model import faults_in, read_foreign
-    from mmrs_core.cli.conversion import refuse_existing, text_of
+    from mmrs_core.cli.conversion import refuse_existing, refuse_links_outside, text_of
     from mmrs_core.cli.protection import files_of, refuse_inputs
     from mmrs_core.languages.writing import replace_file
 
@@ -117,6 +121,8 @@ def _alone(asked: _Asked, source: Path, target: Path | None) -> int:
     if target is not None:
         refuse_inputs([target], files_of([found.model]))
         refuse_existing([target], asked.force)
+        linked = [each.file for each in found.model.linked if isinstance(each.file, Path)]
+        refuse_links_outside(source, target, linked)
     text = text_of(found.model.roots, found.registry, source, target or source, form, asked.exported)
     count = sum(1 for _ in found.model.elements())
     if target is None:

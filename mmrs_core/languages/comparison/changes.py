@@ -134,15 +134,15 @@ class _Comparison:
             return None
         if not feature.is_reference:
             return said_by(element, feature)
-        return tuple(self._target(value) for value in _elements(held(element, feature))) or None
+        return tuple(self._target(value, element) for value in _elements(held(element, feature))) or None
 
-    def _target(self, target: Element) -> str:
+    def _target(self, target: Element, referrer: Element) -> str:
         if isinstance(target, Hidden):
-            return f"{self._target(target._mmrs_outer)} {target._mmrs_rest}"
+            return f"{self._target(target._mmrs_outer, referrer)} {target._mmrs_rest}"
         if id(target) in self._theirs:
             return self._new.of(target)
         if id(target) not in self._ours:
-            return address_of(target)
+            return address_of(target, referrer)
         match = self._matching.second.get(id(target))
         return self._new.of(match) if match is not None else f"{self._old.of(target)} (removed)"
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from os.path import relpath
+from pathlib import Path
 
 from mmrs_core.languages.comparison.traits import Kind, Traits, traits_of, values_in
 from mmrs_core.languages.element import Element, Unknown, held, holds, label_of, path_of
@@ -121,7 +123,14 @@ class Paths(dict[int, str]):
                 self[id(each)] = f"{begin}/{name}[{index}]" if many else f"{begin}/{name}"
 
 
-def address_of(element: Element) -> str:
-    """Return how messages call an element of another file."""
-    source = element._mmrs_source
-    return f"{source.file if source else ''}#{path_of(element)}"
+def address_of(element: Element, referrer: Element) -> str:
+    """Return how messages call an element of another file than that of what refers to it.
+
+    The file is named as from the referrer's folder, without ending: of two projects, in whatever form, those
+    that say the same refer to the same.
+    """
+    source, home = element._mmrs_source, referrer._mmrs_source
+    if source is None or source.path is None or home is None or home.path is None:
+        return f"{source.file if source else ''}#{path_of(element)}"
+    way = Path(relpath(source.path, home.path.parent)).with_suffix("").as_posix()
+    return f"{way}#{path_of(element)}"
