@@ -60,24 +60,23 @@ def migrate(
     workshop = Workshop(settings_of(call))
     migration = read_sources(workshop, files, output, mapping, metamodels or (), types or ())
     written = write_outputs(workshop, migration, files, output, force=force)
+    for line in migration_lines(migration, output) if not json else ():
+        say(line)
     verdicts = verdicts_on(written, workshop)
     faults = in_order(dict.fromkeys(fault for verdict in verdicts for fault in verdict.faults))
     valid = bool(written) and all(verdict.valid for verdict in verdicts)
     unreadable = [source.fault for source in migration.sources] + [each.unreadable for each in verdicts]
     for fault in filter(None, unreadable):
         tell(f"mmrs: {fault}")
+    report(faults)
     if json:
-        report(faults)
         told = {"sources": migration.sources, "findings": migration.findings, "files": written}
         judged = [{"path": each.path, "valid": each.valid, "missing": each.missing} for each in verdicts]
         say_json({"valid": valid, "verdicts": judged, **told, "diagnostics": faults})
-    else:
-        for line in migration_lines(migration, output):
-            say(line)
-        report(faults)
-        for line in verdict_lines(verdicts):
-            say(line)
-    return 3 if any(unreadable) else _exit_code(migration, valid)
+    for line in verdict_lines(verdicts) if not json else ():
+        say(line)
+    is_read = not any(unreadable) and all(verdict.is_read for verdict in verdicts)
+    return _exit_code(migration, valid) if is_read else 3
 
 
 def _exit_code(migration: Migration, valid: bool) -> int:

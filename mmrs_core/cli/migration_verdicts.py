@@ -14,6 +14,7 @@ from mmrs_core.cli.journey import Workshop
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import behaviour, context, mission, robot
+from mmrs_core.languages.codes import is_refusal
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.modelset import ModelSet, context_in, model_in, robot_files_in
@@ -41,6 +42,17 @@ class Verdict:
     alone: bool = False
     unreadable: str = ""
     missing: tuple[str, ...] = ()
+
+    @property
+    def word(self) -> str:
+        """The verdict, as ``mmrs validate`` words it."""
+        known = "not valid" if self.is_read else "not read wholly"
+        return "valid" if self.valid else known
+
+    @property
+    def is_read(self) -> bool:
+        """Whether all that belongs to it could be read."""
+        return not (self.unreadable or any(map(is_refusal, self.faults)))
 
 
 def verdicts_on(files: Iterable[Path], workshop: Workshop) -> tuple[Verdict, ...]:

@@ -52,8 +52,7 @@ def verdict_lines(verdicts: Sequence[Verdict]) -> Iterator[str]:
                 f" file that describes it into {verdict.path.parent}, too, write"
                 f" {verdict.path.parent / 'robots' / name}.xmi, or say by --type which type is meant"
             )
-        valid = "valid" if verdict.valid else "not valid"
-        yield f"{verdict.path}: {valid}{', with no mission beside it yet' * verdict.alone}"
+        yield f"{verdict.path}: {verdict.word}{', with no mission beside it yet' * verdict.alone}"
     if not verdicts:
         yield "nothing to migrate, nothing written"
 

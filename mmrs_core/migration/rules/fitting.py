@@ -28,6 +28,8 @@ def unfitting(rules: Mapping[str, Rule], registry: Registry, structure: Structur
             for fault in _of_use(use, feature, made[rule.to], registry) if feature is not None else ():
                 yield f"{where}: {name}: {fault}"
         yield from (f"{where}: {fault}" for fault in _twice(rule, made[rule.to]))
+        if rule.device is not None and (fault := misfit(rule.device.to.end(made[rule.to]), "id")):
+            yield f"{where}: device: to: {fault}"
 
 
 def _of_names(rule: Rule, made: tuple[Metaclass, ...]) -> Iterator[str]:

@@ -9,9 +9,9 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.events import read_bytes
+from mmrs_core.migration.rules.classes import Classes
 from mmrs_core.migration.rules.mapping import DialectMapping
 from mmrs_core.migration.rules.notation import declared_structure
-from mmrs_core.migration.rules.paths import Classes
 from mmrs_core.migration.rules.rules_file import read_rules
 from mmrs_core.migration.rules.toml_places import line_of
 from mmrs_core.migration.rules.toml_tables import Table

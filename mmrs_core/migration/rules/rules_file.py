@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.migration.rules.classes import Classes
 from mmrs_core.migration.rules.fitting import unfitting
 from mmrs_core.migration.rules.mapping import DeviceLookup, Ring, Rule, Use, Wait
-from mmrs_core.migration.rules.paths import Classes
 from mmrs_core.migration.rules.sense import nonsense
 from mmrs_core.migration.rules.toml_tables import Table
 from mmrs_core.migration.rules.uses_file import for_class, read_constants, read_paths, read_use

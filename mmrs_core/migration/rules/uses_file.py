@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import cast
 
 from mmrs_core.languages.metaclass import Metaclass
+from mmrs_core.migration.rules.classes import Classes
 from mmrs_core.migration.rules.mapping import Also, Bearing, Constant, Counterpart, Make, Use
-from mmrs_core.migration.rules.paths import Classes, FeaturePath, parse_path, path_from
+from mmrs_core.migration.rules.paths import FeaturePath, parse_path, path_from
 from mmrs_core.migration.rules.toml_tables import Table
 from mmrs_core.migration.rules.values import misfit
 

@@ -92,6 +92,7 @@ def test_all_files_of_2015_are_called_what_they_are(mmrs, project):
     _, out, _ = mmrs("migrate", *files, "-o", project)
     told = [line for line in out.splitlines() if line.startswith(str(FOLDER))]
     assert len(files) == 17
+    assert [file.name for file in (project / "robots").iterdir()] == ["ParrotSample.xmi"]
     assert sum(": a metamodel, http://" in line for line in told) == 7
     assert sum(": a palette of the 2015 editor" in line for line in told) == 2
     assert sum(": a list of task extensions" in line for line in told) == 1

@@ -140,6 +140,7 @@ FLYAQ = (shipped("migrations") / "flyaq-2015.toml").read_text(encoding="utf-8")
         ('of = "receiver"', 'of = "name"', "slot: counterpart: of: name is no reference"),
         ('within = "slots"', 'within = "boxes"', "counterpart: within: 'boxes': no class that a rule"),
         ('action = "actionName"', 'action = "parameters"', "device: action: parameters is no attribute"),
+        ('to = "deviceId"', 'to = "parameters"', "device: to: 'id': parameters holds elements, not values"),
         ('wait = { slot = "slot"', 'wait = { slot = "name"', "wait: slot: name is no reference"),
         ('add = "waitFor"', 'add = "waits"', "wait: add: 'waits': no transition has such a"),
         ('add = "waitFor"', 'add = "slots"', "wait: add: 'slots': no transition has such a reference"),

@@ -2,7 +2,8 @@
 
 import pytest
 
-from mmrs_core.migration.rules.paths import Classes, path_from, reach
+from mmrs_core.migration.rules.classes import Classes
+from mmrs_core.migration.rules.paths import path_from, reach
 
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
 LANGUAGES = {

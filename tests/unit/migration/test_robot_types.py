@@ -113,6 +113,24 @@ def test_a_type_that_says_less_than_another_of_its_name_is_not_written(migrated,
         assert set(output.sources) == {str(less), str(more)}
 
 
+@pytest.mark.parametrize(("name", "count"), [("cell", 1), ("fuse", 2)])
+def test_a_type_says_less_if_its_devices_are_some_of_those_of_another(migrated, written, name, count):
+    text = DRONE.format("").replace("</d:Drone>", "{}</d:Drone>")
+    more = '<processors name="core"/><memory name="cell"/><dataEquipment name="camera"/>'
+    files = (
+        written("a.xmi", text.format(f'<processors name="core"/><memory name="{name}"/>')),
+        written("b.xmi", text.format(more)),
+    )
+    assert len(migrated(*files).outputs) == count
+
+
+def test_a_number_that_is_kept_as_a_text_may_be_written_in_another_way(migrated, written):
+    text = DRONE.replace("name=", 'maxVoltage="{}" name=')
+    files = (written("a.xmi", text.format("16", "")), written("b.xmi", text.format("16.0", "")))
+    assert len(migrated(*files).outputs) == 1
+    assert len(migrated(*files, written("c.xmi", text.format("17", ""))).outputs) == 2
+
+
 def test_types_of_one_name_that_contradict_each_other_get_two_names(migrated, told, written):
     one = written("a.xmi", DRONE.format('maxAltitude="80"'))
     other = written("b.xmi", DRONE.format('maxAltitude="90"'))
