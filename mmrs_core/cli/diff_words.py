@@ -10,6 +10,10 @@ from mmrs_core.languages.comparison.changes import Change, Sort
 from mmrs_core.languages.comparison.features import features_of
 from mmrs_core.languages.metaclass import Metaclass
 
+_WHOLE = 60
+"""Characters of a value that are told whole."""
+_AROUND = 15
+"""Characters told in front of and behind a difference."""
 _SIGNS = {Sort.ADDED: "+", Sort.REMOVED: "-", Sort.MOVED: ">", Sort.CHANGED: "~"}
 _COLOURS = {Sort.ADDED: "32", Sort.REMOVED: "31", Sort.MOVED: "36", Sort.CHANGED: "33"}
 
@@ -46,7 +50,36 @@ def colour_of(line: str) -> str:
 def _values(change: Change) -> str:
     if change.sort is Sort.MOVED:
         return f"other order: {_joined(change.new)}"
+    if change.old and change.new and len(change.old) == len(change.new) == 1:
+        before, now = differing(change.old[0], change.new[0])
+        return f"{value_words(before)} → {value_words(now)}"
     return f"{_stated(change, change.old)} → {_stated(change, change.new)}"
+
+
+def differing(before: str, now: str) -> tuple[str, str]:
+    """Return two texts; of long ones, the part in which they differ, with a little of what is around it.
+
+    >>> differing("a" * 50 + "1" + "b" * 50, "a" * 50 + "2" + "b" * 50)
+    ('…aaaaaaaaaaaaaaa1bbbbbbbbbbbbbbb…', '…aaaaaaaaaaaaaaa2bbbbbbbbbbbbbbb…')
+    """
+    if max(len(before), len(now)) <= _WHOLE:
+        return before, now
+    same = _alike(before, now)
+    alike = _alike(before[same:][::-1], now[same:][::-1])
+    begin = max(0, same - _AROUND)
+    return _part(before, begin, len(before) - alike), _part(now, begin, len(now) - alike)
+
+
+def _alike(one: str, other: str) -> int:
+    """Return how many characters two texts have in common at their beginning."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((place for place, (a, b) in pairs if a != b), min(len(one), len(other)))
+
+
+def _part(text: str, begin: int, end: int) -> str:
+    """Return a text from one place to a little behind another, cut where it is long."""
+    end = min(end + _AROUND, begin + _WHOLE, len(text))
+    return f"{'…' if begin else ''}{text[begin:end]}{'…' if end < len(text) else ''}"
 
 
 def _stated(change: Change, values: tuple[str, ...] | None) -> str:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from html import unescape
 
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import (
@@ -18,13 +16,11 @@ from mmrs_core.languages.element import (
     metaclass_of,
     path_of,
 )
-from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 from mmrs_core.languages.json_form.values import is_character
+from mmrs_core.languages.kept_names import kept_name
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
 _LONGEST = 70
-_ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
-_TAG = re.compile(r"""<[^\s/>]+(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))*""")
 
 
 def tree(root: Element, depth: int = 0) -> Iterator[str]:
@@ -92,32 +88,14 @@ def value_words(value: object) -> str:
     return repr(short) if not short or any(character.isspace() for character in short) else short
 
 
-def name_of_unknown(xml: str) -> str:
-    """Return the name that the opening tag of an element gives; empty if it gives none.
-
-    >>> name_of_unknown('<tasks name="a &gt; b" x=">"><y name="c"/></tasks>')
-    'a > b'
-    """
-    tag = _TAG.match(xml)
-    attributes = _ATTRIBUTE.findall(tag[0]) if tag else []
-    return next((unescape(value[1:-1]) for name, value in attributes if name == "name"), "")
-
-
 def _label(element: Element) -> str:
     """Return the name of an element that is referred to; its path if it has none."""
-    own = _name_of(element) if isinstance(element, Unknown) else label_of(element)
+    own = kept_name(element) if isinstance(element, Unknown) else label_of(element)
     return own or path_of(element)
 
 
 def _unknown(element: Unknown) -> str:
     """Return what is known of an element whose metamodel is not installed."""
     ns_uri, _, name = element._mmrs_type.rpartition("#")
-    label = _name_of(element)
+    label = kept_name(element)
     return f"{name}{f' name={value_words(label)}' if label else ''} (unknown, of {ns_uri or 'no language'})"
-
-
-def _name_of(element: Unknown) -> str:
-    if isinstance(element, UnknownObject):
-        name = stated(element).members.get("name")
-        return name if isinstance(name, str) else ""
-    return name_of_unknown(element._mmrs_xml)

@@ -9,9 +9,10 @@ from mmrs_core.analysis.constraints.findings import BEHAVIOUR, MISSION, called, 
 from mmrs_core.analysis.constraints.sketch import DrawnRobot, sketch_of
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
-from mmrs_core.languages.element import Element, is_set, metaclass_of
+from mmrs_core.languages.element import Element, Unknown, is_set, metaclass_of, place_of
 from mmrs_core.languages.grounding.frame import coordinates_of
 from mmrs_core.languages.grounding.values import child, children, number, text, texts
+from mmrs_core.languages.kept_names import kept_name
 from mmrs_core.languages.modelset import ModelSet
 from mmrs_core.languages.naming import nearest
 
@@ -24,9 +25,21 @@ LIGHTEST_WATER = 950.0
 some water would allow is called impossible."""
 
 
+def _kept_type(name: str, models: ModelSet) -> Unknown | None:
+    """Return the type of robot of that name whose language is not installed, if there is one in its place."""
+    if name in models.robots:
+        return None
+    unknown = (root for model in models.models for root in model.roots if isinstance(root, Unknown))
+    return next((root for root in unknown if kept_name(root) == name), None)
+
+
 def _type(robot: Element, models: ModelSet) -> Iterator[Finding]:
     name = text(robot, "type")
-    if name and name not in models.robots:
+    if name and (kept := _kept_type(name, models)) is not None:
+        message = f"its type {name!r} stands in {place_of(kept)}, in a language that is not installed"
+        ns_uri = kept._mmrs_type.rpartition("#")[0]
+        yield finding(robot, message, f"install the plug-in that brings {ns_uri}")
+    elif name and name not in models.robots:
         known = f"known are {listed(sorted(models.robots))}"
         hint = guessed(known, name, models.robots) if models.robots else ""
         yield finding(robot, f"its type {name!r} is not known", hint)
