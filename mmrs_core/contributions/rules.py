@@ -89,7 +89,7 @@ class RobotKind:
         launch: moves that take it from home to so many metres above home.
         recover: moves that bring it down where it is.
         travel: moves along straight legs; the first position is where the robot is.
-        policies: response by event, where the models say nothing.
+        policies: response by event, where the models say nothing; one for each event.
         barrier: the area that robots of a type keep out of because of an element of the context, such as
             water that is too deep for them; None where the element does not hinder them.
     """
