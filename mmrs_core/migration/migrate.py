@@ -133,6 +133,8 @@ def _settled(opened: Opened, mapping: DialectMapping, given: Sequence[Path]) -> 
 
 def _refuse_unknown(types: Mapping[str, str], settled: Iterable[_Settled], mapping: DialectMapping) -> None:
     """Do nothing if every name that is to stand for a robot type occurs in the files."""
+    if not types:
+        return
     occurring = {name for each in settled for name in _type_names(each, mapping)}
     for name in types:
         if name not in occurring:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from mmrs_core.languages.element import Element, label_of, metaclass_of
+from mmrs_core.languages.element import Element, metaclass_of
 from mmrs_core.languages.grounding.values import text as text_of
 from mmrs_core.migration.building.converting import number_in, put, scaled
 from mmrs_core.migration.building.drafts import Draft
@@ -27,6 +25,8 @@ class Attributes:
         self._draft = draft
         self._types = types
         self._record = record
+        self._taken: dict[tuple[SourceNode, object], set[str]] = {}
+        self._numbers: dict[tuple[SourceNode, str], int] = {}
 
     def carry_over(self, node: SourceNode, feature: str, element: Element, use: Use) -> None:
         """Carry over every text that a feature holds."""
@@ -137,25 +137,20 @@ class Attributes:
         """Return a text that no sibling has: the text itself, or with a number behind it."""
         if not use.unique or node.parent is None:
             return text
-        taken = {label_of(each) for each in self._near(node, element)}
-        number, found = 2, text
-        while found in taken:
+        beside = [
+            self._taken.setdefault((node.parent, group), set())
+            for group in (node.feature, metaclass_of(element).key)
+        ]
+        number, found = self._numbers.get((node.parent, text), 2), text
+        while any(found in names for names in beside):
             number, found = number + 1, f"{text}_{number}"
+        self._numbers[node.parent, text] = number
+        for names in beside:
+            names.add(found)
         if found != text:
             reason = f"{text!r} is taken already, so this one is called {found!r}"
             self._record.value(Category.CHANGED, reason, node, feature)
         return found
-
-    def _near(self, node: SourceNode, element: Element) -> Iterator[Element]:
-        """Yield the elements made of what stands beside a node: in its feature, or of the same class."""
-        beside = node.parent.values.items() if node.parent is not None else ()
-        for feature, values in beside:
-            for value in values:
-                made = self._draft.made.get(value) if isinstance(value, SourceNode) else None
-                if made is None or made is element:
-                    continue
-                if feature == node.feature or metaclass_of(made) is metaclass_of(element):
-                    yield made
 
 
 def _further(node: SourceNode, use: Use) -> tuple[FeaturePath, ...]:

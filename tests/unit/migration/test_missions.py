@@ -187,7 +187,7 @@ def test_an_initial_position_that_is_not_given_is_the_first_vertex(
 def test_a_point_without_an_altitude_is_flown_to_at_2_m_as_in_2015(migrated, model, told, changed, altitude):
     found = migrated(changed(lambda text: text["tasks"][2]["point"][0].update({"altitude": altitude})))
     assert model(found, "mission.xmi").tasks[2].point.altitude == 2.0
-    assert told(found, "DEFAULTED: 0 is what was written where no height is known; the 2015 platform")
+    assert told(found, "DEFAULTED: no height is known where it is missing or 0; the 2015 platform")
 
 
 def test_a_point_that_is_not_on_the_earth_keeps_a_border_as_it_was(migrated, model, flyaq, written):
