@@ -14,9 +14,7 @@ _ARRAY = re.compile(r"\[+(?:[ZBCSIJFD]|L([^;]+);)")
 _SERIALIZED = re.compile(r"ACED0005(?:[0-9A-F]{2})+", re.IGNORECASE)
 _QUALIFIED = re.compile(r"[^\s:]*:?[^\s:]+")
 _EVERYWHERE = re.compile(
-    r"boolean|byte|char|short|int|long|float|double|void|\[+[ZBCSIJFD]|"
-    r"java\.lang\.(?:Boolean|Byte|Character|Class|Double|Enum|Float|Integer|Iterable|Long|Number|Object|Short|"
-    r"String|Void)|java\.math\.Big(?:Decimal|Integer)|java\.util\.(?:Collection|Date|List|Map|Set|UUID)"
+    r"boolean|byte|char|short|int|long|float|double|void|\[+[ZBCSIJFD]|(?:\[+L)?java\.[a-z]+\.[\w.$]+;?"
 )
 
 
@@ -30,7 +28,7 @@ def described(value: object) -> str:
     try:
         words = repr(value)
     except ValueError:  # a whole number of more digits than Python writes at once
-        return f"a {type(value).__name__} of several thousand digits"
+        return "a number of several thousand digits"
     return words if len(words) <= 80 else f"{words[:77]}..."
 
 
@@ -119,7 +117,7 @@ def render_class_name(value: object) -> str:
 
 
 def doubt_of_class(value: object) -> str:
-    """Return why it is not certain that Eclipse knows a class; nothing for those that every Java has."""
+    """Return why it is not certain that Eclipse knows a class; nothing for those of Java's own packages."""
     if _EVERYWHERE.fullmatch(str(value)):
         return ""
     return "is known to Eclipse only where a plug-in brings that class; be sure that one does"
