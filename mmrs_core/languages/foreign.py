@@ -55,8 +55,9 @@ def read_any(
     """
     sources = list(gathered(metamodels, registry))
     known = registry.extended(sources)
-    sources += gathered(_candidates(path, _root_needs(path, known)), known)
-    known = registry.extended(sources)
+    beside_it = list(gathered(_candidates(path, _root_needs(path, known)), known))
+    sources += beside_it
+    known = known.extended(beside_it)
     model = read_model(path, known, unsaved=unsaved)
     for _ in range(_MOST_ROUNDS):
         missing = missing_from(model, known)

@@ -25,6 +25,8 @@ def metamodel_lines(registry):
         for enumeration in package.enumerations:
             for literal in enumeration.literals:
                 yield f"LITERAL {name(enumeration)} {literal.name} {literal.value} {literal.literal}"
+        for datatype in package.datatypes:
+            yield f"DATATYPE {name(datatype)} serializable={str(datatype.serializable).lower()}"
         for metaclass in package.metaclasses:
             yield f"CLASS {name(metaclass)} abstract={str(metaclass.abstract).lower()}"
             for above in metaclass.supertypes:

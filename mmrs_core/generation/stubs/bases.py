@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mmrs_core.languages.metaclass import Feature, Metaclass
+from mmrs_core.languages.metamodels.ecore_itself import BUILT_IN
 
 
 class Lineage:
@@ -12,9 +13,14 @@ class Lineage:
         self._shapes: dict[Metaclass, type] = {}
 
     def bases(self, metaclass: Metaclass) -> tuple[Metaclass, ...]:
-        """Return the supertypes that can be bases together, in their order; the first always can."""
+        """Return the supertypes that can be bases together, in their order; the first always can.
+
+        Those of Ecore itself have no stub, hence are none.
+        """
         chosen: tuple[Metaclass, ...] = ()
         for above in dict.fromkeys(metaclass.supertypes):
+            if above.ns_uri in BUILT_IN:
+                continue
             if any(above.key in other.ancestry[1:] for other in metaclass.supertypes):
                 continue
             if self._fit((*chosen, above)):

@@ -8,6 +8,7 @@ from typing import Any
 from pyecore import ecore
 
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.languages.datatypes import ECORE
 from mmrs_core.languages.ecore_api.classes import eclass_of
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of, root_of
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
@@ -29,7 +30,8 @@ def to_pyecore(model: Model, registry: Registry) -> list[Any]:
 
     Raises:
         UnsupportedError: for what pyecore cannot hold: elements whose metamodel is not installed, features
-            that have the name of one of pyecore's own attributes, a reference that lists an element twice.
+            that have the name of one of pyecore's own attributes, a reference that lists an element twice;
+            and for elements of Ecore itself, which are pyecore's own.
     """
     outward = _Outward(registry)
     for root in model.roots:
@@ -82,6 +84,8 @@ class _Outward:
         if isinstance(element, Unknown):
             raise UnsupportedError(f"{element._mmrs_type}: an element whose metamodel is not installed")
         metaclass = metaclass_of(element)
+        if metaclass.ns_uri == ECORE and not metaclass.is_entry:
+            raise UnsupportedError(f"{metaclass.name}: an element of Ecore itself", [path_of(element)])
         for feature in metaclass.features:
             if feature.name in _RESERVED:
                 message = f"{metaclass.name}.{feature.name}: pyecore has another attribute of this name"

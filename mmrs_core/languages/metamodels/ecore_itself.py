@@ -18,6 +18,7 @@ from mmrs_core.languages.metamodels.tables import (
     FeatureTable,
     PackageTable,
 )
+from mmrs_core.languages.values.java_classes import ECORE_CLASSES, XML_CLASSES
 
 BUILT_IN = (ECORE, XML_TYPES)
 """The nsURIs of metamodels that nobody brings."""
@@ -112,20 +113,12 @@ ProcessingInstruction
 SimpleAnyType AnyType
 """
 
-_ECORE_TYPES = """
-EBigDecimal EBigInteger EBoolean EBooleanObject EByte EByteArray EByteObject EChar ECharacterObject
-EDate EDouble EDoubleObject EFloat EFloatObject EInt EIntegerObject EJavaClass EJavaObject ELong
-ELongObject EShort EShortObject EString
+_XML_TEXTS = """
+AnySimpleType AnyURI Date DateTime Duration ENTITIES ENTITIESBase ENTITY GDay GMonth GMonthDay GYear
+GYearMonth ID IDREF IDREFS IDREFSBase Language NCName NMTOKEN NMTOKENS NMTOKENSBase NOTATION Name
+NormalizedString QName String Time Token
 """
-_XML_TYPES = """
-AnySimpleType AnyURI Base64Binary Boolean BooleanObject Byte ByteObject Date DateTime Decimal Double
-DoubleObject Duration ENTITIES ENTITIESBase ENTITY Float FloatObject GDay GMonth GMonthDay GYear
-GYearMonth HexBinary ID IDREF IDREFS IDREFSBase Int IntObject Integer Language Long LongObject
-NCName NMTOKEN NMTOKENS NMTOKENSBase NOTATION Name NegativeInteger NonNegativeInteger
-NonPositiveInteger NormalizedString PositiveInteger QName Short ShortObject String Time Token
-UnsignedByte UnsignedByteObject UnsignedInt UnsignedIntObject UnsignedLong UnsignedShort
-UnsignedShortObject
-"""
+"""EMF's types of XML beside those whose Java classes are known."""
 _NOT_IN_FILES = {
     "EDiagnosticChain": "org.eclipse.emf.common.util.DiagnosticChain",
     "EEList": "org.eclipse.emf.common.util.EList",
@@ -142,10 +135,10 @@ _NOT_IN_FILES = {
 
 def built_in() -> tuple[Located, ...]:
     """Return Ecore and EMF's types of XML."""
-    known = tuple(map(DataTypeTable, _ECORE_TYPES.split()))
+    known = tuple(map(DataTypeTable, ECORE_CLASSES))
     types = (*known, *(DataTypeTable(name, java, False) for name, java in _NOT_IN_FILES.items()))
     ecore = PackageTable(ECORE, "ecore", "ecore", "", tuple(_classes(_ECORE, ECORE)), (), types)
-    xml_types = tuple(map(DataTypeTable, _XML_TYPES.split()))
+    xml_types = tuple(map(DataTypeTable, (*XML_CLASSES, *_XML_TEXTS.split())))
     xml = PackageTable(
         XML_TYPES, "type", "ecore.xml.type", "", tuple(_classes(_XML, XML_TYPES)), (), xml_types
     )

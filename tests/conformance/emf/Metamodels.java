@@ -10,7 +10,7 @@ import org.eclipse.emf.ecore.EReference;
 import org.eclipse.emf.ecore.EStructuralFeature;
 import org.eclipse.emf.ecore.util.EcoreUtil;
 
-/** Tells what EMF has understood of a metamodel, one line for each class, feature and literal. */
+/** Tells what EMF has understood of a metamodel, one line for each class, feature, literal and data type. */
 final class Metamodels {
   private Metamodels() {}
 
@@ -28,6 +28,8 @@ final class Metamodels {
           out.println("LITERAL " + name(enumeration) + " " + literal.getName() + " " + literal.getValue() + " "
               + literal.getLiteral());
         }
+      } else if (classifier instanceof EDataType type) {
+        out.println("DATATYPE " + name(type) + " serializable=" + type.isSerializable());
       }
     }
   }

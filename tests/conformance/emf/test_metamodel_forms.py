@@ -16,7 +16,7 @@ from mmrs_core.languages.writing import write_model
 
 pytestmark = pytest.mark.peer
 
-TOLD = ("PACKAGE", "CLASS", "SUPER", "FEATURE", "LITERAL")
+TOLD = ("PACKAGE", "CLASS", "SUPER", "FEATURE", "LITERAL", "DATATYPE")
 NAMESPACES = (
     'xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
     f'xmi:version="2.0" xmlns:ecore="{ECORE}"'
@@ -199,6 +199,16 @@ FORMS = {
             )
         )
     },
+    "defaults in Java's notation": {
+        "a.ecore": packaged(
+            classed(
+                "A",
+                attribute("x", "EDouble", 'defaultValueLiteral="0x1p3"')
+                + attribute("y", "EInt", 'defaultValueLiteral="+0007"')
+                + attribute("z", "EBigInteger", f'defaultValueLiteral="{"9" * 5000}"'),
+            )
+        )
+    },
     "empty literals": {
         "a.ecore": packaged(
             '<eClassifiers xsi:type="ecore:EEnum" name="E"><eLiterals name="P"/>'
@@ -368,9 +378,13 @@ def test_ecore_itself_is_to_us_what_it_is_to_emf(referee):
     for package in (each for each in core_registry().everything if each.ns_uri in (ECORE, XML_TYPES)):
         for metaclass in package.metaclasses:
             assert [name(above) for above in metaclass.supertypes] == supertypes(said, metaclass)
-    mine = [line for line in metamodel_lines(_Itself()) if line.startswith(("FEATURE", "PACKAGE"))]
+    mine = [
+        line for line in metamodel_lines(_Itself()) if line.startswith(("FEATURE", "PACKAGE", "DATATYPE"))
+    ]
     assert [line for line in mine if line not in said] == []
     stored = {line for line in said if line.startswith("FEATURE") and " transient=false " in line}
+    types = {line for line in said if line.startswith("DATATYPE")}
+    assert [name for name in types - set(mine) if "EFeatureMapEntry" not in name] == []
     lacking = {line for line in stored - set(mine) if "EFeatureMapEntry" not in line}
     assert {line.split()[2] for line in lacking} == {"instanceType"}  # whose class is of feature maps
 

@@ -45,7 +45,7 @@ def test_a_faulty_metamodel_is_told(referee, metamodels, tmp_path):
 
 
 def test_our_tables_say_what_emf_says(referee, registry):
-    told = ("PACKAGE", "CLASS", "SUPER", "FEATURE", "LITERAL")
+    told = ("PACKAGE", "CLASS", "SUPER", "FEATURE", "LITERAL", "DATATYPE")
     theirs = sorted(line for line in referee.ask("describe").lines if line.startswith(told))
     assert sorted(metamodel_lines(registry)) == theirs
     assert len(theirs) > 1300

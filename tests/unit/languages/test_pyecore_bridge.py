@@ -8,10 +8,11 @@ pyecore = pytest.importorskip("pyecore.ecore")
 
 from mmrs_core.errors import PluginError, UnsupportedError  # noqa: E402
 from mmrs_core.languages import mission  # noqa: E402
+from mmrs_core.languages.datatypes import ECORE  # noqa: E402
 from mmrs_core.languages.ecore_api.bridge import from_pyecore, to_pyecore  # noqa: E402
 from mmrs_core.languages.model import Model  # noqa: E402
 from mmrs_core.languages.reading import read_model  # noqa: E402
-from mmrs_core.languages.registry import MetamodelSource, registry_with  # noqa: E402
+from mmrs_core.languages.registry import MetamodelSource, core_registry, registry_with  # noqa: E402
 from mmrs_core.languages.writing import to_xmi  # noqa: E402
 
 ZOO = "urn:test:zoo"
@@ -85,6 +86,9 @@ def test_what_pyecore_cannot_hold_is_refused(read_zoo, zoo):
     twice = read_zoo('<animals xsi:type="zoo:Lion" name="l"/>', 'favourites="//@animals.0 //@animals.0"')
     with pytest.raises(UnsupportedError, match=r"favourites: pyecore does not hold the same value twice"):
         to_pyecore(twice, zoo)
+    described = core_registry().create(ECORE, "EClass", name="K")
+    with pytest.raises(UnsupportedError, match=r"EClass: an element of Ecore itself"):
+        to_pyecore(Model("m", (described,)), zoo)
     unknown = read_zoo('<animals xmlns:o="urn:other" xsi:type="o:Cat"/>')
     with pytest.raises(UnsupportedError, match=r"urn:other#Cat"):
         to_pyecore(unknown, zoo)
@@ -193,3 +197,21 @@ def test_supertypes_that_python_has_no_order_for_change_no_other_class():
     assert dict(vars(pyecore.Metasubinstance)) == before
     assert {each.name for each in crossed.eAllSuperTypes()} == {"First", "Second", "Left", "Right"}
     assert crossed(int=3, second=True).int == 3
+
+
+def test_classes_that_build_upon_ecore_itself_are_handed_over(tmp_path):
+    body = (
+        f'<eClassifiers xsi:type="ecore:EClass" name="Note" eSuperTypes="{ECORE}#//ENamedElement">'
+        f'<eStructuralFeatures xsi:type="ecore:EReference" name="of" eType="ecore:EClass {ECORE}#//EClass"/>'
+        "</eClassifiers>"
+    )
+    (tmp_path / "notes.ecore").write_text(
+        '<ecore:EPackage xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" '
+        f'xmlns:ecore="{ECORE}" name="notes" nsURI="urn:notes">{body}</ecore:EPackage>'
+    )
+    notes = registry_with([MetamodelSource("urn:notes", tmp_path / "notes.ecore", "notes")])
+    eclass = notes.metaclass("urn:notes", "Note").eclass
+    assert [above.name for above in eclass.eSuperTypes] == ["ENamedElement"]
+    assert eclass.findEStructuralFeature("of").eType.name == "EClass"
+    (note,) = to_pyecore(Model("m", (notes.create("urn:notes", "Note", name="n"),)), notes)
+    assert note.name == "n"

@@ -122,6 +122,22 @@ def test_every_class_and_feature_is_in_its_stub(folder):
             assert f"    {feature.attribute}: " in text
 
 
+def test_features_that_come_from_ecore_itself_are_in_the_stub(tmp_path):
+    uri = "http://www.eclipse.org/emf/2002/Ecore"
+    body = (
+        '<eClassifiers xsi:type="ecore:EClass" name="Own"/>'
+        f'<eClassifiers xsi:type="ecore:EClass" name="Note" eSuperTypes="{uri}#//ENamedElement #//Own"/>'
+    )
+    (tmp_path / "notes.ecore").write_text(
+        f'<ecore:EPackage xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:ecore="{uri}" '
+        f'name="notes" nsURI="urn:notes">{body}</ecore:EPackage>'
+    )
+    registry, ns_uris = registry_of_files([tmp_path / "notes.ecore"], ())
+    write_stubs(registry, ns_uris, tmp_path)
+    stub = (tmp_path / "notes.pyi").read_text()
+    assert "class Note(Own):\n    eAnnotations: list[Element]\n    name: str | None" in stub
+
+
 def test_a_stub_in_a_package_imports_its_neighbours_from_there(tmp_path):
     package = tmp_path / "animals" / "models"
     package.mkdir(parents=True)
