@@ -68,5 +68,11 @@ def check(
 def _in_all(verdicts: Sequence[Verdict], against: Sequence[Verdict]) -> str:
     if against:
         return "not safe"
-    accepted = dict.fromkeys(each.property for each in verdicts if each.status.value == "unknown")
-    return "safe" + (f"; unknown, and accepted: {', '.join(accepted)}" if accepted else "")
+    found: dict[str, set[str]] = {}
+    for verdict in verdicts:
+        found.setdefault(verdict.property, set()).add(verdict.status.value)
+    told = {
+        "unknown, and accepted": [name for name, statuses in found.items() if "unknown" in statuses],
+        "not checked": [name for name, statuses in found.items() if statuses == {"not checked"}],
+    }
+    return "; ".join(["safe", *(f"{words}: {', '.join(names)}" for words, names in told.items() if names)])

@@ -13,7 +13,7 @@ from mmrs_core.scene.attributes import number
 
 _NOTES = (
     "the terrain is flat at the origin's height",
-    "times count a stop at the end of every leg, and no turn into the next leg by what turns on the spot",
+    "times count a stop at the end of every leg, but not turning on the spot towards the next",
     "energy is the power against the wind or current times the time on one charge",
 )
 
