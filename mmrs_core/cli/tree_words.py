@@ -63,7 +63,8 @@ def title_of(element: Element) -> str:
         return _unknown(element)
     metaclass = metaclass_of(element)
     texts = [get(element, each.name) for each in metaclass.features if isinstance(each.type, DataType)]
-    label = label_of(element) or next((text for text in texts if isinstance(text, str) and text), "")
+    said = (text for text in texts if isinstance(text, str) and text.strip("\0"))  # a character that is none
+    label = label_of(element) or next(said, "")
     return f"{metaclass.name}{label and f' {value_words(label)}'}"
 
 

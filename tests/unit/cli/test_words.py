@@ -1,9 +1,13 @@
 """What is said of plans, verdicts and runs is short and complete."""
 
+from pathlib import Path
+
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.tables import table
+from mmrs_core.cli.tree_words import title_of
 from mmrs_core.cli.verdict_words import verdict_line, verdict_table
 from mmrs_core.contributions.checks import Status, Verdict
+from mmrs_core.languages.registry import MetamodelSource, registry_with
 
 SAFE = Verdict("clearance", Status.SAFE, "Alba", 3.5, "m", "m1", "tower")
 SAFER = Verdict("clearance", Status.SAFE, "Brezza", 4.5, "m", "m2", "tower")
@@ -57,3 +61,10 @@ def test_long_cells_are_cut():
 
 def test_line_breaks_in_names_do_not_break_a_table():
     assert list(table(("a",), [("x\ny",)])) == ["  a", "  x y"]
+
+
+def test_an_element_is_not_called_by_a_character_that_nobody_gave_it():
+    ecore = Path(__file__).parents[2] / "fixtures" / "models" / "values.ecore"
+    registry = registry_with([MetamodelSource("urn:test:values", ecore, "values")])
+    assert title_of(registry.create("urn:test:values", "Value")) == "Value"
+    assert title_of(registry.create("urn:test:values", "Value", EChar="x")) == "Value x"
