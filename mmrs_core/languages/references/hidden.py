@@ -10,6 +10,8 @@ from mmrs_core.languages.element import Element, Hidden, Source, Unknown, descen
 from mmrs_core.languages.json_form.unknown import UnknownObject
 from mmrs_core.languages.references.documents import Draft
 
+_LEAVE_UNKNOWN = frozenset(("XMI001", "XMI002", "XMI014", "XMI015"))
+"""The faults that each unknown element goes with, one or the other."""
 _PATH = re.compile(r"""(?<=["'\s#])/[0-9]*(?:/@[^\s"'/#@]+)+""")
 _BEFORE = re.compile(r"""[^\s"']#\Z""")
 _IN_XML = re.compile(r"""=\s*(?:"([^"<]*)"|'([^'<]*)')""")
@@ -45,6 +47,8 @@ def note_links(draft: Draft) -> None:
 
     The text is written as it was read: then the paths must still lead there.
     """
+    if not any(fault.code in _LEAVE_UNKNOWN for fault in draft.diagnostics):
+        return  # going over a large model takes its time
     for element in _unknown(draft.roots):
         text = element._mmrs_json if isinstance(element, UnknownObject) else element._mmrs_xml
         found = {path: draft.find(path) for path in _paths(text)}
