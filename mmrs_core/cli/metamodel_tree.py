@@ -81,7 +81,7 @@ def _enum(enumeration: Enumeration) -> _Branch:
 
 
 def _feature(feature: Feature) -> str:
-    most = "*" if feature.upper < 0 else str(feature.upper)
+    most = "*" if feature.most < 0 else str(feature.most)
     default = "" if feature.default is None else f" = {value_words(feature.default)}"
     how = "contains " if feature.containment else "→ " if feature.is_reference else ""
     return f"{feature.name}: {how}{feature.type.name} [{feature.lower}..{most}]{default}"
@@ -112,7 +112,7 @@ def _feature_as_json(feature: Feature) -> dict[str, object]:
         "reference": feature.is_reference,
         "containment": feature.containment,
         "lower": feature.lower,
-        "upper": feature.upper,
+        "upper": feature.most,
         "default": feature.default,
         "documentation": feature.documentation,
     }

@@ -258,8 +258,8 @@ def _wanted(feature: Feature) -> str:
     kind = feature.type
     if not feature.many and not isinstance(kind, Metaclass):
         return f"{_kind_words(kind)} for {feature.name}"
-    most = " or more" if feature.upper < 0 else f" to {feature.upper}"
-    count = f"{feature.lower}{most}" if feature.upper != feature.lower else f"{feature.lower}"
+    most = " or more" if feature.most < 0 else f" to {feature.most}"
+    count = f"{feature.lower}{most}" if feature.most != feature.lower else f"{feature.lower}"
     return f"{count} {kind.name} in {feature.name}"
 
 

@@ -69,13 +69,14 @@ class Feature:
         name: as in the metamodel and in files.
         attribute: the name under which Python reaches it; differs for keywords, as in ``from_``.
         lower: fewest values.
-        upper: most values, ``MANY`` (-1) for any number; what else is not above 1 means one value, as to EMF.
+        upper: the upper bound as it stands in the metamodel; ``most`` says what it means.
         type: a metaclass for a reference, else a data type or an enumeration.
         default: what it holds when it was never set; None where an unset number is no number.
         unsettable: whether "never set" differs from "set to the default".
         unique: whether a value may occur only once among many.
         opposite: the reference that the other end keeps, or None.
         many: whether it holds a list.
+        most: most values, ``MANY`` (-1) for any number; 1 where the bound is unspecified (-2), as in EMF.
         required: whether it needs at least one value.
         nullable: whether None is a value that a file can state, other than the default.
         is_container: whether it names the element that contains its owner.
@@ -102,6 +103,7 @@ class Feature:
     opposite: Feature | None = None
     keys: tuple[str, ...] = ()
     many: bool = field(init=False)
+    most: int = field(init=False)
     required: bool = field(init=False)
     nullable: bool = field(init=False)
     is_container: bool = field(init=False)
@@ -110,6 +112,7 @@ class Feature:
     def __post_init__(self) -> None:
         """Work out what the reader and the writer ask of every value."""
         object.__setattr__(self, "many", self.upper > 1 or self.upper == MANY)
+        object.__setattr__(self, "most", self.upper if self.many else 1)
         object.__setattr__(self, "required", self.lower > 0)
         absent = self.is_reference or self.many or self.default is None
         object.__setattr__(self, "nullable", not (absent or getattr(self.type, "primitive", True)))

@@ -69,7 +69,7 @@ class Growth:
         choices = self._kinds.growable(feature.type, feature.owner.ns_uri, room - 1)
         least = most = feature.lower if self._whole else 0
         if room > 0 and choices and feature.stored:
-            most += 2 if feature.upper < 0 else min(2, feature.upper - least)
+            most += 2 if feature.most < 0 else min(2, feature.most - least)
         most = min(most, max(least, 1)) if crowds(feature) else most
         for _ in range(self._draw(st.integers(least, most)) if choices else 0):
             _put(element, feature, self._grow(self._draw(st.sampled_from(choices)), max(room - 1, 0)))
@@ -105,7 +105,7 @@ class Growth:
 
     def _refer(self, element: Element, feature: Feature) -> None:
         """Let a reference lead to some more elements, as far as its bounds allow."""
-        most = 2 if feature.upper < 0 else min(2, feature.upper - len(held(element, feature)))
+        most = 2 if feature.most < 0 else min(2, feature.most - len(held(element, feature)))
         for _ in range(self._draw(st.integers(0, max(most, 0)))):
             targets = self._targets(element, feature)
             if targets:
@@ -153,7 +153,7 @@ def _put(element: Element, feature: Feature, value: Element) -> None:
 
 
 def _has_room(element: Element, feature: Feature) -> bool:
-    return feature.upper < 0 or len(held(element, feature)) < feature.upper
+    return feature.most < 0 or len(held(element, feature)) < feature.most
 
 
 def _free(element: Element) -> Iterator[Feature]:

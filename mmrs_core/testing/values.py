@@ -63,7 +63,7 @@ def values_of(feature: Feature, given: Values | None = None) -> st.SearchStrateg
     if not feature.many:
         return single
     longest = feature.lower + _LONGEST_LIST
-    size = min(longest, feature.upper) if feature.upper >= 0 else longest
+    size = min(longest, feature.most) if feature.most >= 0 else longest
     return st.lists(single, min_size=feature.lower, max_size=size, unique_by=_key if feature.unique else None)
 
 

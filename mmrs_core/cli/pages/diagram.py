@@ -62,7 +62,7 @@ def multiplicity(feature: Feature) -> str:
 
     An upper bound of -1 is written as a star, and equal bounds once.
     """
-    upper = "*" if feature.upper < 0 else str(feature.upper)
+    upper = "*" if feature.most < 0 else str(feature.most)
     return upper if upper == str(feature.lower) else f"{feature.lower}..{upper}"
 
 

@@ -167,7 +167,7 @@ def _join(feature: Feature, eclass: Any, package: Package) -> None:
 
 def _feature(feature: Feature, package: Package) -> Any:
     kind = _type(feature.type, package)
-    bounds = {"lower": feature.lower, "upper": feature.upper, "unique": feature.unique}
+    bounds = {"lower": feature.lower, "upper": feature.most, "unique": feature.unique}
     if feature.is_reference:
         made = ecore.EReference(feature.name, kind, containment=feature.containment, **bounds)
     else:

@@ -122,13 +122,13 @@ def _plain(kind: DataType) -> str:
 
 
 def _bounds(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
-    if (old.lower, old.upper) == (new.lower, new.upper):
+    if (old.lower, old.most) == (new.lower, new.most):
         return
     words = f"takes {_range(new)}, took {_range(old)}"
     if new.lower > old.lower and not (new.default is not None and not new.many):
         yield refused(what, words, f"older models may have fewer than {new.lower}")
-    elif 0 <= new.upper < old.upper or (old.upper < 0 <= new.upper):
-        yield refused(what, words, f"older models may have more than {new.upper}")
+    elif 0 <= new.most < old.most or (old.most < 0 <= new.most):
+        yield refused(what, words, f"older models may have more than {new.most}")
     elif new.many and not old.many and not new.is_reference and getattr(new.type, "python", str) is str:
         yield refused(what, words, "texts with blanks would be read as several values")
     else:
@@ -136,9 +136,9 @@ def _bounds(what: str, old: Feature, new: Feature) -> Iterator[Difference]:
 
 
 def _range(feature: Feature) -> str:
-    if feature.upper < 0:
+    if feature.most < 0:
         return f"{feature.lower} or more"
-    return str(feature.lower) if feature.lower == feature.upper else f"{feature.lower} to {feature.upper}"
+    return str(feature.lower) if feature.lower == feature.most else f"{feature.lower} to {feature.most}"
 
 
 def _defaults(what: str, old: Feature, new: Feature) -> Iterator[Difference]:

@@ -8,6 +8,7 @@ from os.path import isfile
 from pathlib import Path
 
 from mmrs_core.errors import UnreadableError
+from mmrs_core.languages.metaclass import MANY
 from mmrs_core.languages.metamodels.parsing import read_tables
 from mmrs_core.languages.metamodels.tables import ClassTable, FeatureTable, PackageTable
 from mmrs_core.migration.sources.nodes import Claim, SourceDocument
@@ -120,7 +121,9 @@ def _class(package: str, table: ClassTable, dialect: Dialect) -> SourceClass:
 
 def _feature(table: FeatureTable, package: str, dialect: Dialect) -> SourceFeature:
     sort = Sort.CONTAINED if table.containment else Sort.REFERENCE if table.is_reference else Sort.ATTRIBUTE
-    return SourceFeature(table.name, _kind(table.type, package, dialect), sort, table.upper != 1)
+    return SourceFeature(
+        table.name, _kind(table.type, package, dialect), sort, table.upper > 1 or table.upper == MANY
+    )
 
 
 def _kind(uri: str, package: str, dialect: Dialect) -> str:

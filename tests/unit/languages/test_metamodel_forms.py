@@ -140,7 +140,8 @@ def test_a_type_parameter_stands_for_its_bound(registry_of, feature, kind):
 def test_an_unspecified_upper_bound_means_one_value(registry_of, upper, many):
     body = classed("A", attribute("n", f'{NUMBER} upperBound="{upper}"'))
     feature = registry_of({"a.ecore": packaged(body)}).metaclass("urn:a", "A").by_name["n"]
-    assert (feature.many, feature.default) == (many, None if many else 0)
+    assert (feature.many, feature.most) == (many, int(upper) if many else 1)
+    assert feature.default == (None if many else 0)
 
 
 @pytest.mark.parametrize(
