@@ -66,12 +66,14 @@ def _in_order(value: Iterable[object]) -> Iterable[object]:
 def _element(value: object) -> Plain:
     """Return a model element with the features that are set; references become fragment paths.
 
-    An element whose metamodel is not installed keeps its XML.
+    An element whose metamodel is not installed keeps its XML; what is inside it is told by its path.
     """
-    from mmrs_core.languages.element import Element, Unknown, get, is_set, metaclass_of
+    from mmrs_core.languages.element import Element, Hidden, Unknown, get, is_set, metaclass_of, path_of
 
     if not isinstance(value, Element):
         raise TypeError(f"{type(value).__name__}: no such value passes between stages")
+    if isinstance(value, Hidden):
+        return path_of(value)
     if isinstance(value, Unknown):
         return {"$type": value._mmrs_type, "$xml": value._mmrs_xml}
     metaclass = metaclass_of(value)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import (
     Element,
+    Hidden,
     Unknown,
     containing_feature,
     contents,
@@ -97,6 +98,8 @@ def _label(element: Element) -> str:
 
 def _unknown(element: Unknown) -> str:
     """Return what is known of an element whose metamodel is not installed."""
+    if isinstance(element, Hidden):
+        return f"something inside {_unknown(element._mmrs_outer)}"
     ns_uri, _, name = element._mmrs_type.rpartition("#")
     label = kept_name(element)
     return f"{name}{f' name={value_words(label)}' if label else ''} (unknown, of {ns_uri or 'no language'})"

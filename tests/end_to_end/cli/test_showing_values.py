@@ -77,3 +77,14 @@ def test_a_fault_below_one_of_several_roots_tells_its_number(two, mmrs):
     assert code == 1
     assert "strength: no feature of Keeper" in faults
     assert "at: /1/keepers[0]" in faults
+
+
+def test_what_a_reference_leads_to_inside_an_unknown_element_is_told_by_its_path(lion, mmrs):
+    Path("far.xmi").write_text(
+        '<zoo:Zoo xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:zoo="urn:test:zoo"'
+        ' xmlns:far="urn:far" star="//@animals.0/@cubs.1"><animals xsi:type="far:Cage"/></zoo:Zoo>'
+    )
+    _, words, _ = mmrs("show", "far.xmi", "--path", "star")
+    _, encoded, _ = mmrs("show", "far.xmi", "--path", "star", "--json")
+    assert words == "/animals[0]/cubs[1]: something inside Cage (unknown, of urn:far)\n"
+    assert json.loads(encoded)["found"][0]["value"] == "/animals[0]/cubs[1]"
