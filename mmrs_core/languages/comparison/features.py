@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from os.path import relpath
 from pathlib import Path
@@ -12,6 +13,10 @@ from mmrs_core.languages.json_form.layout import formatted
 from mmrs_core.languages.json_form.unknown import UnknownObject, stated
 from mmrs_core.languages.metaclass import Feature, Metaclass
 
+_TAG = re.compile(r"""<[^<>"']*(?:"[^"]*"[^<>"']*|'[^']*'[^<>"']*)*>""")
+_BLANKS = re.compile(r"""("[^"]*"|'[^']*')|\s+""")
+_BEFORE_END = re.compile(r" (/?>)\Z")
+_BETWEEN = re.compile(r">\s+<")
 _SINGLE = frozenset((str, float, int, bool))
 
 
@@ -56,10 +61,26 @@ def attributes_of(element: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def raw_text(element: Element) -> str:
-    """Return all that is known of an element whose class is not installed; else an empty text."""
+    """Return all that is known of an element whose class is not installed; else an empty text.
+
+    How its file lays it out does not count.
+    """
     if isinstance(element, UnknownObject):
         return formatted(stated(element), 0)
-    return element._mmrs_xml if isinstance(element, Unknown) else ""
+    return _on_one_line(element._mmrs_xml) if isinstance(element, Unknown) else ""
+
+
+def _on_one_line(xml: str) -> str:
+    """Return XML without what only lays it out: blanks between tags, and more than one between attributes.
+
+    >>> _on_one_line('<a x="1  2"   y="3 >" >  <b /></a>')
+    '<a x="1  2" y="3 >"><b/></a>'
+    """
+    return _BETWEEN.sub("><", _TAG.sub(_closely, xml))
+
+
+def _closely(tag: re.Match[str]) -> str:
+    return _BEFORE_END.sub(r"\1", _BLANKS.sub(lambda part: part[1] or " ", tag.group()))
 
 
 def _marks(element: Element, traits: Traits) -> list[object]:

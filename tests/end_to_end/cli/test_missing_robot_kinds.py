@@ -46,3 +46,10 @@ def test_of_what_is_not_understood_the_part_that_differs_is_told(farm, mmrs, tmp
     assert code == 1
     assert "    content: '…ible one with four bodies\">" in out
     assert "→ '…ible one with five bodies\">" in out
+
+
+def test_how_what_is_not_understood_is_laid_out_is_no_difference(farm, mmrs, tmp_path):
+    text = TRACTOR.format(plough="none")
+    (tmp_path / "one.xmi").write_text(text)
+    (tmp_path / "other.xmi").write_text(text.replace(' axles="2"', '\n    axles="2"').replace("/>", " />"))
+    assert mmrs("diff", "one.xmi", "other.xmi")[:2] == (0, "the models say the same\n")
