@@ -18,7 +18,7 @@ _GREGORIAN = date(1582, 10, 15).toordinal()
 _CHANGE = 1582
 _LONGEST = 9
 _BLANKS = "[ \t]*"
-_NUMBER = rf"{_BLANKS}(\d+)"
+_NUMBER = rf"{_BLANKS}(-?\d+)"
 _ZONE = (
     rf"{_BLANKS}(?P<zone>(?P<sign>[+-])(?P<hours>[01][0-9]|2[0-3])(?P<minutes>[0-5][0-9])|"
     r"(?i:GMT)(?P<sign2>[+-])(?P<hours2>[01]?[0-9]|2[0-3]):(?P<minutes2>[0-5][0-9])|(?i:GMT(?![+-])|UTC))"
@@ -28,7 +28,7 @@ _FORM = re.compile(
     rf"(?:T{_NUMBER}:{_NUMBER}(?::{_NUMBER}(?:\.{_NUMBER}(?:{_ZONE})?)?)?)?(?P<rest>.*)",
     re.DOTALL,
 )
-_NAMED_ZONE = re.compile(rf"{_BLANKS}(?![Zz]\b)[A-Za-z]")
+_NAMED_ZONE = re.compile(rf"{_BLANKS}[A-Za-z]{{2}}")
 _DAYS_BEFORE = (0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334)
 
 
@@ -73,7 +73,7 @@ def parse_date(text: str) -> datetime:
     """
     found = _FORM.match(text)
     numbers = found.groups("0")[:7] if found is not None else ()
-    if found is None or any(len(number.lstrip("0")) > _LONGEST for number in numbers):
+    if found is None or any(len(number.lstrip("-0")) > _LONGEST for number in numbers):
         raise ValueError(f"{shown(text)}: not a date such as 2024-05-01T10:11:12.123+0200")
     if found[7] and not found["zone"] and _NAMED_ZONE.match(found["rest"]):
         raise ValueError(f"{shown(text)}: a zone by name; write it as +0200")
@@ -96,9 +96,9 @@ def _instant(
     year: int, month: int, day: int, hour: int, minute: int, second: int, milli: int, *, zone: timezone
 ) -> datetime:
     """Return a date of parts none of which is bounded; raises ValueError if there is no such year."""
-    first = date.fromordinal(_ordinal(year, month, day))
     since = timedelta(hours=hour, minutes=minute, seconds=second, milliseconds=milli)
-    return datetime.combine(first, time(tzinfo=zone)) + since
+    first = date.fromordinal(_ordinal(year, month, day + since.days))
+    return datetime.combine(first, time(tzinfo=zone)) + since % timedelta(days=1)
 
 
 def _ordinal(year: int, month: int, day: int) -> int:

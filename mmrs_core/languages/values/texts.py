@@ -12,7 +12,7 @@ _NUMBER = re.compile(r"[+-]?\d+")
 _CLASS_NAME = re.compile(r"(?:[^\W\d]|\$)(?:\w|\$)*(?:\.(?:[^\W\d]|\$)(?:\w|\$)*)*")
 _ARRAY = re.compile(r"\[+(?:[ZBCSIJFD]|L([^;]+);)")
 _SERIALIZED = re.compile(r"ACED0005(?:[0-9A-F]{2})+", re.IGNORECASE)
-_QUALIFIED = re.compile(r"[^\s:]*:?[^\s:]+")
+_QUALIFIED = re.compile(r"(?:(?:[^\W\d][\w.\-]*)?:)?[^\W\d][\w.\-]*")
 _EVERYWHERE = re.compile(
     r"boolean|byte|char|short|int|long|float|double|void|\[+[ZBCSIJFD]|(?:\[+L)?java\.[a-z]+\.[\w.$]+;?"
 )
@@ -73,7 +73,7 @@ def render_qualified(value: object) -> str:
 
 def parse_character(text: str) -> str:
     """Read a character as EMF does: its number, or itself where it is no digit."""
-    if _NUMBER.fullmatch(text) and len(text) < 7 and 0 <= int(text) < 1 << 16:
+    if _NUMBER.fullmatch(text) and max(text) <= LAST_UNIT and len(text) < 7 and 0 <= int(text) < 1 << 16:
         return chr(int(text))
     if len(text) != 1:
         raise ValueError(f"{shown(text)}: not one character")
