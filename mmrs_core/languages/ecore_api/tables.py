@@ -58,7 +58,7 @@ def _feature(feature: Any) -> FeatureTable:
     keys = getattr(feature, "eKeys", ())  # pyecore 0.15 knows none
     return FeatureTable(
         name=feature.name,
-        type=_uri(feature.eType),
+        type="" if feature.eType is None else _uri(feature.eType),
         is_reference=is_reference,
         documentation=_documentation(feature),
         lower=feature.lowerBound,

@@ -151,8 +151,10 @@ class Assembly:
         raise InternalError(f"{table.name}: no two features share an attribute")
 
     def _feature(self, owner: Metaclass, row: FeatureTable, entry: Located, attribute: str) -> Feature:
-        key = self._directory.find(row.type, entry)
         where = f"{owner.name}.{row.name}"
+        if not row.type:
+            raise PluginError(f"{entry.provider}: {entry.table.ns_uri}: {where}: eType is missing")
+        key = self._directory.find(row.type, entry)
         kind = self._class(key, entry, where) if row.is_reference else self._value_type(key, entry, where)
         feature = Feature(
             name=row.name,

@@ -128,15 +128,18 @@ class _Parser:
         )
 
     def _type(self, node: Node, owner: Node, is_reference: bool) -> str:
-        """Return the type of a feature: of a generic one, what is left of it without its arguments."""
+        """Return the type of a feature: of a generic one, what is left of it without its arguments.
+
+        Empty where the file says nothing of it, as descriptions of old dialects do.
+        """
         found = self._uris(node, "eType")
         if found:
             return found[0]
-        usual = "EObject" if is_reference else "EString"
-        for generic in node.all("eGenericType"):
-            usual = usual if is_reference else "EJavaObject"
-            found = self._erased(generic, owner)
-        return found[0] if found else f"{ECORE}#//{usual}"
+        generics = node.all("eGenericType")
+        if not generics:
+            return ""
+        found = self._erased(generics[0], owner)
+        return found[0] if found else f"{ECORE}#//{'EObject' if is_reference else 'EJavaObject'}"
 
     def _erased(self, generic: Node, owner: Node) -> tuple[str, ...]:
         """Return the class that a generic type is, or the first bound of its parameter; empty without one."""

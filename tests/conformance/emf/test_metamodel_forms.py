@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from emf_description import metamodel_lines, name
 
-from mmrs_core.errors import UnreadableError
+from mmrs_core.errors import PluginError, UnreadableError
 from mmrs_core.languages.conformance import check_conformance
 from mmrs_core.languages.datatypes import ECORE, XML_TYPES
 from mmrs_core.languages.metamodels.export import export_metamodels, exported_names
@@ -387,6 +387,14 @@ def test_ecore_itself_is_to_us_what_it_is_to_emf(referee):
     assert [name for name in types - set(mine) if "EFeatureMapEntry" not in name] == []
     lacking = {line for line in stored - set(mine) if "EFeatureMapEntry" not in line}
     assert {line.split()[2] for line in lacking} == {"instanceType"}  # whose class is of feature maps
+
+
+def test_a_feature_without_a_type_is_refused_as_emf_refuses_it(referee, written):
+    (file,) = written({"a.ecore": packaged(classed("A", reference("r", "")))})
+    with referee.knowing(file) as verdict:
+        assert not verdict.accepted
+    with pytest.raises(PluginError, match=r"a: urn:a: A\.r: eType is missing"):
+        registry_of([file])
 
 
 def supertypes(said, metaclass):

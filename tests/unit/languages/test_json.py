@@ -167,7 +167,9 @@ def test_a_feature_that_begins_with_a_dollar_gets_a_second_one(tmp_path):
         '<ecore:EPackage xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="d" nsURI="urn:d"'
         ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">'
         '<eClassifiers xsi:type="ecore:EClass" name="D">'
-        '<eStructuralFeatures xsi:type="ecore:EAttribute" name="$type"/></eClassifiers></ecore:EPackage>'
+        '<eStructuralFeatures xsi:type="ecore:EAttribute" name="$type"'
+        ' eType="ecore:EDataType http://www.eclipse.org/emf/2002/Ecore#//EString"/>'
+        "</eClassifiers></ecore:EPackage>"
     )
     registry = registry_with([MetamodelSource("urn:d", ecore)])
     text = to_json(read_text(b'{"$type": "urn:d#D", "$$type": "x"}', "a.json", registry).roots, registry)

@@ -215,3 +215,12 @@ def test_classes_that_build_upon_ecore_itself_are_handed_over(tmp_path):
     assert eclass.findEStructuralFeature("of").eType.name == "EClass"
     (note,) = to_pyecore(Model("m", (notes.create("urn:notes", "Note", name="n"),)), notes)
     assert note.name == "n"
+
+
+def test_an_attribute_of_pyecore_without_a_type_is_refused():
+    package = pyecore.EPackage("paint", nsURI="urn:t:paint", nsPrefix="paint")
+    task = pyecore.EClass("PaintTask")
+    task.eStructuralFeatures.append(pyecore.EAttribute("coats"))
+    package.eClassifiers.append(task)
+    with pytest.raises(PluginError, match=r"^p: urn:t:paint: PaintTask\.coats: eType is missing"):
+        registry_with([MetamodelSource("urn:t:paint", package, "p")])

@@ -17,6 +17,7 @@ TWICE = (
     'name="a" nsURI="urn:a"><eClassifiers xsi:type="ecore:EClass" name="A"/>'
     '<eClassifiers xsi:type="ecore:EEnum" name="A"/></ecore:EPackage>'
 )
+UNTYPED = '<eStructuralFeatures xsi:type="ecore:EAttribute" name="n"/>'
 
 
 @pytest.fixture
@@ -143,6 +144,7 @@ def test_packages_inside_packages_are_metamodels_of_their_own(zoo):
         (eclass("A", "", attribute("n", "EIntt")), "A.n: no type EIntt"),
         (eclass("A", "", attribute("n", "EInt", 'defaultValueLiteral="x"')), "A.n: default 'x': not a whole"),
         (eclass("A", "", attribute("n", "EInt") * 2), "A has two features n"),
+        (eclass("A", "", UNTYPED), "A.n: eType is missing"),
         (eclass("A", "urn:mmrs:mission:1.0#//Misson"), "did you mean Mission?"),
     ],
 )
