@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -16,6 +17,8 @@ from mmrs_core.languages.xmi.events import XMI, XSI
 from mmrs_core.languages.xmi.unknowns import text_of
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
+_PREFIX = re.compile(r"[^\W\d][\w.-]*")
+_UNFIT = re.compile(r"[^\w.-]", re.ASCII)
 _Attributes = list[tuple[str, str]]
 
 
@@ -280,7 +283,7 @@ class XmiWriter:
         if known is not None:
             return known
         installed = self._registry.has(ns_uri)
-        wanted = (self._registry.package(ns_uri).prefix if installed else had) or "p"
+        wanted = (_spelt(self._registry.package(ns_uri).prefix) if installed else had) or "p"
         taken = {"xmi", "xsi", "xml", "xmlns", *self._prefixes.values()}
         prefix, number = wanted, 0
         while prefix in taken:
@@ -299,3 +302,8 @@ def _pairs_with_itself(element: Element, feature: Feature, targets: Sequence[Ele
 def _where(element: Element, feature: Feature) -> str:
     """Return what an error calls a value; costly, hence only for errors."""
     return f"{path_of(element)}: {feature.name}"
+
+
+def _spelt(prefix: str) -> str:
+    """Return a prefix as XML can have it: metamodels may state any text."""
+    return prefix if not prefix or _PREFIX.fullmatch(prefix) else f"p_{_UNFIT.sub('_', prefix)}"

@@ -406,3 +406,12 @@ class _Itself:
     """Ecore and the types of XML, in the place of a registry's packages."""
 
     packages = tuple(each for each in core_registry().everything if each.ns_uri in (ECORE, XML_TYPES))
+
+
+@pytest.mark.parametrize("prefix", ["a b", "1", "a:b", "größe", "&amp;", "xmlfoo", ""])
+def test_emf_reads_what_we_write_whatever_prefix_a_metamodel_states(referee, written, tmp_path, prefix):
+    (ecore,) = written({"a.ecore": packaged(classed("A")).replace('nsPrefix="a"', f'nsPrefix="{prefix}"')})
+    registry = registry_of([ecore])
+    write_model([registry.create("urn:a", "A")], tmp_path / "a.xmi", registry)
+    with referee.knowing(ecore):
+        assert referee.ask("check", tmp_path / "a.xmi").faults == []
