@@ -10,7 +10,8 @@ from pathlib import Path
 from mmrs_core.errors import UnreadableError
 from mmrs_core.languages.datatypes import ECORE, shown
 from mmrs_core.languages.metaclass import Literal
-from mmrs_core.languages.metamodels.nodes import Node, Tree, read_tree
+from mmrs_core.languages.metamodels.fragments import Node
+from mmrs_core.languages.metamodels.nodes import Tree, read_tree
 from mmrs_core.languages.metamodels.tables import (
     ClassTable,
     DataTypeTable,
