@@ -58,6 +58,11 @@ def test_every_fault_of_a_model_has_an_example(entries, examples):
     assert {entry.code for entry in entries} == set(examples)
 
 
+def test_every_example_shows_what_fails_and_what_passes_and_that_they_differ(examples):
+    assert [code for code, each in examples.items() if not (each.failing and each.passing)] == []
+    assert [code for code, each in examples.items() if each.failing == each.passing] == []
+
+
 @pytest.mark.parametrize("code", sorted(reading_cases(ROOT, fresh_models)))
 def test_what_fails_has_the_fault_and_what_passes_has_not(code, tmp_path):
     finder, failing, passing = reading_cases(tmp_path, fresh_models)[code]

@@ -22,7 +22,7 @@ from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.languages import mission, robot
 from mmrs_core.languages.codes import refusal
 from mmrs_core.languages.conformance import check_conformance
-from mmrs_core.languages.element import Element
+from mmrs_core.languages.element import Element, descendants, held, holds, label_of, metaclass_of, root_of
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.grounding.scenes import ground
 from mmrs_core.languages.model import Model
@@ -54,6 +54,8 @@ def contrast(failing: bytes, passing: bytes) -> tuple[str, str]:
     for kind, a, b, c, d in SequenceMatcher(None, one, other, autojunk=False).get_opcodes():
         if kind == "equal":
             continue
+        if kind != "replace":  # the lines around tell where something is too many or missing
+            a, b, c, d = max(a - 1, 0), b + (b < len(one)), max(c - 1, 0), d + (d < len(other))
         same = kind == "replace" and b - a == d - c
         for i, line in enumerate(one[a:b]):
             left.append(_trimmed(line, other[c + i]) if same else line.strip())
@@ -65,7 +67,7 @@ def contrast(failing: bytes, passing: bytes) -> tuple[str, str]:
 def _trimmed(line: str, other: str) -> str:
     """Return a tag with the attributes in which it differs, and with what it is called."""
     tag = _TAG.search(line)
-    if tag is None or (match := _TAG.search(other)) is None or match[0] != tag[0]:
+    if "</" in line or tag is None or (match := _TAG.search(other)) is None or match[0] != tag[0]:
         return line.strip()
     theirs = set(_ATTRIBUTE.findall(other))
     own = _ATTRIBUTE.findall(line)
@@ -83,8 +85,29 @@ def _cut(lines: Sequence[str]) -> str:
 def _texts(failing: Iterable[Element], passing: Iterable[Element], registry: Registry) -> tuple[str, str]:
     try:
         return contrast(to_xmi(tuple(failing), registry), to_xmi(tuple(passing), registry))
-    except ValueError:  # a fault that no file can hold
-        return "", ""
+    except ValueError:  # it refers to what stands in no file
+        return contrast(_sketched(failing), _sketched(passing))
+
+
+def _sketched(roots: Iterable[Element]) -> bytes:
+    """Return a line for each element, with what it refers to by its name."""
+    here, lines = tuple(roots), []
+    for root in here:
+        for element in (root, *descendants(root)):
+            features = metaclass_of(element).features
+            told = [f for f in features if f.stored and not f.containment and holds(element, f)]
+            values = "".join(
+                f' {f.name}="{" ".join(_word(v, here) for v in held(element, f))}"' for f in told
+            )
+            lines.append(f"<{type(element).__name__}{values}/>")
+    return "\n".join(lines).encode()
+
+
+def _word(value: object, here: Sequence[Element]) -> str:
+    if not isinstance(value, Element):
+        return str(value)
+    called = label_of(value) or type(value).__name__
+    return called if root_of(value) in here else f"{called} of another model"
 
 
 def core_examples(fresh_models: Callable[[], object]) -> dict[str, Example]:

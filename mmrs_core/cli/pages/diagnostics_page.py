@@ -93,17 +93,14 @@ def _entry(entry: Entry, example: Example | None) -> str:
 
 def _shown(example: Example) -> Iterator[str]:
     yield from (f"Fails, with *{_plain(example.message)}*:", "") if example.message else ("Fails:", "")
-    yield from _block(example.failing, example.language, "without what passes")
+    yield from _block(example.failing, example.language)
     yield from ("Passes:", "")
-    yield from _block(example.passing, example.language, "without what fails")
+    yield from _block(example.passing, example.language)
 
 
 def _plain(words: str) -> str:
     return words.replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;")
 
 
-def _block(text: str, language: str, absent: str) -> Iterator[str]:
-    if text:
-        yield from (f"```{language}", text, "```", "")
-    else:
-        yield from (f"the same model, {absent}", "")
+def _block(text: str, language: str) -> Iterator[str]:
+    yield from (f"```{language}", text, "```", "")
