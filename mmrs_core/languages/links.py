@@ -140,6 +140,19 @@ def link(owner: Element, feature: Feature, value: Element) -> None:
     store(value, inverse, owner)
 
 
+def settle(owner: Element, feature: Feature, element: Element, occupied: bool = False) -> None:
+    """Contain an element that was just read; where the place is `occupied`, it only knows its owner."""
+    if feature.many:
+        getattr(owner, feature.attribute).put(element)
+    elif not occupied:
+        type(owner)._mmrs_slots[feature.attribute].__set__(owner, element)
+    element._mmrs_container = owner
+    element._mmrs_feature = feature
+    opposite = feature.opposite
+    if opposite is not None and opposite.attribute in type(element)._mmrs_slots:
+        type(element)._mmrs_slots[opposite.attribute].__set__(element, owner)
+
+
 def unlink(owner: Element, feature: Feature, value: Element) -> None:
     """Make the other end of a reference forget that ``owner`` held ``value``."""
     inverse = feature.opposite

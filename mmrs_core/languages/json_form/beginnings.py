@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.element import Element, Unknown
+from mmrs_core.languages.element import Element
 from mmrs_core.languages.json_form.members import Members
 from mmrs_core.languages.json_form.stream import (
     END,
@@ -26,6 +26,7 @@ from mmrs_core.languages.json_form.stream import (
 )
 from mmrs_core.languages.json_form.types import Types
 from mmrs_core.languages.json_form.unknown import DEEPEST_KEPT, SCOPE, XML, Kept, kept
+from mmrs_core.languages.links import settle
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.references.documents import Draft, Pending
 
@@ -190,15 +191,7 @@ class Beginnings:
         if owner is None or feature is None:
             self._draft.roots.append(element)
             return
-        if feature.many:
-            getattr(owner, feature.attribute).put(element)
-        else:
-            type(owner)._mmrs_slots[feature.attribute].__set__(owner, element)
-        element._mmrs_container = owner
-        element._mmrs_feature = feature
-        opposite = feature.opposite
-        if opposite is not None and not isinstance(element, Unknown):
-            type(element)._mmrs_slots[opposite.attribute].__set__(element, owner)
+        settle(owner, feature, element)
 
     def _refer(self, start: Begun, event: Event, feature: Feature) -> None:
         """Take note that what stands in another file is contained here."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, Unknown, held, label_of
+from mmrs_core.languages.links import settle
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
@@ -177,17 +178,10 @@ class XmiReader:
             self._attributes(element, metaclass, attributes)
 
     def _contain(self, owner: Element, feature: Feature, element: Element) -> None:
-        if feature.many:
-            getattr(owner, feature.attribute).put(element)
-        elif held(owner, feature):
+        occupied = not feature.many and bool(held(owner, feature))
+        if occupied:
             self._fault("XMI009", f"{feature.name}: given more than once, takes one", owner)
-        else:
-            type(owner)._mmrs_slots[feature.attribute].__set__(owner, element)
-        element._mmrs_container = owner
-        element._mmrs_feature = feature
-        opposite = feature.opposite
-        if opposite is not None and not isinstance(element, Unknown):
-            type(element)._mmrs_slots[opposite.attribute].__set__(element, owner)
+        settle(owner, feature, element, occupied)
 
     def _make(
         self, metaclass: Metaclass | None, claimed: str, owner: Element | None = None
