@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from mmrs_core.diagnostics import Diagnostic
 
 MODEL_INVALID = 1
-USAGE = 2
 UNREADABLE = 3
 
 _HELP = "Usage: "

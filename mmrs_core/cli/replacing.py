@@ -19,7 +19,7 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
     folders: list[Path] = []
     try:
         for file, text in texts.items():
-            folders += _made_for(file)
+            _make_for(file, folders)
             before[file] = file.read_bytes() if file.exists() else None
             replace_file(file, text)
     except BaseException:
@@ -30,12 +30,11 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
         raise
 
 
-def _made_for(file: Path) -> list[Path]:
-    """Make the folders that a file needs; return them, outer ones first."""
-    missing = [folder for folder in file.parents if not folder.exists()][::-1]
-    for folder in missing:
+def _make_for(file: Path, made: list[Path]) -> None:
+    """Make the folders that a file needs, outer ones first; each is told as soon as it stands."""
+    for folder in [folder for folder in file.parents if not folder.exists()][::-1]:
         folder.mkdir()
-    return missing
+        made.append(folder)
 
 
 def _put_back(file: Path, text: bytes | None) -> None:

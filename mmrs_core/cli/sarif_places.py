@@ -48,7 +48,7 @@ class Places:
     def artifact(self, file: Path) -> dict[str, str]:
         """Return where a file lies: below the base, or anywhere."""
         relative = os.path.relpath(file.absolute(), self.base)
-        if relative.startswith(os.pardir):
+        if Path(relative).parts[:1] == (os.pardir,):
             return {"uri": file.absolute().as_uri()}
         return {"uri": quote(Path(relative).as_posix()), "uriBaseId": ROOT}
 

@@ -11,9 +11,7 @@ from mmrs_core.languages.missing import hint_for
 from mmrs_core.languages.naming import nearest
 from mmrs_core.languages.references.documents import Draft
 from mmrs_core.languages.registry import Registry
-
-_LONGEST_URI = 2000
-"""Messages and types repeat the nsURI of each prefix; ten thousand times a megabyte fills any memory."""
+from mmrs_core.languages.xmi.events import LONGEST_NAMESPACE
 
 
 class Types:
@@ -38,8 +36,8 @@ class Types:
         if found is None:
             self._draft.fault("XMI010", f"{LANGUAGES}: takes an object of texts", line)
             return
-        for prefix in [prefix for prefix, ns_uri in found.items() if len(ns_uri) > _LONGEST_URI]:
-            message = f"{LANGUAGES}: the nsURI of {prefix} is longer than {_LONGEST_URI} characters"
+        for prefix in [prefix for prefix, ns_uri in found.items() if len(ns_uri) > LONGEST_NAMESPACE]:
+            message = f"{LANGUAGES}: the nsURI of {prefix} is longer than {LONGEST_NAMESPACE} characters"
             self._draft.fault("XMI010", message, line)
             del found[prefix]
         self.languages = found

@@ -1,9 +1,10 @@
 """Dates as values: what EMF reads from a text, and a text that EMF reads as that date.
 
 EMF reads dates with Java's ``SimpleDateFormat``: it counts the digits behind the point of the seconds in
-milliseconds, knows a zone only behind them and only as +0200, takes the time zone of its machine where there
-is none, lets 13 months pass, and counts in the Julian calendar before 15 October 1582. So do we, with UTC for
-the machine's zone; a date keeps the text of its file, and says what is doubtful about it.
+milliseconds, knows a zone only behind them and only as +0200, GMT+2:00, GMT or UTC, takes the time zone of
+its machine where there is none, lets 13 months pass, and counts in the Julian calendar before 15 October
+1582. So do we, with UTC for the machine's zone; a date keeps the text of its file, and says what is
+doubtful about it.
 """
 
 from __future__ import annotations
@@ -69,7 +70,8 @@ def parse_date(text: str) -> datetime:
         A plain date if its text is the one that EMF writes, else a `WrittenDate`.
 
     Raises:
-        ValueError: if EMF reads none, or one outside the years 1 to 9999, or if a zone has a name.
+        ValueError: if EMF reads none, or one outside the years 1 to 9999, or if a zone has another
+            name than GMT or UTC.
     """
     found = _FORM.match(text)
     numbers = found.groups("0")[:7] if found is not None else ()

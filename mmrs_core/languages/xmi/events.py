@@ -15,6 +15,7 @@ LARGEST_FILE = 512 * 1024 * 1024
 DEEPEST_NESTING = 400
 MOST_ATTRIBUTES = 10_000
 LONGEST_NAMESPACE = 2000
+"""Messages and types repeat a namespace; ten thousand times a megabyte fills any memory."""
 _SHORTEST_ATTRIBUTE = len(' a=""')
 _TAG = re.compile(rb"<[^\s<>/=]+")
 _WHOLE_TAG = re.compile(rb"""[^>"']*(?:"[^"]*"[^>"']*|'[^']*'[^>"']*)*>""")
