@@ -57,7 +57,7 @@ def mmrs_checks() -> Iterable[Check]:
 @hookimpl
 def mmrs_targets() -> Iterable[Target]:
     """Contribute the targets for code generation."""
-    from mmrs_core.generation.targets import TARGETS
+    from mmrs_core.mavlink.targets import TARGETS
 
     return TARGETS
 

@@ -67,6 +67,7 @@ class FileSpec:
         path: relative to the folder of the output, with forward slashes, nothing but ASCII.
         template: name in the target's folder of templates. One that ends in ``.jinja`` is rendered,
             any other is copied as it is.
+        source: a file outside that folder that is copied instead of the template; None: the template.
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.
         once: as in `GeneratedFile`.
@@ -77,6 +78,7 @@ class FileSpec:
     view: Mapping[str, object] = field(default_factory=dict)
     trace: tuple[TracedStep, ...] = ()
     once: bool = False
+    source: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,6 +49,8 @@ def _refused(target: str, losses: Sequence[str]) -> str:
 
 
 def _content(environment: Environment, target: Target, spec: FileSpec) -> bytes:
+    if spec.source is not None:
+        return spec.source.read_bytes()
     if spec.template.endswith(RENDERED):
         return rendered(environment, spec.template, spec.view).encode("utf-8")
     return (target.templates / spec.template).read_bytes()

@@ -13,14 +13,13 @@ import pytest
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
-from mmrs_core.generation.earth import degrees_of
-from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
 from mmrs_core.generation.render import render
-from mmrs_core.generation.vehicles import vehicle_class
 from mmrs_core.generation.writing import write
-from mmrs_core.resources import shipped
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.mavlink.vehicles import vehicle_class
+from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import target_input
-from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
 
 PATIENCE = 60.0
 
@@ -118,19 +117,3 @@ def hangar():
     """Return a function that switches on vehicles for this test, and gives the links to them."""
     with _open_hangar() as switch_on:
         yield switch_on
-
-
-@pytest.fixture
-def flight(monkeypatch):
-    """Return the runtime of generated controllers as a package."""
-    monkeypatch.syspath_prepend(str(shipped("codegen_templates") / "mavlink-python"))
-    import mmrs_flight.clock
-    import mmrs_flight.commands
-    import mmrs_flight.link
-    import mmrs_flight.missions
-    import mmrs_flight.ports
-    import mmrs_flight.uploads
-
-    yield mmrs_flight
-    for name in [name for name in sys.modules if name.partition(".")[0] == "mmrs_flight"]:
-        del sys.modules[name]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mmrs_core.scene import Policy
+from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
-from mmrs_core.testing.vehicle.autopilot import Autopilot
 
 LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22

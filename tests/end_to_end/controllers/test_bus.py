@@ -12,8 +12,10 @@ from dataclasses import replace
 
 import pytest
 
+from mmrs_core import flight
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.flight.bus import BusSlots
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,
@@ -142,10 +144,8 @@ def send(endpoint: str, key: str, content: dict[str, object]) -> bool:
 
 
 @pytest.fixture
-def owner(flight, endpoint, tmp_path):
+def owner(endpoint, tmp_path):
     """Return slots of a robot that 'alpha' may set, the key of their owner, and its journal."""
-    import mmrs_flight.bus
-
     robot = flight.Robot(
         id="beta",
         log="beta.jsonl",
@@ -158,7 +158,7 @@ def owner(flight, endpoint, tmp_path):
         resets=(("go", ("alpha",)),),
         mission="survey",
     )
-    slots = mmrs_flight.bus.BusSlots([robot], "run-0", tmp_path, [endpoint], [])
+    slots = BusSlots([robot], "run-0", tmp_path, [endpoint], [])
     yield slots, slots._key("beta", "slots"), tmp_path / "beta.slots.ndjson"
     slots.close()
 

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from mmrs_core import flight
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
 
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
@@ -53,7 +54,7 @@ class Port:
         pass
 
 
-def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason(flight):
+def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason():
     with hangs_up_after(0.1) as url:
         link = flight.link.Link(flight.ports.open_port(url), flight.clock.Clock())
         with pytest.raises(flight.faults.Fault, match="has closed the connection") as fault:
@@ -63,7 +64,7 @@ def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason(flight):
         link.close()
 
 
-def test_what_cannot_be_sent_is_lost_and_the_link_says_why(flight):
+def test_what_cannot_be_sent_is_lost_and_the_link_says_why():
     link = flight.link.Link(Port(), flight.clock.Clock())
     link.send(flight.link.mavlink.MAVLink_mission_ack_message(1, 1, 0, 0))
     assert link.trouble == "no buffer space"

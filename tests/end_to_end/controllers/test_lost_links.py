@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from mmrs_core import flight
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
@@ -71,10 +72,8 @@ def test_the_vehicle_knows_the_response_of_the_wait_that_it_is_in(controllers, h
 
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
-def test_a_target_knows_what_each_kind_of_vehicle_can_do_by_itself(flight, kind):
-    import mmrs_flight.modes
-
-    from mmrs_core.generation.vehicles import COPTER, ROVER, SUB
+def test_a_target_knows_what_each_kind_of_vehicle_can_do_by_itself(kind):
+    from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB
 
     (vehicle,) = (each for each in (COPTER, SUB, ROVER) if each.name == kind)
-    assert set(mmrs_flight.modes.LINK_LOST[kind]) == vehicle.alone
+    assert set(flight.modes.LINK_LOST[kind]) == vehicle.alone

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.generation.qgc.target import QGC_PLAN
+from mmrs_core import flight
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
+from mmrs_core.mavlink.qgc.target import QGC_PLAN
 from mmrs_core.testing.programs import target_input, two_drones
 
 PEERS = Path(__file__).parents[2] / "peers"
@@ -44,14 +45,14 @@ class Peer:
 
 
 @pytest.fixture
-def link(flight, free_port):
+def link(free_port):
     port = free_port()
     made = flight.link.Link(flight.ports.open_port(f"udpin:127.0.0.1:{port}"), flight.clock.Clock())
     yield made, str(port)
     made.close()
 
 
-def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(flight, link):
+def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
     made, port = link
     robot = flight.Robot(
         id="alpha",

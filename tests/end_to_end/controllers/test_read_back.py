@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
+from mmrs_core import flight
+from mmrs_core.sitl import Settings, SimulatedVehicle
 
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100
 SEA, RELATIVE, SEA_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT, NO_FRAME = 0, 3, 5, 6, 10, 11, 2
@@ -14,7 +15,7 @@ MISSION, FENCE, RALLY = 0, 1, 2
 
 
 @pytest.fixture
-def linked(flight, free_port):
+def linked(free_port):
     """Return a link, and the simulated vehicle at its end."""
     port = free_port()
     link = flight.link.Link(flight.ports.open_port(f"udpin:127.0.0.1:{port}"), flight.clock.Clock(20.0))
@@ -25,7 +26,7 @@ def linked(flight, free_port):
 
 
 @pytest.fixture
-def read_back(flight, linked):
+def read_back(linked):
     """Return a function that uploads an item after a home, changes what was kept, and verifies it."""
     link, vehicle = linked
 
@@ -41,7 +42,7 @@ def read_back(flight, linked):
 
 
 @pytest.fixture
-def item(flight):
+def item():
     """Return a function that makes an item 20.5 m above home."""
     return lambda command, frame=RELATIVE: flight.missions.Item(
         command, x=423_701_000, y=133_500_000, z=20.5, frame=frame
@@ -56,13 +57,13 @@ def test_the_same_frame_by_another_number_is_no_difference(read_back, item, fram
 
 @pytest.mark.parametrize("frame", [SEA, SEA_INT, TERRAIN, TERRAIN_INT, 1])
 @pytest.mark.parametrize(("kind", "command"), [(MISSION, WAYPOINT), (RALLY, RALLY_POINT)])
-def test_a_height_above_something_else_is_refused(flight, read_back, item, frame, kind, command):
+def test_a_height_above_something_else_is_refused(read_back, item, frame, kind, command):
     with pytest.raises(flight.faults.Refused, match="instead of"):
         read_back(kind, item(command), frame=frame)
 
 
 @pytest.mark.parametrize("frame", [SEA, RELATIVE, NO_FRAME])
-def test_the_frame_of_an_item_without_a_place_means_nothing(flight, read_back, frame):
+def test_the_frame_of_an_item_without_a_place_means_nothing(read_back, frame):
     paced = flight.missions.Item(SPEED, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)
     read_back(MISSION, paced, frame=frame)
 
@@ -71,18 +72,18 @@ def test_a_fence_is_given_back_without_heights(read_back, item):
     read_back(FENCE, item(VERTEX), frame=SEA, z=0.0)
 
 
-def test_a_corner_of_a_fence_somewhere_else_is_refused(flight, read_back, item):
+def test_a_corner_of_a_fence_somewhere_else_is_refused(read_back, item):
     with pytest.raises(flight.faults.Refused, match="fence: item 0"):
         read_back(FENCE, item(VERTEX), frame=SEA, z=0.0, x=423_701_100)
 
 
-def test_a_rally_point_keeps_whole_metres(flight, read_back, item):
+def test_a_rally_point_keeps_whole_metres(read_back, item):
     read_back(RALLY, item(RALLY_POINT), z=20.0)
     with pytest.raises(flight.faults.Refused):
         read_back(RALLY, item(RALLY_POINT), z=18.0)
 
 
-def test_a_waypoint_keeps_centimetres(flight, read_back, item):
+def test_a_waypoint_keeps_centimetres(read_back, item):
     read_back(MISSION, item(WAYPOINT), z=20.49)
     with pytest.raises(flight.faults.Refused):
         read_back(MISSION, item(WAYPOINT), z=20.0)

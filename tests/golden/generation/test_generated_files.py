@@ -12,7 +12,7 @@ import pytest
 from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
-from mmrs_core.generation.targets import TARGETS
+from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import (
     MULTICOPTER,

@@ -13,8 +13,8 @@ from math import atan2, cos, degrees, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.testing.vehicle.body import Body, Vector
-from mmrs_core.testing.vehicle.missions import Item
+from mmrs_core.sitl.body import Body, Vector
+from mmrs_core.sitl.missions import Item
 
 METRES_PER_DEGREE = 111_319.49
 HORIZONTAL_RADIUS = 2.0

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.context import context_of
-from mmrs_core.generation.earth import degrees_of, metres, sea_level_of
-from mmrs_core.generation.vehicles import COPTER, ROVER, SUB, speed_of, vehicle_class
+from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, speed_of, vehicle_class
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, program, quad, robot_program, take_off, target_input
 

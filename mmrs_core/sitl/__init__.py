@@ -1,10 +1,10 @@
 """A simulated vehicle that speaks MAVLink like ArduPilot: for trying controllers without hardware.
 
-Run one with ``python -m mmrs_core.testing.vehicle --help``, or many in a test with `SimulatedVehicle`.
+Run one with ``python -m mmrs_core.sitl --help``, or many in a test with `SimulatedVehicle`.
 It knows no aerodynamics: it accelerates, flies straight lines, climbs, turns, and lands.
 """
 
-from mmrs_core.testing.vehicle.autopilot import Settings
-from mmrs_core.testing.vehicle.server import SimulatedVehicle
+from mmrs_core.sitl.autopilot import Settings
+from mmrs_core.sitl.server import SimulatedVehicle
 
 __all__ = ["Settings", "SimulatedVehicle"]

@@ -13,8 +13,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.testing.vehicle.autopilot import TYPES, Autopilot, Settings
-from mmrs_core.testing.vehicle.missions import MissionProtocol
+from mmrs_core.sitl.autopilot import TYPES, Autopilot, Settings
+from mmrs_core.sitl.missions import MissionProtocol
 
 Message = Any
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.generation.context import RobotContext
 from mmrs_core.generation.escaping import Call
-from mmrs_core.generation.wiring import Sampled, Unwired, Wired, wiring_of
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.wiring import Sampled, Unwired, Wired, wiring_of
 
 DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
 FEEDBACK = (BEHAVIOUR, "Feedback")

@@ -1,21 +1,24 @@
-"""The target itself: its files, and what it refuses."""
+"""The target mavlink-python: standalone controllers on top of pymavlink."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.resources import files as files_of
+from pathlib import Path
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
-from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.generation.mavlink.actions import action_losses
-from mmrs_core.generation.mavlink.movements import losses_of
-from mmrs_core.generation.mavlink.program import conditions_of, objects_in, robot_view, trace_of
-from mmrs_core.generation.safety import policies_of
+from mmrs_core.mavlink.actions import action_losses
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.movements import losses_of
+from mmrs_core.mavlink.program import conditions_of, objects_in, robot_view, trace_of
+from mmrs_core.mavlink.safety import policies_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
 
 RUNTIME = "mmrs_flight"
+RUNTIME_SOURCES = Path(str(files_of("mmrs_core"))) / "flight"
 TEMPLATES = shipped("codegen_templates") / "mavlink-python"
 
 
@@ -42,8 +45,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True)
     if objects:
         yield FileSpec("objects.py", "objects.py.jinja", common, once=True)
-    for path in sorted((TEMPLATES / RUNTIME).glob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.name}", f"{RUNTIME}/{path.name}")
+    for path in sorted(RUNTIME_SOURCES.glob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.name}", path.name, source=path)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.generation.wiring import Sampled, Unwired, Wired, wiring_of
+from mmrs_core.mavlink.wiring import Sampled, Unwired, Wired, wiring_of
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import photo, quad
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.mavlink.target import MAVLINK_PYTHON
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import threading
 
-from mmrs_core.testing.vehicle import Settings, SimulatedVehicle
+from mmrs_core.sitl import Settings, SimulatedVehicle
 
 
 def main() -> int:
     """Run the vehicle and return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m mmrs_core.testing.vehicle", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m mmrs_core.sitl", description=__doc__)
     add = parser.add_argument
     add("--port", type=int, default=14_550, help="UDP port of the ground station")
     add("--host", default="127.0.0.1", help="address of the ground station")

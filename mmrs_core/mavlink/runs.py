@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import acos, degrees, hypot
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram, Transition
-from mmrs_core.generation.context import RobotContext
+from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Position
 
 SHORTEST = 3

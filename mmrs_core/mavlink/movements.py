@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target
 from mmrs_core.contributions.rules import most_specific
-from mmrs_core.generation.context import RobotContext
-from mmrs_core.generation.earth import metres
 from mmrs_core.generation.escaping import Call
-from mmrs_core.generation.vehicles import ROVER
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.earth import metres
+from mmrs_core.mavlink.vehicles import ROVER
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Heading, Target, Transition
-from mmrs_core.generation.context import context_of
-from mmrs_core.generation.mavlink.runs import runs_of
+from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.runs import runs_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, photo, program, robot_program, target_input
 

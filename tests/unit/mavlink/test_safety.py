@@ -5,7 +5,7 @@ from math import inf
 
 import pytest
 
-from mmrs_core.generation.safety import clearance_of, escape_from, fence_of, policies_of, refuges
+from mmrs_core.mavlink.safety import clearance_of, escape_from, fence_of, policies_of, refuges
 from mmrs_core.scene import Area, AreaUse, Policy
 from mmrs_core.testing.programs import areas, program, quad, robot_program, target_input
 

@@ -9,12 +9,12 @@ from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, Transition
 from mmrs_core.behaviour.walk import in_order
 from mmrs_core.contributions.targets import TargetInput, TracedStep
-from mmrs_core.generation.context import RobotContext, context_of
 from mmrs_core.generation.escaping import Call
-from mmrs_core.generation.mavlink.actions import action_of
-from mmrs_core.generation.mavlink.movements import movement_of, objects_of, place_of
-from mmrs_core.generation.mavlink.runs import Run, runs_of
-from mmrs_core.generation.safety import (
+from mmrs_core.mavlink.actions import action_of
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
+from mmrs_core.mavlink.runs import Run, runs_of
+from mmrs_core.mavlink.safety import (
     areas_of,
     clearance_of,
     escape_from,

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.context import RobotContext, context_of
-from mmrs_core.generation.earth import degrees_of, metres, sea_level_of
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.generation.qgc.flight import sorties_of
-from mmrs_core.generation.qgc.items import Item, item_json
-from mmrs_core.generation.qgc.refusals import refusals
-from mmrs_core.generation.safety import areas_of, clearance_of, fence_of, refuges
-from mmrs_core.generation.vehicles import capability_of
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.qgc.flight import sorties_of
+from mmrs_core.mavlink.qgc.items import Item, item_json
+from mmrs_core.mavlink.qgc.refusals import refusals
+from mmrs_core.mavlink.safety import areas_of, clearance_of, fence_of, refuges
+from mmrs_core.mavlink.vehicles import capability_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Point, Position
 

@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping
 from math import atan2, degrees, dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.generation.context import RobotContext
-from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
-from mmrs_core.generation.mavlink.movements import turns_to
-from mmrs_core.generation.mavlink.runs import CORNER_SECONDS
-from mmrs_core.generation.qgc import items as qgc
-from mmrs_core.generation.qgc.items import Item
-from mmrs_core.generation.vehicles import ROVER
-from mmrs_core.generation.wiring import Wired, wiring_of
+from mmrs_core.mavlink.actions import DEVICE_ACTION
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.movements import turns_to
+from mmrs_core.mavlink.qgc import items as qgc
+from mmrs_core.mavlink.qgc.items import Item
+from mmrs_core.mavlink.runs import CORNER_SECONDS
+from mmrs_core.mavlink.vehicles import ROVER
+from mmrs_core.mavlink.wiring import Wired, wiring_of
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"

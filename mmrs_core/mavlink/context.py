@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.earth import degrees_of, metres
-from mmrs_core.generation.vehicles import VehicleClass, speed_of, vehicle_class
+from mmrs_core.mavlink.earth import degrees_of, metres
+from mmrs_core.mavlink.vehicles import VehicleClass, speed_of, vehicle_class
 from mmrs_core.scene import Frame, Point, Position, RobotType
 
 

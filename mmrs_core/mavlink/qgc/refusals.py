@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.context import RobotContext, context_of
-from mmrs_core.generation.earth import sea_level_of
-from mmrs_core.generation.mavlink.actions import DEVICE_ACTION
-from mmrs_core.generation.mavlink.movements import losses_of, objects_of
-from mmrs_core.generation.safety import explicit, policies_of
-from mmrs_core.generation.wiring import Sampled, Unwired, wiring_of
+from mmrs_core.mavlink.actions import DEVICE_ACTION
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.earth import sea_level_of
+from mmrs_core.mavlink.movements import losses_of, objects_of
+from mmrs_core.mavlink.safety import explicit, policies_of
+from mmrs_core.mavlink.wiring import Sampled, Unwired, wiring_of
 from mmrs_core.scene import Policy
 
 

@@ -1,1 +1,0 @@
-"""The target mavlink-python: standalone controllers on top of pymavlink."""
