@@ -45,8 +45,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True)
     if objects:
         yield FileSpec("objects.py", "objects.py.jinja", common, once=True)
-    for path in sorted(RUNTIME_SOURCES.glob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.name}", path.name, source=path)
+    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
