@@ -17,6 +17,8 @@ from .signing import sign
 
 Message = Any
 Found = TypeVar("Found")
+Observer = Callable[[Message, bool], None]
+"""Is given every message and whether it goes out; called from whatever thread sends or reads."""
 
 GROUND_SYSTEM = 255
 GROUND_COMPONENT = 190
@@ -62,6 +64,7 @@ class Link:
         self._changed = threading.Condition()
         self._latest: dict[str, tuple[Message, float]] = {}
         self._inboxes: list[tuple[frozenset[str], deque[Message]]] = []
+        self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
         self._beaten = float("-inf")
         self._open = True
@@ -75,8 +78,17 @@ class Link:
         self._thread.join()
         self._port.close()
 
+    def observe(self, observer: Observer) -> None:
+        """Have every message told from now on: what is sent, and what the vehicle says.
+
+        An observer must neither raise nor wait: it runs in the thread that reads, or that sends.
+        """
+        self._observers = (*self._observers, observer)
+
     def send(self, message: Message) -> None:
         """Send one message; where the port does not take it, it is lost like any on a poor link."""
+        for observer in self._observers:
+            observer(message, True)
         with self._sending:
             try:
                 self._mav.send(message)
@@ -161,6 +173,8 @@ class Link:
             self._meet(message)
         if message.get_srcSystem() != self.system or message.get_srcComponent() != self.component:
             return
+        for observer in self._observers:
+            observer(message, False)
         with self._changed:
             self._heard = self.clock.now()
             self.trouble = ""
