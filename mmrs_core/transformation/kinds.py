@@ -235,6 +235,11 @@ PLAIN_ROBOT = RobotKind(
         "BATTERY_LOW": "RETURN",
         "WAIT_TOO_LONG": "HOLD",
         "DEVICE_SILENT": "CONTINUE",
+        "POSITION_LOST": "HOLD",
+        "OBSTACLE": "HOLD",
+        "FENCE_BREACHED": "HOLD",
+        "VEHICLE_RESTARTED": "HOLD",
+        "LOG_FAILED": "HOLD",
     },
 )
 

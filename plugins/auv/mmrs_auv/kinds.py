@@ -78,5 +78,10 @@ AUV_KIND = RobotKind(
         "BATTERY_LOW": "SURFACE",
         "WAIT_TOO_LONG": "SURFACE",
         "DEVICE_SILENT": "SURFACE",
+        "POSITION_LOST": "SURFACE",
+        "OBSTACLE": "SURFACE",
+        "FENCE_BREACHED": "SURFACE",
+        "VEHICLE_RESTARTED": "SURFACE",
+        "LOG_FAILED": "SURFACE",
     },
 )

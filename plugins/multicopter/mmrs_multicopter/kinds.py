@@ -93,6 +93,11 @@ MULTICOPTER_KIND = RobotKind(
         "BATTERY_LOW": "RETURN",
         "WAIT_TOO_LONG": "RETURN",
         "DEVICE_SILENT": "RETURN",
+        "POSITION_LOST": "LAND",
+        "OBSTACLE": "HOLD",
+        "FENCE_BREACHED": "RETURN",
+        "VEHICLE_RESTARTED": "HOLD",
+        "LOG_FAILED": "RETURN",
     },
 )
 
