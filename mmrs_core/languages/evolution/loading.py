@@ -7,10 +7,10 @@ from functools import partial
 
 from mmrs_core.diagnostics import Severity
 from mmrs_core.errors import UnreadableError
-from mmrs_core.languages.evolution.migrating import TYPE, Lost, Migrating, class_of, every_node
+from mmrs_core.languages.evolution.migrating import Lost, Migrating, class_of, every_node
 from mmrs_core.languages.evolution.old_xmi import OldXmi
 from mmrs_core.languages.json_form.reader import JsonReader
-from mmrs_core.languages.json_form.stream import LANGUAGES, ROOTS
+from mmrs_core.languages.json_form.stream import LANGUAGES, ROOTS, TYPE
 from mmrs_core.languages.json_form.text import Text
 from mmrs_core.languages.json_form.tree import Node, Tree
 from mmrs_core.languages.json_form.tree_stream import TreeStream

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.evolution.renaming import Kind, Renaming, after
+from mmrs_core.languages.json_form.stream import TYPE, is_own
 from mmrs_core.languages.json_form.tree import Leaf, Node, Number
 from mmrs_core.languages.metaclass import Feature, Metaclass
 from mmrs_core.languages.registry import Registry
-
-TYPE = "$type"
 
 _Held = tuple[Node, Feature | None, str]
 """An object, the feature that holds it, and where it stands."""
@@ -80,7 +79,7 @@ class Migrating:
                 self._finals[id(node)] = final
             is_foreign = self._is_foreign(node)
             for key, value in list(node.members.items()):
-                if key.startswith("$") and not key.startswith("$$"):
+                if is_own(key):
                     continue
                 feature = self._feature(node, final, key)
                 node.members[key] = arranged = value if is_foreign else _arranged(value, feature)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from mmrs_core.languages.json_form.stream import TYPE, key_of
 from mmrs_core.languages.json_form.tree import Leaf, Node, Words
 from mmrs_core.languages.xmi.events import XMI, XSI, Document
 
@@ -77,7 +78,7 @@ class OldXmi:
         kind = next((self._expanded(named[key]) for key in _TYPES if key in named), "")
         if is_root:
             kind = f"{ns_uri}#{name}"
-        node = Node({"$type": kind} if kind else {}, self._document.line)
+        node = Node({TYPE: kind} if kind else {}, self._document.line)
         value: object = node
         known = not kind or self._is_known(kind.rpartition("#")[0])
         if known and "href" in named and not is_root:
@@ -98,7 +99,7 @@ class OldXmi:
             self.roots.append(value)
             return
         members = self._open[-1][1].members
-        key = f"${name}" if name.startswith("$") else name
+        key = key_of(name)
         before = members.setdefault(key, [])
         if not isinstance(before, list):
             before = members[key] = [before]
@@ -116,5 +117,5 @@ def _said(named: dict[str, str]) -> dict[str, object]:
             said["$id"] = text
         elif name not in _HARMLESS and name not in _TYPES and name != f"{XSI} nil":
             local = name.rpartition(" ")[2]
-            said[f"${local}" if local.startswith("$") else local] = Words(text)
+            said[key_of(local)] = Words(text)
     return said

@@ -20,6 +20,7 @@ from mmrs_core.languages.json_form.stream import (
     Place,
     Stream,
     is_own,
+    key_of,
     skip,
 )
 from mmrs_core.languages.json_form.tree import Words
@@ -55,10 +56,7 @@ class Way(NamedTuple):
 
 def ways_of(metaclass: Metaclass) -> Mapping[str, Way]:
     """Return how the features of a class that has elements are read, by their keys."""
-    return {
-        f"${each.name}" if each.name.startswith("$") else each.name: _way(metaclass, each)
-        for each in metaclass.features
-    }
+    return {key_of(each.name): _way(metaclass, each) for each in metaclass.features}
 
 
 def _way(metaclass: Metaclass, feature: Feature) -> Way:

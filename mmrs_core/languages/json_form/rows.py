@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from mmrs_core.languages.datatypes import DataType
 from mmrs_core.languages.element import Element
+from mmrs_core.languages.json_form.stream import key_of
 from mmrs_core.languages.json_form.values import EXACT, is_character, quoted
 from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass
 from mmrs_core.languages.values.real import (
@@ -54,7 +55,7 @@ def _rows(metaclass: Metaclass) -> Iterator[Row]:
     slots = metaclass.implementation._mmrs_slots
     for feature in metaclass.features:
         if feature.stored:
-            name = f"${feature.name}" if feature.name.startswith("$") else feature.name
+            name = key_of(feature.name)
             quiet = not (feature.nullable or feature.unsettable)
             usual, text = _usual(feature)
             yield Row(feature, slots[feature.attribute].__get__, f"{quoted(name)}: ", quiet, usual, text)

@@ -47,6 +47,15 @@ class Stream(Protocol):
         """Return the text of an object, given its bracket and what follows it."""
 
 
+def key_of(name: str) -> str:
+    """Return the key under which a feature stands: a name that begins with a dollar sign has one more.
+
+    >>> [key_of(name) for name in ("speed", "$speed")]
+    ['speed', '$$speed']
+    """
+    return f"${name}" if name.startswith("$") else name
+
+
 def is_own(key: str) -> bool:
     """Return whether a key is one of this form, and not the name of a feature.
 

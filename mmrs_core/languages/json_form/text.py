@@ -299,7 +299,7 @@ def _as_utf8(data: bytes, file: str) -> bytes:
         return data.decode(encoding).encode()
     except UnicodeDecodeError as fault:
         line = data.count(b"\n", 0, fault.start) + 1
-        raise UnreadableError.of("FIL007", "not readable as UTF-8 text", file, line) from None
+        raise UnreadableError.of("FIL007", f"not readable as {encoding.upper()} text", file, line) from None
 
 
 def is_json(file: str) -> bool:

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Callable, Iterable
 
-from mmrs_core.languages.json_form.stream import END, LIST, NUMBER, OBJECT, WORD, Event, Place
+from mmrs_core.languages.json_form.stream import END, LIST, NUMBER, OBJECT, TYPE, WORD, Event, Place
 from mmrs_core.languages.json_form.text import Text
 
 _STRING = rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"'
@@ -57,7 +57,7 @@ class Node:
     @property
     def kind(self) -> str:
         """The name of its class, without the language; empty where it does not say it."""
-        claimed = self.members.get("$type")
+        claimed = self.members.get(TYPE)
         return re.split("[#:]", claimed)[-1].removeprefix("//") if isinstance(claimed, str) else ""
 
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from xml.parsers import expat
 
 from mmrs_core.languages.element import Unknown
-from mmrs_core.languages.json_form.stream import END, LANGUAGES, OBJECT, texts_in
+from mmrs_core.languages.json_form.stream import END, LANGUAGES, OBJECT, TYPE, texts_in
 from mmrs_core.languages.json_form.text import Text
 from mmrs_core.languages.json_form.tree import Node, tree_of
 from mmrs_core.languages.xmi.unknowns import needed, text_of
 
-_TYPE = "$type"
 XML, SCOPE = "$xml", "$namespaces"
 DEEPEST_KEPT = 100
 """Levels of objects and lists that are kept inside an element of an unknown class."""
@@ -85,7 +84,7 @@ def kept_languages(text: Text) -> frozenset[str]:
             claims |= {claimed.rpartition("#" if "#" in claimed else ":")[0]} if xml else set()
         elif sort >= OBJECT:
             opened.append(["", ""])
-        elif key in (_TYPE, XML):
+        elif key in (TYPE, XML):
             opened[-1][key == XML] = said
     return frozenset(languages.get(claim, claim) for claim in claims)
 
@@ -128,7 +127,7 @@ def stated(element: Unknown, typed: Callable[[str], str] = str) -> Node:
         top = tree_of(element._mmrs_json)
         return _retyped(top, lambda name: typed(_expanded(name, element._mmrs_scope)))
     scope = Node(dict(needed(element._mmrs_xml, element._mmrs_scope)))
-    return Node({_TYPE: typed(element._mmrs_type), XML: element._mmrs_xml, SCOPE: scope})
+    return Node({TYPE: typed(element._mmrs_type), XML: element._mmrs_xml, SCOPE: scope})
 
 
 def _expanded(name: str, languages: Mapping[str, str]) -> str:
@@ -139,7 +138,7 @@ def _expanded(name: str, languages: Mapping[str, str]) -> str:
 def _retyped(node: Node, typed: Callable[[str], str]) -> Node:
     """Return a copy of an object in which every type is written another way."""
     members = {
-        key: typed(value) if key == _TYPE and isinstance(value, str) else _within(value, typed)
+        key: typed(value) if key == TYPE and isinstance(value, str) else _within(value, typed)
         for key, value in node.members.items()
     }
     return Node(members, node.line)

@@ -8,7 +8,7 @@ from pathlib import Path
 from mmrs_core.languages.element import Element, Unknown, held, holds, metaclass_of, path_of
 from mmrs_core.languages.json_form.layout import formatted, laid_out
 from mmrs_core.languages.json_form.rows import Row, rows_of
-from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE
+from mmrs_core.languages.json_form.stream import ID, LANGUAGES, PLACES, REF, ROOTS, TYPE, key_of
 from mmrs_core.languages.json_form.unknown import stated
 from mmrs_core.languages.json_form.values import quoted, written
 from mmrs_core.languages.metaclass import Feature, Metaclass, is_null
@@ -206,7 +206,7 @@ class JsonWriter:
 
 
 def _key(feature: Feature) -> str:
-    return quoted(f"${feature.name}" if feature.name.startswith("$") else feature.name)
+    return quoted(key_of(feature.name))
 
 
 def _entries(pairs: Iterable[tuple[str, str]]) -> str:
