@@ -6,7 +6,8 @@ Times are seconds of the run's clock throughout.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId
@@ -23,6 +24,10 @@ class RobotState:
         position: (east, north, up), metres. speed: metres per second. heading: degrees clockwise
             from north.
         energy: joules left; inf for a wired robot, None where nothing is known.
+        charge: part of the battery that is left, 0 to 1; None where nothing is known.
+        wind: metres per second; None where nothing is known.
+        detected: names of what the robot has detected so far.
+        answers: what the operator has answered so far, by question.
     """
 
     time: float
@@ -30,6 +35,10 @@ class RobotState:
     speed: float
     heading: float
     energy: float | None
+    charge: float | None = None
+    wind: float | None = None
+    detected: frozenset[str] = frozenset()
+    answers: Mapping[str, bool] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,8 +119,48 @@ class Backend(Protocol):
 
         Args:
             now: time at which it begins.
-            response: a literal of PolicyResponse: how.
+            response: a literal of PolicyResponse: how; ``NOTHING``: hands off, somebody else has the robot.
+
+        In real time `finished` then says when the robot has obeyed, and `fault` why it cannot.
         """
+        ...
+
+
+@runtime_checkable
+class Preparing(Protocol):
+    """What a backend may have beside the rest: robots that take time to get ready.
+
+    A run in real time begins when all its robots are ready, or not at all.
+    """
+
+    def prepare(self, now: float) -> None:
+        """Begin to get the robot ready; `finished` says when it is, `fault` why it cannot be."""
+        ...
+
+
+@runtime_checkable
+class Pausable(Protocol):
+    """What a backend may have beside the rest: a robot that can halt in the middle of anything."""
+
+    def pause(self, now: float) -> None:
+        """Begin to halt; idempotent."""
+        ...
+
+    def resume(self, now: float) -> None:
+        """Go on with what was begun before; idempotent."""
+        ...
+
+    def paused(self, now: float) -> bool:
+        """Return whether the robot halts, and has confirmed it."""
+        ...
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """What a backend may have beside the rest: links and threads that end with the run."""
+
+    def close(self) -> None:
+        """Release what it holds; the robot keeps whatever state it is in."""
         ...
 
 
@@ -130,6 +179,32 @@ class Recorder(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class Live:
+    """What backends of a run in real time may use beside the rest.
+
+    Attributes:
+        clock: of the run.
+        wake: has the interpreter look at this robot at once; to be called, from any thread, whenever
+            the robot's answers may have changed.
+        say: tells people something about this robot, from any thread.
+        run: identifier of the run.
+        folder: of the logs; None where none are kept.
+        link: how the robot is reached, as in ``--connect``; empty where nothing was said.
+        passed: moves that this robot has ended, in order, before the run was resumed.
+        shared: what backends of the same run share, by names of their own; empty at first.
+    """
+
+    clock: Clock
+    wake: Callable[[], None]
+    say: Callable[[str], None]
+    run: str
+    folder: Path | None = None
+    link: str = ""
+    passed: tuple[str, ...] = ()
+    shared: dict[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class BackendInput:
     """All that a backend may use.
 
@@ -137,6 +212,7 @@ class BackendInput:
         options: as in ``--backend-option``.
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn; empty where none was given.
+        live: of a run in real time; None in simulated time.
     """
 
     program: Program
@@ -148,6 +224,7 @@ class BackendInput:
     options: Mapping[str, str]
     policies: tuple[Policy, ...] = ()
     areas: tuple[Area, ...] = ()
+    live: Live | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,6 +246,10 @@ class BackendFactory:
     simulated: bool = False
 
 
+def _always(state: RobotState) -> bool:
+    return True
+
+
 @dataclass(frozen=True, slots=True)
 class Condition:
     """A function that decides Choices.
@@ -176,10 +257,12 @@ class Condition:
     Attributes:
         identifier: as in Choice.conditionIdentifier.
         holds: whether it holds for a robot in that state. What it raises is a fault of the robot.
+        known: whether it can be decided yet; until then the robot waits, as it does for slots.
     """
 
     identifier: str
     holds: Callable[[RobotState], bool]
+    known: Callable[[RobotState], bool] = field(default=_always)
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,22 +281,6 @@ class CommandId:
 
 
 @dataclass(frozen=True, slots=True)
-class SlotCommand:
-    """Has the owners of slots set them; the same command may arrive several times.
-
-    Attributes:
-        slots: (owner, slot name), at least one.
-        active: the value to set, never to toggle.
-        lamport: logical time of the notify.
-    """
-
-    id: CommandId
-    slots: tuple[SlotId, ...]
-    active: bool
-    lamport: int
-
-
-@dataclass(frozen=True, slots=True)
 class SlotState:
     """The state of a slot.
 
@@ -229,17 +296,50 @@ class SlotState:
     writer: str = ""
 
 
-class Bus(Protocol):
-    """Carries notifies between robots. Only a slot's owner changes it; waits look at its state."""
+class Delivery(Protocol):
+    """A notify on its way to the owners of its slots, in two steps.
 
-    def notify(self, command: SlotCommand) -> None:
-        """Deliver a command; return when every owner has applied and acknowledged it.
+    First every owner is asked: it keeps the slots for this sender and tells its logical time, so that
+    the sender can record the notify after all that has happened to them. Then it is sent.
+    """
 
-        Owners apply a command once, however often it arrives. Owners that share the bus apply it in
-        one instant.
+    @property
+    def lamport(self) -> int | None:
+        """Return the least logical time that the notify may have; None until every owner has answered."""
+        ...
+
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """Return the owners that have still to answer or, once it was sent, to acknowledge."""
+        ...
+
+    def send(self, lamport: int) -> None:
+        """Have every owner apply it; called once, after the notify was recorded with that time.
+
+        Sent again until all have acknowledged, whether or not anybody still waits for that.
 
         Raises:
-            LinkLostError: if an owner does not acknowledge in time; names each such owner.
+            ValueError: if the time is less than `lamport`, or that is not known yet.
+        """
+        ...
+
+    def withdraw(self) -> None:
+        """Give it up: owners that were asked are free again; what was sent cannot be called back."""
+        ...
+
+
+class Bus(Protocol):
+    """Carries notifies between robots. Only a slot's owner changes it; waits look at its state.
+
+    A slot that is kept for a sender is neither passed nor set by others until that sender has sent
+    or withdrawn its notify, or is lost.
+    """
+
+    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+        """Ask the owners of slots for setting them; returns at once.
+
+        Owners that share a process answer, and apply what is sent, before the call returns, in one
+        instant. A command is applied once, however often it arrives.
         """
         ...
 
@@ -247,18 +347,43 @@ class Bus(Protocol):
         """Return the state of a slot, as far as it is known here; one's own is always known."""
         ...
 
-    def passed(self, slots: Iterable[SlotId], lamport: int) -> None:
-        """Record that a wait for these slots was passed, so that later notifies are ordered after it."""
+    def passed(self, slots: Iterable[SlotId], lamport: int) -> bool:
+        """Return whether a wait for these own slots is passed at that time, and if so keep the time.
+
+        To be called before the step is recorded: notifies of these slots are then ordered after it.
+        False where one is inactive, or kept for a sender, or something happened to it since that time.
+        """
+        ...
+
+    def lost(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that will set no more slots or cannot be reached."""
+        ...
+
+    def leave(self, robot: str) -> None:
+        """Tell everybody that a robot of this process will set no more slots; idempotent."""
+        ...
+
+    def on_change(self, callback: Callable[[], None]) -> None:
+        """Have a function called, from any thread, when something may have changed; it must not block."""
         ...
 
 
 class Clock(Protocol):
     """The time of a run."""
 
+    @property
+    def passes_by_itself(self) -> bool:
+        """Return whether it is worth waiting for what nobody can foresee: time goes on by itself."""
+        ...
+
     def now(self) -> float:
         """Return the seconds since the run began."""
         ...
 
     def sleep_until(self, time: float) -> None:
-        """Return when that time has come."""
+        """Return when that time has come, or earlier if somebody calls `wake`."""
+        ...
+
+    def wake(self) -> None:
+        """End the present or next sleep at once; from any thread."""
         ...

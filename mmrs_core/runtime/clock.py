@@ -1,10 +1,19 @@
-"""The clock of simulated runs."""
+"""The clocks of runs: simulated time, which jumps, and real time, which passes by itself."""
 
 from __future__ import annotations
+
+import time
+from math import inf
+from queue import Empty, SimpleQueue
+
+LONGEST_SLEEP = 3600.0
+"""Seconds after which a sleeper looks around in any case; queues take no infinite time."""
 
 
 class SimulatedClock:
     """A clock that stands still until it is told to go on; time costs nothing."""
+
+    passes_by_itself = False
 
     def __init__(self) -> None:
         self._now = 0.0
@@ -16,3 +25,46 @@ class SimulatedClock:
     def sleep_until(self, time: float) -> None:
         """Jump to that time; a time that has passed changes nothing."""
         self._now = max(self._now, time)
+
+    def wake(self) -> None:
+        """Do nothing: nobody sleeps in simulated time."""
+
+
+class RealClock:
+    """Counts seconds of the run by the monotonic clock, which nobody can put forward or back.
+
+    Attributes:
+        speedup: seconds of the run that pass in a second, for vehicles that are simulated.
+    """
+
+    passes_by_itself = True
+
+    def __init__(self, speedup: float = 1.0, start: float = 0.0) -> None:
+        """Begin at `start` seconds of the run.
+
+        Raises:
+            ValueError: if time would stand still or go back.
+        """
+        if not 0.0 < speedup < inf:
+            raise ValueError(f"speed-up {speedup} is not a positive number")
+        self.speedup = speedup
+        self._start, self._zero = start, time.monotonic()
+        self._wakes: SimpleQueue[None] = SimpleQueue()
+
+    def now(self) -> float:
+        """Return the seconds since the run began."""
+        return self._start + (time.monotonic() - self._zero) * self.speedup
+
+    def sleep_until(self, time: float) -> None:
+        """Return when that time has come, or as soon as somebody wakes the sleeper."""
+        left = (time - self.now()) / self.speedup
+        try:
+            self._wakes.get(timeout=min(max(left, 0.0), LONGEST_SLEEP))
+            while True:
+                self._wakes.get_nowait()
+        except Empty:
+            return
+
+    def wake(self) -> None:
+        """End the present sleep, or the next one if nobody sleeps; from any thread or signal handler."""
+        self._wakes.put(None)
