@@ -23,7 +23,6 @@ from mmrs_core.contributions.execution import (
     CommandId,
     Condition,
     Fault,
-    SlotCommand,
 )
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.peers import Peers
@@ -178,23 +177,37 @@ class _Run:
     def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
         while not robot.point.is_final and self._made < self._terms.steps:
             step = robot.due(self._clock.now(), self._peers)
-            if step is None:
+            if step is None or not self._order(robot, step):
                 return
             yield from self._make(robot, step)
 
-    def _make(self, robot: RunningRobot, step: Step) -> Iterator[StepRecord]:
+    def _order(self, robot: RunningRobot, step: Step) -> bool:
+        """Give a robot the logical time of a step; False: it cannot be made yet."""
+        least = 0
+        if step.sets:
+            if robot.delivery is None:
+                id = CommandId(self._terms.run, robot.id, self._terms.incarnation, robot.number)
+                robot.delivery = self._bus.prepare(id, step.sets, step.active)
+            if robot.delivery.lamport is None:
+                return False
+            least = robot.delivery.lamport
         waits = robot.awaited() if step.label in ("take", "choose") else ()
-        clocks = (self._bus.state(slot).lamport for slot in (*step.sets, *waits))
-        robot.lamport = max((robot.lamport, *clocks)) + 1
+        clocks = (self._bus.state(slot).lamport for slot in waits)
+        lamport = max((robot.lamport + 1, least, *(clock + 1 for clock in clocks)))
+        if waits and not self._bus.passed(waits, lamport):
+            return False
+        robot.lamport = lamport
+        return True
+
+    def _make(self, robot: RunningRobot, step: Step) -> Iterator[StepRecord]:
         record = self._record(robot, step)
         if self._terms.observe is not None:
             self._terms.observe(record)
         yield record
-        self._bus.passed(waits, robot.lamport)
         robot.follow(step)
         self._made += 1
-        if step.label == "ntf":
-            self._deliver(robot, step, record.seq)
+        if step.sets:
+            self._deliver(robot, step)
         if robot.point.is_final:
             self._retire(robot)
 
@@ -212,12 +225,8 @@ class _Run:
             step.slot,
         )
 
-    def _deliver(self, robot: RunningRobot, step: Step, sequence: int) -> None:
-        id = CommandId(self._terms.run, robot.id, self._terms.incarnation, sequence)
-        try:
-            self._bus.notify(SlotCommand(id, step.sets, step.active, robot.lamport))
-        except LinkLostError as error:
-            robot.pending = Fault("PEER_LOST", str(error))
+    def _deliver(self, robot: RunningRobot, step: Step) -> None:
+        robot.send()
         for owner, _ in step.sets:
             if owner in self._by_id:
                 heappush(self._ready, self._by_id[owner])
@@ -225,6 +234,7 @@ class _Run:
     def _retire(self, robot: RunningRobot) -> None:
         """Note that a robot makes no further step, and have those look that may wait for it."""
         self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
+        self._bus.leave(robot.id)
         if robot.point.phase is Phase.FAILED:
             self._stop(robot, robot.response)
         for order, other in enumerate(self._robots):
@@ -236,7 +246,7 @@ class _Run:
         event = robot.next_event(now)
         if event is None or event <= now:
             event = now + PACE
-        if not self._whole and robot.point.phase is Phase.OUT:
+        if robot.delivery is not None or (not self._whole and robot.point.phase is Phase.OUT):
             event = min(event, now + PACE)
         return event
 

@@ -8,7 +8,7 @@ from math import inf
 from mmrs_core.behaviour.policies import patience, response_to
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
-from mmrs_core.contributions.execution import Backend, Bus, Condition, Fault
+from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.scene import Policy
@@ -24,7 +24,8 @@ class RunningRobot:
         deadline: when its present wait ends by a fault; inf: never.
         lacking: names of the slots that it waited for when last looked at.
         fault: what ended its mission; None as long as nothing did.
-        pending: a fault that it has yet to record.
+        delivery: a notify that owners of slots have still to answer or to acknowledge; None: there is none.
+        number: of its next step.
         response: how it was told to stop.
     """
 
@@ -44,14 +45,16 @@ class RunningRobot:
         self.deadline = inf
         self.lacking: tuple[str, ...] = ()
         self.fault: Fault | None = None
-        self.pending: Fault | None = None
+        self.delivery: Delivery | None = None
+        self.number = 0
         self.response = ""
         self._program, self._bus, self._conditions = program, bus, conditions
         self._policies = (*program.policies, *policies)
         self._begun = False
         self._waits_since: float | None = None
         self._peer_lost_at: float | None = None
-        self._number = 0
+        self._sent = False
+        self._silent_since: float | None = None
 
     @property
     def move(self) -> Move:
@@ -65,8 +68,8 @@ class RunningRobot:
 
     def take_number(self) -> int:
         """Return the number of its next step, and count on."""
-        self._number += 1
-        return self._number - 1
+        self.number += 1
+        return self.number - 1
 
     def awaited(self) -> tuple[SlotId, ...]:
         """Return the slots that must be active before it leaves its move."""
@@ -86,14 +89,21 @@ class RunningRobot:
         The only place where a fault of a robot, its device, its link or a condition becomes a step.
         """
         try:
-            found = self.pending or self._due(now, peers)
+            found = self._unanswered(now) or self._due(now, peers)
         except LinkLostError as error:
             found = Fault("LINK_LOST", str(error))
         if isinstance(found, Fault):
+            self._give_up()
             self.fault = found
             self.response = response_to(found.which, self._effective_policies())
             return fault(self._program, self.point, str(found))
         return found
+
+    def send(self) -> None:
+        """Send the notify that was recorded last."""
+        if self.delivery is not None:
+            self._sent = True
+            self.delivery.send(self.lamport)
 
     def next_event(self, now: float) -> float | None:
         """Return when something may have changed; inf: only slots can wake it; None: unknown."""
@@ -102,7 +112,29 @@ class RunningRobot:
         event = self.backend.next_event(now)
         return min(event, self.deadline) if event is not None else None
 
+    def _unanswered(self, now: float) -> Fault | None:
+        """Return the fault that ends waiting for owners of slots; None: they have answered, or still may."""
+        if self.delivery is None or not self.delivery.waiting:
+            self._silent_since = None
+            if self._sent:
+                self.delivery, self._sent = None, False
+            return None
+        if self._silent_since is None:
+            self._silent_since = now
+        found = self.backend.fault(now)
+        if found is not None and not self._bears(found):
+            return found
+        found = Fault("PEER_LOST", f"no answer from {', '.join(self.delivery.waiting)}")
+        return found if now - self._silent_since >= self._patience(found) else None
+
+    def _give_up(self) -> None:
+        if self.delivery is not None:
+            self.delivery.withdraw()
+        self.delivery, self._sent, self._silent_since = None, False, None
+
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
+        if self.delivery is not None and self.delivery.waiting:
+            return None
         phase = self.point.phase
         if phase is Phase.READY:
             return self._next()

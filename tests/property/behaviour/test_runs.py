@@ -145,10 +145,10 @@ class Stuttering(InProcessBus):
         super().__init__(program)
         self.sent = []
 
-    def notify(self, command):
+    def apply(self, *command):
         self.sent.append(command)
         for each in (command, *self.sent, command):
-            super().notify(each)
+            super().apply(*each)
 
 
 @given(programs(), answers())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.contributions.execution import CommandId, SlotCommand, SlotState
+from mmrs_core.contributions.execution import CommandId, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.small_programs import program, robot
@@ -17,8 +17,12 @@ def bus():
     return InProcessBus(program(robot("a", [], slots=("s",)), robot("b", [], slots=("s",))))
 
 
-def command(number, *slots, active=True, sender="b", incarnation="0", lamport=1):
-    return SlotCommand(CommandId("run", sender, incarnation, number), slots, active, lamport)
+def notify(bus, number, *slots, active=True, sender="b", incarnation="0", lamport=1):
+    delivery = bus.prepare(CommandId("run", sender, incarnation, number), slots, active)
+    assert delivery.lamport is not None
+    delivery.send(max(lamport, delivery.lamport))
+    assert delivery.waiting == ()
+    return delivery
 
 
 def test_slots_are_inactive_at_the_beginning(bus):
@@ -26,41 +30,61 @@ def test_slots_are_inactive_at_the_beginning(bus):
 
 
 def test_a_command_sets_all_its_slots(bus):
-    bus.notify(command(0, A, B))
+    notify(bus, 0, A, B)
     assert bus.state(A).active
     assert bus.state(B) == SlotState(active=True, version=1, lamport=1, writer="b")
 
 
 def test_a_command_that_arrives_twice_is_applied_once(bus):
-    bus.notify(command(0, A))
-    bus.notify(command(1, A, active=False))
-    bus.notify(command(0, A))
-    bus.notify(command(1, A, active=False))
+    first, second = notify(bus, 0, A), notify(bus, 1, A, active=False)
+    first.send(first.lamport)
+    second.send(second.lamport)
     assert not bus.state(A).active
     assert bus.state(A).version == 2
 
 
 def test_a_restarted_sender_may_count_from_the_beginning_again(bus):
-    bus.notify(command(5, A))
-    bus.notify(command(0, A, active=False, incarnation="1"))
+    notify(bus, 5, A)
+    notify(bus, 0, A, active=False, incarnation="1")
     assert not bus.state(A).active
 
 
 def test_setting_a_slot_that_is_active_keeps_it_active(bus):
-    bus.notify(command(0, A))
-    bus.notify(command(1, A))
+    notify(bus, 0, A)
+    notify(bus, 1, A)
     assert bus.state(A).active
 
 
 def test_a_command_with_an_unknown_slot_changes_nothing(bus):
     with pytest.raises(InternalError, match=r"c\.s: no such slot"):
-        bus.notify(command(0, A, ("c", "s")))
+        notify(bus, 0, A, ("c", "s"))
     assert not bus.state(A).active
 
 
-def test_a_wait_that_was_passed_orders_later_notifies_after_it(bus):
-    bus.notify(command(0, A, lamport=3))
-    bus.passed((A,), 7)
-    assert bus.state(A).lamport == 7
-    bus.passed((A,), 4)
-    assert bus.state(A).lamport == 7
+def test_a_notify_is_ordered_after_all_that_has_happened_to_its_slots(bus):
+    notify(bus, 0, A, lamport=3)
+    assert bus.passed((A,), 7)
+    delivery = bus.prepare(CommandId("run", "b", "0", 1), (A, B), False)
+    assert delivery.lamport == 8
+    with pytest.raises(ValueError, match="logical time 7"):
+        delivery.send(7)
+
+
+def test_a_wait_is_not_passed_at_a_time_at_which_its_slot_was_not_set_yet(bus):
+    notify(bus, 0, A, lamport=3)
+    assert not bus.passed((A,), 3)
+    assert bus.state(A).lamport == 3
+
+
+def test_a_wait_is_not_passed_before_all_its_slots_are_active(bus):
+    notify(bus, 0, A)
+    assert not bus.passed((A, B), 9)
+    assert bus.state(A).lamport == 1
+
+
+def test_a_robot_that_has_left_is_lost_and_those_who_look_are_told(bus):
+    told = []
+    bus.on_change(lambda: told.append(bus.lost(("a", "b"))))
+    bus.leave("b")
+    bus.leave("b")
+    assert told == [("b",)]
