@@ -5,6 +5,7 @@ It knows no aerodynamics: it accelerates, flies straight lines, climbs, turns, a
 """
 
 from mmrs_core.sitl.autopilot import Settings
+from mmrs_core.sitl.faults import FAULTS, Faults
 from mmrs_core.sitl.server import SimulatedVehicle
 
-__all__ = ["Settings", "SimulatedVehicle"]
+__all__ = ["FAULTS", "Faults", "Settings", "SimulatedVehicle"]

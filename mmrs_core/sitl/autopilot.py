@@ -21,6 +21,8 @@ HORIZONTAL_RADIUS = 2.0
 CLOSE = 0.2
 RETURN_HEIGHT = 15.0
 TRACK_SECONDS = 0.5
+EKF_SECONDS = 1.0
+FALL_SPEED = 10.0
 
 ACCEPTED = mavlink.MAV_RESULT_ACCEPTED
 DENIED = mavlink.MAV_RESULT_DENIED
@@ -28,9 +30,27 @@ FAILED = mavlink.MAV_RESULT_FAILED
 UNSUPPORTED = mavlink.MAV_RESULT_UNSUPPORTED
 
 MODES: Mapping[str, Mapping[str, int]] = {
-    "copter": {"stabilize": 0, "auto": 3, "guided": 4, "return": 6, "land": 9, "brake": 17},
-    "sub": {"stabilize": 0, "auto": 3, "guided": 4, "surface": 9, "brake": 16},
-    "rover": {"stabilize": 0, "auto": 10, "guided": 15, "return": 11, "brake": 4},
+    "copter": {
+        "stabilize": 0,
+        "alt_hold": 2,
+        "auto": 3,
+        "guided": 4,
+        "loiter": 5,
+        "return": 6,
+        "land": 9,
+        "brake": 17,
+        "smart_return": 21,
+    },
+    "sub": {"stabilize": 0, "alt_hold": 2, "auto": 3, "guided": 4, "surface": 9, "loiter": 16, "brake": 16},
+    "rover": {
+        "stabilize": 0,
+        "loiter": 5,
+        "auto": 10,
+        "return": 11,
+        "smart_return": 12,
+        "guided": 15,
+        "brake": 4,
+    },
 }
 TYPES = {"copter": mavlink.MAV_TYPE_QUADROTOR, "sub": mavlink.MAV_TYPE_SUBMARINE, "rover": 10}
 _DEVICES = {2000, 2001, 203, 183, 181, 182, 211, 195, 197, 115, 1000, 2500, 2501}
@@ -78,6 +98,13 @@ class Autopilot:
         visited: (seconds, item) of every mission item that it has left behind.
         track: (seconds, north, east, up) of where it was while armed, every half a second.
         parameters: by name.
+        modes: (seconds, number) of every change of the mode, whoever changed it.
+        texts: (severity, text) of what it has to say, oldest first; who sends them takes them off.
+        photos: of photos taken that are still to be told; who tells them takes them off.
+        booted: seconds at which it was last switched on.
+        located: whether it has a position. unfit: why it does not let itself be armed.
+        obstacle: metres and degrees clockwise from its nose. breached: whether it is out of its fence.
+        silent: commands that it does not answer. clock_error: seconds by which its clocks are wrong.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -92,14 +119,35 @@ class Autopilot:
         self.history: list[tuple[float, int, tuple[float, ...]]] = []
         self.visited: list[tuple[float, int]] = []
         self.track: list[tuple[float, float, float, float]] = []
-        self.parameters: dict[str, float] = {"FS_GCS_ENABLE": 0.0, "FS_ACTION": 0.0, "FENCE_ENABLE": 0.0}
+        self.parameters: dict[str, float] = {
+            "FS_GCS_ENABLE": 0.0,
+            "FS_ACTION": 0.0,
+            "FS_EKF_ACTION": 1.0,
+            "FENCE_ENABLE": 0.0,
+            "FENCE_ACTION": 1.0,
+        }
         self.stores: dict[int, list[Item]] = {0: [], 1: [], 2: []}
+        self.modes: list[tuple[float, int]] = []
+        self.texts: list[tuple[int, str]] = []
+        self.photos: list[tuple[float, float, float]] = []
+        self.booted = 0.0
+        self.located = True
+        self.unfit = ""
+        self.obstacle: tuple[float, float] | None = None
+        self.breached = False
+        self.breaches = 0
+        self.silent = settings.silent
+        self.clock_error = 0.0
+        self.camera_works = True
+        self.taken = 0
         self._held = 0.0
         self._grounded_since = 0.0
+        self._lost_for = 0.0
 
     def advance(self, seconds: float) -> None:
         """Let time pass."""
         self.time += seconds
+        self._heed_position(seconds)
         if self.armed:
             self.energy = max(0.0, self.energy - seconds / self.settings.energy)
             _PILOTS.get(self._mode_name(), Autopilot._brake)(self, seconds)
@@ -109,13 +157,24 @@ class Autopilot:
                 self.track.append((self.time, *self.body.position))
             return
         self.energy = min(1.0, self.energy + seconds / self.settings.recharge)
-        if self.time < self.settings.boot:
+        self._fall(seconds)
+        if self.uptime < self.settings.boot:
             self.mode = MODES[self.settings.kind]["stabilize"]
 
     @property
     def ready(self) -> bool:
         """Return whether it knows where it is and may be armed."""
-        return self.time >= self.settings.ready
+        return self.uptime >= self.settings.ready and self.located and not self.unfit
+
+    @property
+    def uptime(self) -> float:
+        """Return the seconds since it was switched on."""
+        return self.time - self.booted
+
+    @property
+    def booting(self) -> bool:
+        """Return whether it is still silent after a reboot."""
+        return self.booted > 0.0 and self.uptime < self.settings.boot
 
     @property
     def airborne(self) -> bool:
@@ -146,18 +205,90 @@ class Autopilot:
             return int(UNSUPPORTED)
         result = int(ACCEPTED) if handler is None else handler(self, params)
         if result == ACCEPTED:
-            self.history.append((self.time, number, params))
+            self._note(number, params)
         return result
+
+    def _note(self, number: int, params: tuple[float, ...]) -> None:
+        self.history.append((self.time, number, params))
+        takes = number == mavlink.MAV_CMD_IMAGE_START_CAPTURE or (
+            number == mavlink.MAV_CMD_DO_DIGICAM_CONTROL and params[4:5] in ((1.0,), ())
+        )
+        if takes and self.camera_works:
+            self.photos.append(self.body.position)
 
     def set_mode(self, number: int) -> int:
         """Change the mode; return a MAV_RESULT."""
         if number not in MODES[self.settings.kind].values():
             return int(FAILED)
-        self.mode = number
+        self._change_mode(number)
         self.body.target = None
         self.body.speed = 5.0
         self._held = 0.0
         return int(ACCEPTED)
+
+    def take_stick(self, mode: str) -> None:
+        """Have the pilot change the mode.
+
+        Raises:
+            ValueError: there is no such mode.
+        """
+        numbers = MODES[self.settings.kind]
+        if mode not in numbers:
+            raise ValueError(f"{mode}: no such mode; a {self.settings.kind} has {', '.join(numbers)}")
+        self.set_mode(numbers[mode])
+
+    def restart(self, armed: bool = False) -> None:
+        """Lose what is in memory and begin anew; what was uploaded and set is on disk."""
+        self.booted = self.time
+        self.armed = self.armed and armed
+        self.item, self._held = 0, 0.0
+        self.body.target = None
+        self.breached, self._lost_for = False, 0.0
+        self.texts.clear()
+        self._change_mode(MODES[self.settings.kind]["stabilize"])
+
+    def breach(self) -> None:
+        """Be out of the fence, and do what FENCE_ACTION says."""
+        self.breached = True
+        self.breaches += 1
+        self.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
+        action = self.parameters["FENCE_ACTION"]
+        if self.armed and action and self.parameters["FENCE_ENABLE"]:
+            answers = {
+                1: ("return", "land"),
+                2: ("land",),
+                3: ("smart_return", "return", "land"),
+                4: ("brake",),
+            }
+            self._answer(answers.get(int(action), ("return", "land")))
+
+    def say(self, severity: int, text: str) -> None:
+        """Have something to say to the ground."""
+        self.texts.append((int(severity), text))
+
+    def _change_mode(self, number: int) -> None:
+        if number != self.mode:
+            self.modes.append((self.time, number))
+        self.mode = number
+
+    def _answer(self, names: tuple[str, ...]) -> None:
+        numbers = MODES[self.settings.kind]
+        self.set_mode(next((numbers[name] for name in names if name in numbers), numbers["brake"]))
+
+    def _heed_position(self, seconds: float) -> None:
+        self._lost_for = 0.0 if self.located else self._lost_for + seconds
+        needs = self._mode_name() not in ("stabilize", "alt_hold", "land", "surface")
+        if self.armed and needs and self._lost_for > EKF_SECONDS and self.parameters["FS_EKF_ACTION"]:
+            self.say(mavlink.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode")
+            self._answer(("land", "surface"))
+
+    def _fall(self, seconds: float) -> None:
+        if self.airborne:
+            north, east, up = self.body.position
+            self.body.position = (north, east, max(0.0, up - FALL_SPEED * seconds))
+            self.body.velocity = (0.0, 0.0, -FALL_SPEED)
+        else:
+            self.body.velocity = (0.0, 0.0, 0.0)
 
     def _mode_name(self) -> str:
         return next(name for name, number in MODES[self.settings.kind].items() if number == self.mode)
@@ -222,7 +353,7 @@ class Autopilot:
             self.body.speed = item.params[1]
             return True
         if item.command in _DEVICES:
-            self.history.append((self.time, item.command, item.params))
+            self._note(item.command, (*item.params, item.x, item.y, item.z))
             return True
         if item.command == mavlink.MAV_CMD_NAV_LAND:
             self._land(seconds)
@@ -261,6 +392,8 @@ class Autopilot:
                 return int(FAILED)
             self._disarm()
             return int(ACCEPTED)
+        if self.unfit:
+            self.say(mavlink.MAV_SEVERITY_CRITICAL, f"Arm: {self.unfit}")
         if not self.ready or self._mode_name() == "auto":
             return int(FAILED)
         self.armed = True

@@ -14,6 +14,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.autopilot import TYPES, Autopilot, Settings
+from mmrs_core.sitl.faults import Faults
 from mmrs_core.sitl.missions import MissionProtocol
 
 Message = Any
@@ -23,6 +24,9 @@ LARGEST = 65_535
 POSITION_SECONDS, STATUS_SECONDS, HEARTBEAT_SECONDS = 0.1, 0.5, 1.0
 YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
 PREARM = 0x1000_0000
+UNFIT_SECONDS = 30.0
+EKF_LOCATED, EKF_LOST = 0x33F, 0xA7
+SECTOR_FREE = 6_001
 SIGNATURE_EPOCH = 1_420_070_400
 
 
@@ -31,6 +35,8 @@ class SimulatedVehicle:
 
     Attributes:
         autopilot: what it does; read it freely, its numbers may be a tick old.
+        faults: makes things go wrong with it.
+        received: (seconds, name) of every message that has come for it, but heartbeats.
     """
 
     def __init__(
@@ -65,9 +71,12 @@ class SimulatedVehicle:
         self._mav.robust_parsing = True
         if self.autopilot.settings.key:
             self._sign(self.autopilot.settings.key)
-        self._missions = MissionProtocol(self.autopilot.stores, self._send)
+        self.received: list[tuple[float, str]] = []
+        self._missions = MissionProtocol(self.autopilot.stores, self._answer)
+        self._late: list[tuple[float, Message]] = []
         self._due: dict[str, float] = {}
-        self._muted = threading.Event()
+        self._lock = threading.RLock()
+        self.faults = Faults(self.autopilot, self._lock)
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="simulated vehicle", daemon=True)
 
@@ -83,11 +92,11 @@ class SimulatedVehicle:
 
     def mute(self) -> None:
         """Cut the link both ways; the vehicle goes on."""
-        self._muted.set()
+        self.faults.cut_link()
 
     def unmute(self) -> None:
         """Mend the link."""
-        self._muted.clear()
+        self.faults.mend_link()
 
     def __enter__(self) -> SimulatedVehicle:
         """Switch the vehicle on."""
@@ -108,25 +117,46 @@ class SimulatedVehicle:
     def _run(self) -> None:
         last = time.monotonic()
         while not self._stopping.is_set():
-            self._receive()
-            now = time.monotonic()
-            self.autopilot.advance((now - last) * self._speedup)
-            self._missions.busy = self.autopilot.time < self.autopilot.settings.boot
-            last = now
-            for tell, period in _TELLS:
-                self._tell(tell, period)
+            data = self._receive()
+            with self._lock:
+                self._hear(data)
+                now = time.monotonic()
+                self._go_on((now - last) * self._speedup)
+                last = now
 
-    def _receive(self) -> None:
+    def _go_on(self, seconds: float) -> None:
+        self.autopilot.advance(seconds)
+        self._missions.busy = self.autopilot.uptime < self.autopilot.settings.boot
+        while self._late and self._late[0][0] <= self.autopilot.time:
+            self._send(self._late.pop(0)[1])
+        for tell, period in _TELLS:
+            self._tell(tell, period)
+
+    def _receive(self) -> bytes:
         try:
-            data = self._socket.recv(LARGEST)
+            return self._socket.recv(LARGEST)
         except (TimeoutError, ConnectionRefusedError):
-            return
-        if self._muted.is_set() or self._random.random() < self._loss:
+            return b""
+
+    def _hear(self, data: bytes) -> None:
+        if not data or self._deaf or self._random.random() < self._loss:
             return
         for message in self._mav.parse_buffer(data) or ():
             self._take(message)
 
+    @property
+    def _deaf(self) -> bool:
+        return self.faults.link_down or self.autopilot.booting
+
+    def _answer(self, message: Message) -> None:
+        if self.faults.answer_delay:
+            self._late.append((self.autopilot.time + self.faults.answer_delay, message))
+        else:
+            self._send(message)
+
     def _take(self, message: Message) -> None:
+        if message.get_type() != "HEARTBEAT":
+            self.received.append((self.autopilot.time, message.get_type()))
         if message.get_type() == "COMMAND_LONG":
             self._command(message)
         elif message.get_type() == "SET_POSITION_TARGET_GLOBAL_INT":
@@ -140,7 +170,7 @@ class SimulatedVehicle:
             self._missions.take(message)
 
     def _command(self, message: Message) -> None:
-        if message.command in self.autopilot.settings.silent:
+        if message.command in self.autopilot.silent:
             return
         params = tuple(getattr(message, f"param{number}") for number in range(1, 8))
         result = self.autopilot.command(message.command, params)
@@ -173,7 +203,7 @@ class SimulatedVehicle:
     def _send(self, message: Message) -> None:
         data = message.pack(self._mav)
         self._mav.seq = (self._mav.seq + 1) % 256
-        if self._muted.is_set() or self._random.random() < self._loss:
+        if self._deaf or self._random.random() < self._loss:
             return
         try:
             self._socket.sendto(data, self._address)
@@ -196,12 +226,12 @@ class SimulatedVehicle:
 
     def _tell_position(self) -> None:
         pilot = self.autopilot
-        if not pilot.ready:
+        if pilot.uptime < pilot.settings.ready:
             return
         latitude, longitude = pilot.degrees()
         north, east, up = pilot.body.position
         v_north, v_east, v_up = pilot.body.velocity
-        now = round(pilot.time * 1000)
+        now = self._boot_milliseconds()
         self._send(
             mavlink.MAVLink_global_position_int_message(
                 now,
@@ -228,20 +258,104 @@ class SimulatedVehicle:
             )
         )
         self._send(mavlink.MAVLink_extended_sys_state_message(0, landed))
-        flags = 16 if pilot.ready else 0
+        located = pilot.located and pilot.uptime >= pilot.settings.ready
+        flags = EKF_LOCATED if located else EKF_LOST
         self._send(mavlink.MAVLink_ekf_status_report_message(flags, 0, 0, 0, 0, 0))
+        latitude, longitude = pilot.degrees()
+        self._send(
+            mavlink.MAVLink_gps_raw_int_message(
+                self._boot_milliseconds() * 1000,
+                mavlink.GPS_FIX_TYPE_3D_FIX if located else mavlink.GPS_FIX_TYPE_NO_FIX,
+                round(latitude * 1e7),
+                round(longitude * 1e7),
+                round((720.0 + pilot.body.position[2]) * 1000),
+                80 if located else 9999,
+                65_535,
+                0,
+                65_535,
+                14 if located else 0,
+            )
+        )
+        self._send(
+            mavlink.MAVLink_system_time_message(
+                round((time.time() + pilot.clock_error) * 1e6), self._boot_milliseconds()
+            )
+        )
+        self._send(
+            mavlink.MAVLink_fence_status_message(
+                pilot.breached, pilot.breaches, mavlink.FENCE_BREACH_BOUNDARY if pilot.breached else 0, 0
+            )
+        )
         for name, value in pilot.settings.values.items():
             self._send(
                 mavlink.MAVLink_named_value_float_message(
-                    round(pilot.time * 1000), name.encode(), value(pilot.time)
+                    self._boot_milliseconds(), name.encode(), value(pilot.time)
                 )
             )
+
+    def _tell_events(self) -> None:
+        pilot = self.autopilot
+        while pilot.texts:
+            severity, text = pilot.texts.pop(0)
+            self._send(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+        while pilot.photos:
+            self._tell_photo(pilot.photos.pop(0))
+        if pilot.obstacle is not None:
+            self._tell_obstacle(*pilot.obstacle)
+
+    def _tell_photo(self, place: tuple[float, float, float]) -> None:
+        pilot = self.autopilot
+        latitude, longitude = pilot.degrees()
+        pilot.taken += 1
+        self._send(
+            mavlink.MAVLink_camera_feedback_message(
+                self._boot_milliseconds() * 1000,
+                pilot.settings.system,
+                0,
+                pilot.taken,
+                round(latitude * 1e7),
+                round(longitude * 1e7),
+                720.0 + place[2],
+                place[2],
+                0.0,
+                0.0,
+                pilot.body.heading,
+                0.0,
+                mavlink.CAMERA_FEEDBACK_PHOTO,
+            )
+        )
+
+    def _tell_obstacle(self, distance: float, bearing: float) -> None:
+        sectors = [SECTOR_FREE] * 72
+        sectors[round(bearing / 5.0) % 72] = round(distance * 100)
+        self._send(
+            mavlink.MAVLink_obstacle_distance_message(
+                self._boot_milliseconds() * 1000,
+                mavlink.MAV_DISTANCE_SENSOR_LASER,
+                sectors,
+                5,
+                20,
+                SECTOR_FREE - 1,
+                5.0,
+                0.0,
+                mavlink.MAV_FRAME_BODY_FRD,
+            )
+        )
+
+    def _tell_unfit(self) -> None:
+        if self.autopilot.unfit and not self.autopilot.armed:
+            self.autopilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {self.autopilot.unfit}")
+
+    def _boot_milliseconds(self) -> int:
+        return max(0, round((self.autopilot.uptime + self.autopilot.clock_error) * 1000)) % 2**32
 
 
 _TELLS: tuple[tuple[Callable[[SimulatedVehicle], None], float], ...] = (
     (SimulatedVehicle._tell_heartbeat, HEARTBEAT_SECONDS),
     (SimulatedVehicle._tell_position, POSITION_SECONDS),
     (SimulatedVehicle._tell_status, STATUS_SECONDS),
+    (SimulatedVehicle._tell_unfit, UNFIT_SECONDS),
+    (SimulatedVehicle._tell_events, POSITION_SECONDS),
 )
 
 

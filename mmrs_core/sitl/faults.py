@@ -1,0 +1,177 @@
+"""Faults on demand: what goes wrong with a simulated vehicle, when somebody says so."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+
+from mmrs_core.sitl.autopilot import Autopilot
+
+
+class Faults:
+    """Makes things go wrong; each method may be called from any thread and has done so on return.
+
+    Attributes:
+        link_down: whether nothing comes through, either way.
+        answer_delay: seconds by which every answer to an upload is late.
+    """
+
+    def __init__(self, autopilot: Autopilot, lock: AbstractContextManager[object]) -> None:
+        """Work on an autopilot whose simulation holds `lock` while it goes on."""
+        self.link_down = False
+        self.answer_delay = 0.0
+        self._autopilot = autopilot
+        self._lock = lock
+
+    def lose_position(self) -> None:
+        """Have it no longer know where it is: no GPS, and an estimate without a position."""
+        with self._lock:
+            self._autopilot.located = False
+
+    def find_position(self) -> None:
+        """Give it its position back."""
+        with self._lock:
+            self._autopilot.located = True
+
+    def restart(self, armed: bool = False) -> None:
+        """Reboot it: it is silent for a while, its boot time is zero, and its memory is what is on disk.
+
+        Args:
+            armed: whether its motors go on, as after a watchdog's reset; else it falls.
+        """
+        with self._lock:
+            self._autopilot.restart(armed)
+
+    def take_stick(self, mode: str = "loiter") -> None:
+        """Have the pilot change the mode, by one of its names.
+
+        Raises:
+            ValueError: the vehicle has no such mode.
+        """
+        with self._lock:
+            self._autopilot.take_stick(mode)
+
+    def meet_obstacle(self, distance: float = 3.0, bearing: float = 0.0) -> None:
+        """Have it report an obstacle, metres away, in degrees clockwise from where it looks."""
+        with self._lock:
+            self._autopilot.obstacle = (distance, bearing)
+
+    def clear_obstacle(self) -> None:
+        """Take the obstacle away."""
+        with self._lock:
+            self._autopilot.obstacle = None
+
+    def breach_fence(self) -> None:
+        """Have it report that it has left its fence, and do what FENCE_ACTION says."""
+        with self._lock:
+            self._autopilot.breach()
+
+    def mend_fence(self) -> None:
+        """Have it be inside its fence again."""
+        with self._lock:
+            self._autopilot.breached = False
+
+    def set_battery(self, level: float) -> None:
+        """Leave a part of the battery, 0 to 1."""
+        with self._lock:
+            self._autopilot.energy = level
+
+    def silence(self, *commands: int) -> None:
+        """Have it answer these commands no more; without any, answer all again."""
+        with self._lock:
+            self._autopilot.silent = frozenset(commands)
+
+    def cut_link(self) -> None:
+        """Let nothing through, either way; the vehicle goes on."""
+        self.link_down = True
+
+    def mend_link(self) -> None:
+        """Let everything through again."""
+        self.link_down = False
+
+    def jump_clock(self, seconds: float) -> None:
+        """Have its clocks jump: the time since it booted, and the time of day."""
+        with self._lock:
+            self._autopilot.clock_error += seconds
+
+    def refuse_arming(self, reason: str = "Compass not calibrated") -> None:
+        """Have its own checks fail for a reason; an empty one lets them pass again."""
+        with self._lock:
+            self._autopilot.unfit = reason
+
+    def slow_uploads(self, seconds: float = 3.0) -> None:
+        """Answer every message of an upload so much later."""
+        self.answer_delay = seconds
+
+    def break_camera(self) -> None:
+        """Have its camera take no more photos, and tell none."""
+        with self._lock:
+            self._autopilot.camera_works = False
+
+    def mend_camera(self) -> None:
+        """Have its camera work again."""
+        with self._lock:
+            self._autopilot.camera_works = True
+
+    def begin(self, name: str, *values: str) -> None:
+        """Begin a fault by its name in `FAULTS`, with its values as texts.
+
+        Raises:
+            ValueError: there is no such fault, or it does not take these values.
+        """
+        _do(FAULTS, self, name, values)
+
+    def end(self, name: str) -> None:
+        """End a fault by its name; those that cannot end are left as they are.
+
+        Raises:
+            ValueError: there is no such fault.
+        """
+        if name not in FAULTS:
+            raise ValueError(_unknown(name))
+        if name in ENDS:
+            ENDS[name](self)
+
+
+Act = Callable[..., None]
+
+FAULTS: Mapping[str, Act] = {
+    "gps-lost": Faults.lose_position,
+    "restart": lambda faults, how="": faults.restart(how == "armed"),
+    "stick": Faults.take_stick,
+    "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(float(metres), float(bearing)),
+    "breach": Faults.breach_fence,
+    "battery": lambda faults, level: faults.set_battery(float(level)),
+    "silent": lambda faults, *commands: faults.silence(*map(int, commands)),
+    "link-down": Faults.cut_link,
+    "clock-jump": lambda faults, seconds="3600": faults.jump_clock(float(seconds)),
+    "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
+    "slow-upload": lambda faults, seconds="3": faults.slow_uploads(float(seconds)),
+    "camera-dead": Faults.break_camera,
+}
+"""What can go wrong, by name, and how it begins."""
+
+ENDS: Mapping[str, Act] = {
+    "gps-lost": Faults.find_position,
+    "obstacle": Faults.clear_obstacle,
+    "breach": Faults.mend_fence,
+    "silent": Faults.silence,
+    "link-down": Faults.mend_link,
+    "refuse-arming": lambda faults: faults.refuse_arming(""),
+    "slow-upload": lambda faults: faults.slow_uploads(0.0),
+    "camera-dead": Faults.mend_camera,
+}
+"""How faults end, by name; the others happen once."""
+
+
+def _do(acts: Mapping[str, Act], faults: Faults, name: str, values: tuple[str, ...]) -> None:
+    if name not in acts:
+        raise ValueError(_unknown(name))
+    try:
+        acts[name](faults, *values)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} {' '.join(values)}: {error}") from error
+
+
+def _unknown(name: str) -> str:
+    return f"{name}: no such fault; there are {', '.join(FAULTS)}"

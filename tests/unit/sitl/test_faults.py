@@ -1,0 +1,195 @@
+"""Faults on demand, as the ground sees them: a bare socket and pymavlink on the other side."""
+
+from __future__ import annotations
+
+import socket
+import time
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl import FAULTS, Settings, SimulatedVehicle
+
+SPEEDUP = 10.0
+
+
+class Ground:
+    """Hears one vehicle, and sends to it."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self.socket = connection
+        self.mav = mavlink.MAVLink(None, srcSystem=255, srcComponent=190)
+        self.mav.robust_parsing = True
+        self.peer = None
+
+    def hear(self, test, seconds: float = 5.0):
+        """Return the first message that a test finds good; None if none comes."""
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            try:
+                data, self.peer = self.socket.recvfrom(65_535)
+            except TimeoutError:
+                continue
+            for message in self.mav.parse_buffer(data) or ():
+                if test(message):
+                    return message
+        return None
+
+    def of(self, kind: str, seconds: float = 5.0):
+        return self.hear(lambda message: message.get_type() == kind, seconds)
+
+    def send(self, message) -> None:
+        self.socket.sendto(message.pack(self.mav), self.peer)
+
+    def command(self, number: int, *params: float):
+        values = (*params, 0, 0, 0, 0, 0, 0, 0)[:7]
+        self.send(mavlink.MAVLink_command_long_message(1, 1, number, 0, *values))
+        return self.hear(lambda m: m.get_type() == "COMMAND_ACK" and m.command == number, 2.0)
+
+
+@pytest.fixture
+def ground():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
+        connection.bind(("127.0.0.1", 0))
+        connection.settimeout(0.1)
+        yield Ground(connection)
+
+
+@pytest.fixture
+def vehicle(ground):
+    port = ground.socket.getsockname()[1]
+    with SimulatedVehicle(port, Settings(boot=0.5, ready=0.5), speedup=SPEEDUP) as vehicle:
+        assert ground.hear(lambda m: m.get_type() == "SYS_STATUS" and m.onboard_control_sensors_health)
+        yield vehicle
+
+
+def airborne(vehicle, ground) -> None:
+    assert ground.command(176, 1, 4).result == 0
+    assert ground.command(400, 1).result == 0
+    assert ground.command(22, 0, 0, 0, 0, 0, 0, 10).result == 0
+    until = time.monotonic() + 5.0
+    while vehicle.autopilot.body.position[2] < 9.0 and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+def test_a_lost_position_is_told_and_lands_the_vehicle(vehicle, ground):
+    airborne(vehicle, ground)
+    vehicle.faults.lose_position()
+    assert ground.hear(lambda m: m.get_type() == "GPS_RAW_INT" and m.fix_type < 2)
+    assert ground.hear(lambda m: m.get_type() == "EKF_STATUS_REPORT" and not m.flags & 16)
+    assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 9)
+    vehicle.faults.find_position()
+    assert ground.hear(lambda m: m.get_type() == "EKF_STATUS_REPORT" and m.flags & 16)
+
+
+def test_a_restart_begins_time_anew_and_drops_the_vehicle_but_keeps_what_was_uploaded(vehicle, ground):
+    airborne(vehicle, ground)
+    vehicle.autopilot.stores[0] = ["kept"]
+    before = ground.of("SYSTEM_TIME").time_boot_ms
+    vehicle.faults.restart()
+    assert ground.hear(lambda m: m.get_type() == "SYSTEM_TIME" and m.time_boot_ms < before)
+    assert not vehicle.autopilot.armed
+    time.sleep(0.3)
+    assert vehicle.autopilot.body.position[2] == 0.0
+    assert vehicle.autopilot.stores[0] == ["kept"]
+
+
+def test_a_watchdogs_restart_keeps_the_motors_on(vehicle, ground):
+    airborne(vehicle, ground)
+    vehicle.faults.restart(armed=True)
+    assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 0 and m.base_mode & 128)
+    assert vehicle.autopilot.body.position[2] > 8.0
+
+
+def test_a_pilots_stick_changes_the_mode(vehicle, ground):
+    vehicle.faults.take_stick("alt_hold")
+    assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 2)
+
+
+def test_an_obstacle_is_told_where_it_is_until_it_is_gone(vehicle, ground):
+    vehicle.faults.meet_obstacle(3.0, 90.0)
+    told = ground.of("OBSTACLE_DISTANCE")
+    assert (told.distances[18], min(told.distances)) == (300, 300)
+    vehicle.faults.clear_obstacle()
+    while ground.of("OBSTACLE_DISTANCE", 0.3):
+        pass
+    assert ground.of("OBSTACLE_DISTANCE", 0.5) is None
+
+
+def test_a_breached_fence_is_told_and_answered(vehicle, ground):
+    airborne(vehicle, ground)
+    assert ground.command(207, 1).result == 0
+    vehicle.faults.breach_fence()
+    assert ground.hear(lambda m: m.get_type() == "FENCE_STATUS" and m.breach_status == 1)
+    assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 6)
+
+
+def test_a_battery_has_what_it_is_said_to_have(vehicle, ground):
+    vehicle.faults.set_battery(0.17)
+    assert ground.hear(lambda m: m.get_type() == "SYS_STATUS" and 15 <= m.battery_remaining <= 20)
+
+
+def test_a_silent_command_gets_no_answer_and_does_nothing(vehicle, ground):
+    vehicle.faults.silence(400)
+    assert ground.command(400, 1) is None
+    assert not vehicle.autopilot.armed
+    vehicle.faults.silence()
+    assert ground.command(400, 1) is not None
+
+
+def test_a_cut_link_lets_nothing_through_until_it_is_mended(vehicle, ground):
+    vehicle.faults.cut_link()
+    ground.of("HEARTBEAT", 0.3)
+    assert ground.of("HEARTBEAT", 0.5) is None
+    vehicle.faults.mend_link()
+    assert ground.of("HEARTBEAT")
+
+
+def test_clocks_jump(vehicle, ground):
+    before = ground.of("SYSTEM_TIME")
+    vehicle.faults.jump_clock(3600.0)
+    assert ground.hear(lambda m: m.get_type() == "SYSTEM_TIME" and m.time_boot_ms > before.time_boot_ms + 3e6)
+
+
+def test_arming_is_refused_with_the_reason_in_words(vehicle, ground):
+    vehicle.faults.refuse_arming("Battery 1 unhealthy")
+    assert ground.hear(lambda m: m.get_type() == "STATUSTEXT" and m.text == "PreArm: Battery 1 unhealthy")
+    assert ground.command(400, 1).result == mavlink.MAV_RESULT_FAILED
+
+
+def test_answers_to_uploads_come_late(vehicle, ground):
+    vehicle.faults.slow_uploads(5.0)
+    began = time.monotonic()
+    ground.send(mavlink.MAVLink_mission_request_list_message(1, 1, 0))
+    assert ground.of("MISSION_COUNT")
+    assert time.monotonic() - began >= 0.4
+
+
+def test_a_photo_is_told_unless_the_camera_is_dead(vehicle, ground):
+    assert ground.command(203, 0, 0, 0, 0, 1).result == 0
+    assert ground.of("CAMERA_FEEDBACK").img_idx == 1
+    vehicle.faults.break_camera()
+    assert ground.command(203, 0, 0, 0, 0, 1).result == 0
+    assert ground.of("CAMERA_FEEDBACK", 0.5) is None
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (("gps-gone",), "there are gps-lost"),
+        (("battery",), "battery"),
+        (("battery", "half"), "half"),
+        (("stick", "acro"), "a copter has"),
+    ],
+)
+def test_what_is_no_fault_is_refused(vehicle, words, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        vehicle.faults.begin(*words)
+
+
+def test_every_fault_can_be_had_by_its_name(vehicle):
+    values = {"battery": ("0.5",), "silent": ("400",)}
+    for name in FAULTS:
+        vehicle.faults.begin(name, *values.get(name, ()))
+        vehicle.faults.end(name)
+    assert vehicle.autopilot.energy == pytest.approx(0.5, abs=0.05)
