@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.scene import Device, RobotType
@@ -64,6 +65,8 @@ def _explicit(device: Device, action: Action, seconds: float) -> Wired | Unwired
         command, params = int(numbers[0]), tuple(float(each) for each in numbers[1:])
     except ValueError:
         return Unwired(f"device {device.id!r}: {key} is no command number with its parameters")
+    if not all(map(isfinite, params)):
+        return Unwired(f"device {device.id!r}: {key} holds a parameter that is not finite")
     if len(params) > 7:
         return Unwired(f"device {device.id!r}: {key} has more than seven parameters")
     return Wired(command, params, seconds)

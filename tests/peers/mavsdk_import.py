@@ -1,6 +1,7 @@
-"""Has MAVSDK import plans, upload them to a vehicle, download them again, and tell it all, as JSON.
+"""Has MAVSDK import missions, upload them to a vehicle, download them again, and tell it all, as JSON.
 
-Usage: python mavsdk_import.py PORT PLAN...; the vehicle must be sending to PORT.
+Usage: python mavsdk_import.py PORT FILE...; the vehicle must be sending to PORT. Files are plans for
+QGroundControl, or lists of waypoints where they end in ``.waypoints``.
 """
 
 from __future__ import annotations
@@ -14,7 +15,16 @@ from mavsdk.plugins.mission_raw import MissionRaw
 
 
 def item(found) -> list[object]:
-    return [found.command, found.frame, found.x, found.y, round(found.z, 3), found.mission_type]
+    place = [found.x, found.y, round(found.z, 3)]
+    params = [found.param1, found.param2, found.param3, found.param4]
+    return [found.command, found.frame, *place, found.mission_type, *params]
+
+
+def imported(missions: MissionRaw, path: Path):
+    text = path.read_text("utf-8")
+    if path.suffix == ".waypoints":
+        return missions.import_mission_planner_mission_from_string(text)
+    return missions.import_qgroundcontrol_mission_from_string(text)
 
 
 def main(port: str, paths: list[str]) -> None:
@@ -25,7 +35,7 @@ def main(port: str, paths: list[str]) -> None:
     assert system is not None, "no vehicle"
     missions = MissionRaw(system)
     for path in paths:
-        found = missions.import_qgroundcontrol_mission_from_string(Path(path).read_text("utf-8"))
+        found = imported(missions, Path(path))
         lists = {"mission": found.mission_items, "fence": found.geofence_items, "rally": found.rally_items}
         missions.upload_mission(found.mission_items)
         lists["downloaded"] = missions.download_mission()

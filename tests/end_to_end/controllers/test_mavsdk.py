@@ -12,7 +12,7 @@ import pytest
 from mmrs_core import flight
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.qgc.target import QGC_PLAN
+from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.testing.programs import target_input, two_drones
 
 PEERS = Path(__file__).parents[2] / "peers"

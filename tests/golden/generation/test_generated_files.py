@@ -76,6 +76,10 @@ CASES = [
     ("mavlink-python", choosing, "README.md"),
     ("qgc-plan", two_drones, "alpha.plan"),
     ("qgc-plan", two_drones, "beta.plan"),
+    ("wpl", two_drones, "alpha.waypoints"),
+    ("wpl", two_drones, "alpha.fence.waypoints"),
+    ("wpl", two_drones, "alpha.rally.waypoints"),
+    ("wpl", two_drones, "beta.waypoints"),
 ]
 
 

@@ -9,7 +9,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.mavlink.qgc.target import QGC_PLAN
+from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, Frame, Policy
 from mmrs_core.testing.programs import (
     L_AQUILA,

@@ -1,4 +1,4 @@
-"""A robot's way through its moves, as missions for QGroundControl: one a sortie."""
+"""A robot's way through its moves, as missions: one a sortie."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.movements import turns_to
-from mmrs_core.mavlink.qgc import items as qgc
-from mmrs_core.mavlink.qgc.items import Item
+from mmrs_core.mavlink.plans import items as cmd
+from mmrs_core.mavlink.plans.items import Item
 from mmrs_core.mavlink.runs import CORNER_SECONDS
 from mmrs_core.mavlink.vehicles import ROVER
 from mmrs_core.mavlink.wiring import Wired, wiring_of
@@ -71,7 +71,7 @@ class Flight:
     def wait(self, move: Move) -> None:
         """Add a wait that only the operator ends, if the robot is on its way."""
         if self._items:
-            self._add(qgc.LOITER_UNLIMITED, move, here=True)
+            self._add(cmd.LOITER_UNLIMITED, move, here=True)
 
     def end_sortie(self) -> None:
         """Finish the sortie, if it leads anywhere."""
@@ -84,19 +84,19 @@ class Flight:
         if isinstance(wiring, Wired):
             self._add(wiring.command, move, *wiring.params)
             if wiring.seconds and self._items:
-                self._add(qgc.LOITER_TIME, move, wiring.seconds, here=True)
+                self._add(cmd.LOITER_TIME, move, wiring.seconds, here=True)
 
     def take_off(self, move: Move, fluid: bool) -> None:
         """Climb straight up."""
         east, north, _ = self._position
         self._position = (east, north, self._context.zero + _number(move, "altitude"))
-        self._add(qgc.TAKE_OFF, move, here=True)
+        self._add(cmd.TAKE_OFF, move, here=True)
 
     def land(self, move: Move, fluid: bool) -> None:
         """Descend straight down, which ends the sortie."""
         east, north, _ = self._position
         self._position = (east, north, self._context.zero)
-        self._add(qgc.LAND, move, here=True)
+        self._add(cmd.LAND, move, here=True)
         self.end_sortie()
 
     def go_to(self, move: Move, fluid: bool) -> None:
@@ -109,12 +109,12 @@ class Flight:
         for position in _ends(self._position, move.target.position, move):
             self._position = position
             last = position == move.target.position
-            self._add(qgc.WAYPOINT, move, 0.0 if fluid and last else CORNER_SECONDS, here=True)
+            self._add(cmd.WAYPOINT, move, 0.0 if fluid and last else CORNER_SECONDS, here=True)
 
     def hold(self, move: Move, fluid: bool) -> None:
         """Stay, if the robot is on its way."""
         if self._items:
-            self._add(qgc.LOITER_TIME, move, _number(move, "duration"), here=True)
+            self._add(cmd.LOITER_TIME, move, _number(move, "duration"), here=True)
 
     def head_to(self, move: Move, fluid: bool) -> None:
         """Turn to something, if its place is known; a ground vehicle can only have its gimbal do so."""
@@ -122,21 +122,21 @@ class Flight:
             self._look(move)
         elif move.heading is not None and move.heading.target.position is not None:
             angle = _bearing(self._position, move.heading.target.position) - move.heading.angle_degrees
-            self._add(qgc.CONDITION_YAW, move, round(angle % 360.0, 1))
+            self._add(cmd.CONDITION_YAW, move, round(angle % 360.0, 1))
 
     def _pace(self, move: Move) -> None:
         speed = self._context.speed(move)
         if speed is not None and speed != self._speed:
             self._speed = speed
-            self._add(qgc.CHANGE_SPEED, move, 1.0, speed, -1.0)
+            self._add(cmd.CHANGE_SPEED, move, 1.0, speed, -1.0)
 
     def _look(self, move: Move) -> None:
         heading = move.heading if move.heading and turns_to(move.heading, self._context) else None
         position = heading.target.position if heading else None
         if position is not None:
-            self._items.append(Item(qgc.ROI_LOCATION, move, (), position))
+            self._items.append(Item(cmd.ROI_LOCATION, move, (), position))
         elif self._looking:
-            self._add(qgc.ROI_NONE, move)
+            self._add(cmd.ROI_NONE, move)
         self._looking = position is not None
 
     def _add(self, command: int, move: Move, *params: float, here: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""What a plan for QGroundControl cannot express."""
+"""What missions for ground stations cannot express, whatever the format of their files."""
 
 from __future__ import annotations
 

@@ -1,0 +1,76 @@
+"""Items of missions: MAVLink commands with their parameters, in the order in which they are done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from mmrs_core.behaviour.program import Move
+from mmrs_core.contributions.targets import TracedStep
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.scene import Position
+
+WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF = 16, 17, 19, 21, 22
+CONDITION_YAW, CHANGE_SPEED, ROI_LOCATION, ROI_NONE = 115, 178, 195, 197
+FENCE_EXCLUSION, RALLY_POINT = 5002, 5100
+ABSOLUTE, NO_FRAME, RELATIVE = 0, 2, 3
+PARAMETERS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """An item in the local frame.
+
+    Attributes:
+        command: number of its MAV_CMD.
+        move: that it serves.
+        params: at most seven, four where there is a position; the rest is 0.
+        position: None for commands without a place.
+    """
+
+    command: int
+    move: Move
+    params: tuple[float, ...] = ()
+    position: Position | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """An item as files hold it.
+
+    Attributes:
+        number: of the item in its file.
+        frame: `RELATIVE` where it has a place, `NO_FRAME` where it has none; home is `ABSOLUTE`.
+        params: seven; with a place, the last three are latitude, longitude and height above home.
+        step: which move and task it serves.
+    """
+
+    number: int
+    frame: int
+    command: int
+    params: tuple[float, ...]
+    step: TracedStep
+
+    @property
+    def has_place(self) -> bool:
+        """Return whether its last three parameters are a place."""
+        return self.frame != NO_FRAME
+
+
+def rows_of(context: RobotContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
+    """Return the items of a sortie, counted from 1: home, where a file has one, is number 0."""
+    positions = [item.position for item in sortie if item.position is not None]
+    degrees = iter(degrees_of([(east, north) for east, north, _ in positions], context.frame))
+    return tuple(_row(number, item, context, degrees) for number, item in enumerate(sortie, start=1))
+
+
+def _row(number: int, item: Item, context: RobotContext, degrees: Iterator[tuple[float, float]]) -> Row:
+    place: tuple[float, ...] = ()
+    if item.position is not None:
+        place = (*next(degrees), context.height(item.position))
+    filled = [0.0] * (PARAMETERS - len(place) - len(item.params))
+    move = item.move
+    step = TracedStep(f"item {number}", context.robot.id, move.id, move.task, move.rule)
+    frame = RELATIVE if place else NO_FRAME
+    return Row(number, frame, item.command, (*item.params, *filled, *place), step)

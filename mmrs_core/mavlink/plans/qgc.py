@@ -1,0 +1,85 @@
+"""The target qgc-plan: one plan for QGroundControl for each sortie of each robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.plans.items import Row
+from mmrs_core.mavlink.plans.refusals import refusals
+from mmrs_core.mavlink.plans.surroundings import Mission, missions_of
+from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.resources import shipped
+
+TEMPLATES = shipped("codegen_templates") / "qgc-plan"
+ARDUPILOT = 3
+HEIGHT_ABOVE_HOME = 1
+DEFAULT_SPEED = 5.0
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield ``<robot>.plan``, and ``<robot>.sortie-2.plan`` and so on where there are more sorties.
+
+    Raises:
+        UnsupportedError: the behaviour is local, or a robot has no home.
+    """
+    for mission in missions_of(input):
+        trace = tuple(row.step for row in mission.rows)
+        yield FileSpec(f"{mission.stem}.plan", "plan.jinja", {"plan": plan_of(mission)}, trace=trace)
+
+
+def plan_of(mission: Mission) -> dict[str, object]:
+    """Return a plan as QGroundControl reads it; heights are above home."""
+    usual = _usual_speed(mission.context)
+    return {
+        "fileType": "Plan",
+        "version": 1,
+        "groundStation": "MMRS",
+        "mission": {
+            "version": 2,
+            "firmwareType": ARDUPILOT,
+            "vehicleType": mission.context.vehicle.mav_type,
+            "cruiseSpeed": usual,
+            "hoverSpeed": usual,
+            "globalPlanAltitudeMode": HEIGHT_ABOVE_HOME,
+            "plannedHomePosition": list(mission.home),
+            "items": [_simple(row) for row in mission.rows],
+        },
+        "geoFence": {"version": 2, "circles": [], "polygons": [_polygon(ring) for ring in mission.fence]},
+        "rallyPoints": {"version": 2, "points": [list(spot) for spot in mission.rally]},
+    }
+
+
+def _simple(row: Row) -> dict[str, object]:
+    simple: dict[str, object] = {
+        "type": "SimpleItem",
+        "autoContinue": True,
+        "command": row.command,
+        "doJumpId": row.number,
+        "frame": row.frame,
+        "params": list(row.params),
+    }
+    if row.has_place:
+        height = {"Altitude": row.params[-1], "AltitudeMode": HEIGHT_ABOVE_HOME, "AMSLAltAboveTerrain": None}
+        simple |= height
+    return simple
+
+
+def _polygon(ring: tuple[tuple[float, float], ...]) -> dict[str, object]:
+    return {"version": 1, "inclusion": False, "polygon": [list(vertex) for vertex in ring]}
+
+
+def _usual_speed(context: RobotContext) -> float:
+    speeds = [speed for move in context.robot.moves if (speed := context.speed(move)) is not None]
+    capability = capability_of(context.robot, context.type) if context.type else None
+    return max(speeds, default=capability.speed[1] if capability else DEFAULT_SPEED)
+
+
+QGC_PLAN = Target(
+    name="qgc-plan",
+    description="plans for QGroundControl: mission, geofence and rally points, one a sortie of each robot",
+    templates=TEMPLATES,
+    files=files,
+    refusals=refusals,
+)

@@ -1,1 +1,0 @@
-"""The target qgc-plan: plans for QGroundControl."""
