@@ -1,4 +1,4 @@
-"""The upload and command path, and the plans, against a peer that is not ours: MAVSDK."""
+"""The upload and command path against a peer that is not ours: MAVSDK."""
 
 from __future__ import annotations
 
@@ -10,10 +10,6 @@ from pathlib import Path
 import pytest
 
 from mmrs_core import flight
-from mmrs_core.generation.render import render
-from mmrs_core.generation.writing import write
-from mmrs_core.mavlink.plans.qgc import QGC_PLAN
-from mmrs_core.testing.programs import target_input, two_drones
 
 PEERS = Path(__file__).parents[2] / "peers"
 
@@ -77,26 +73,3 @@ def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
         flight.missions.verify(made, items)
         flight.commands.command(made, 400, 1)
         assert peer.next() == {"what": "arm", "arm": True}
-
-
-def test_mavsdk_reads_the_plans_and_has_a_simulated_vehicle_keep_them(tmp_path, hangar, free_port):
-    program = two_drones()
-    write(render(QGC_PLAN, target_input(program), allow_lossy=True), tmp_path)
-    plans = sorted(tmp_path.glob("*.plan"))
-    _, links = hangar(program, speedup=1.0)
-    port = links[3].rpartition(":")[2]
-    with Peer("mavsdk_import.py", port, *map(str, plans)) as peer:
-        for path in plans:
-            plan, found = json.loads(path.read_text("utf-8")), peer.next()
-            home, *items = [item[:5] for item in found["mission"]]
-            latitude, longitude, height = plan["mission"]["plannedHomePosition"]
-            assert home == [16, 5, round(latitude * 1e7), round(longitude * 1e7), height]
-            assert items == [expected(item) for item in plan["mission"]["items"]]
-            assert [item[:5] for item in found["downloaded"]] == [home, *items]
-            assert [item[0] for item in found["fence"]] == [5002] * 4
-            assert [item[0] for item in found["rally"]] == [5100]
-
-
-def expected(item):
-    latitude, longitude, height = item["params"][4:]
-    return [item["command"], item["frame"], round(latitude * 1e7), round(longitude * 1e7), height]
