@@ -1,0 +1,139 @@
+"""All faults that are made on purpose in one process: begun and ended at their time, told and recorded."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection, Iterable, Mapping
+from math import inf
+
+from ..clock import Clock
+from ..link import Link
+from ..ports import Port
+from . import gps
+from .port import InjectedPort, Line
+from .process import Effect, effect_of
+from .spec import OF_PROCESS, OF_VEHICLE, Injection, Injections
+
+Note = Callable[[str, Mapping[str, object]], None]
+"""Records a fault made on purpose: its text, and what is to be said about it."""
+
+LONGEST_WAIT = 60.0
+ONLY_SIMULATED = "the vehicle has no simulated satellites: it is a real one, or does not answer"
+
+
+class Rehearsal:
+    """The faults of one process; without any, nothing is changed and no thread is started."""
+
+    def __init__(self, injections: Injections, clock: Clock, say: Callable[[str], None]) -> None:
+        """Prepare faults; `say` tells people about them."""
+        self._injections = injections
+        self._clock = clock
+        self._say = say
+        self._notes: dict[str, Note] = {}
+        self._links: dict[str, Link] = {}
+        self._ends: list[tuple[float, Injection, Effect | None]] = []
+        self._closed = threading.Event()
+        self._noting = threading.Lock()
+        self._thread = threading.Thread(target=self._follow, name="faults on purpose", daemon=True)
+
+    def start(self) -> None:
+        """Say what will be done, and do it when it is time."""
+        if self._injections.faults:
+            faults = ", ".join(fault.text for fault in self._injections.faults)
+            self._say(f"faults are made on purpose: {faults}, seed={self._injections.seed}")
+            self._thread.start()
+
+    def close(self) -> None:
+        """Undo what is still there, and do nothing more."""
+        self._closed.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def record(self, robot: str, note: Note) -> None:
+        """Have what concerns a robot recorded, beginning with what will be."""
+        self._notes[robot] = note
+        for fault in self._injections.faults:
+            if fault.robot in ("", robot):
+                note(fault.text, {"state": "asked for", "seed": self._injections.seed})
+
+    def forget(self, robot: str) -> None:
+        """Record nothing more for a robot, and leave its vehicle alone."""
+        with self._noting:
+            self._notes.pop(robot, None)
+            self._links.pop(robot, None)
+
+    def wrap(self, port: Port, robots: Collection[str]) -> Port:
+        """Return a port that these robots share, with the faults of their links."""
+        faults = self._injections.of_link(robots)
+        if not faults:
+            return port
+        seed = f"{self._injections.seed} {' '.join(sorted(robots))}"
+        incoming = Line([f for f in faults if f.name != "cut-out"], self._clock, f"{seed} in")
+        outgoing = Line([f for f in faults if f.name != "cut-in"], self._clock, f"{seed} out")
+
+        def told(counts: Mapping[str, int]) -> None:
+            self._say(f"{_list(robots)}: pieces made faulty on purpose: {dict(counts)}")
+            self._note(robots, "link", {"state": "counted", **counts})
+
+        return InjectedPort(port, self._clock, incoming, outgoing, told)
+
+    def attend(self, robot: str, link: Link) -> None:
+        """Keep the link of a robot's vehicle, for faults of the vehicle itself."""
+        self._links[robot] = link
+
+    def _follow(self) -> None:
+        coming = list(self._injections.timed())
+        while not self._closed.is_set():
+            now = self._clock.now()
+            for fault in [f for f in coming if f.begins <= now]:
+                coming.remove(fault)
+                self._begin(fault)
+            for entry in [e for e in self._ends if e[0] <= now]:
+                self._ends.remove(entry)
+                self._end(entry[1], entry[2])
+            following = min([f.begins for f in coming] + [when for when, _, _ in self._ends], default=inf)
+            self._closed.wait(min(self._clock.real(following - self._clock.now()), LONGEST_WAIT))
+        for _, fault, effect in self._ends:
+            self._end(fault, effect)
+
+    def _begin(self, fault: Injection) -> None:
+        effect = effect_of(fault, self._clock.real)
+        self._tell(fault, "begins")
+        if effect is not None:
+            effect.begin()
+        if fault.name in OF_VEHICLE:
+            self._switch(fault, on=False)
+        if fault.ends < inf or fault.name in OF_PROCESS:
+            self._ends.append((fault.ends, fault, effect))
+
+    def _end(self, fault: Injection, effect: Effect | None) -> None:
+        if effect is not None:
+            effect.end()
+        if fault.name in OF_VEHICLE and not self._closed.is_set():
+            self._switch(fault, on=True)
+        self._tell(fault, "ends")
+
+    def _switch(self, fault: Injection, on: bool) -> None:
+        for robot, link in tuple(self._links.items()):
+            if fault.robot in ("", robot):
+                threading.Thread(
+                    target=self._switch_one, args=(fault, robot, link, on), name="satellites", daemon=True
+                ).start()
+
+    def _switch_one(self, fault: Injection, robot: str, link: Link, on: bool) -> None:
+        if not gps.switch(link, on):
+            self._say(f"{robot!a}: {fault.text}: {ONLY_SIMULATED}")
+            self._note((robot,), fault.text, {"state": "impossible", "why": ONLY_SIMULATED})
+
+    def _tell(self, fault: Injection, state: str) -> None:
+        self._say(f"{fault.text}: {state}")
+        self._note(tuple(self._notes) if not fault.robot else (fault.robot,), fault.text, {"state": state})
+
+    def _note(self, robots: Iterable[str], text: str, content: Mapping[str, object]) -> None:
+        with self._noting:
+            for note in [self._notes[robot] for robot in robots if robot in self._notes]:
+                note(text, content)
+
+
+def _list(robots: Iterable[str]) -> str:
+    return ", ".join(map(ascii, robots))
