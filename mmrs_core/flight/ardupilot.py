@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -200,7 +201,8 @@ class MavlinkVehicle:
 
     def state(self) -> State:
         """Return what is known now."""
-        return self._telemetry.state()
+        mode, armed = self._helm.mode(), self._telemetry.armed()
+        return replace(self._telemetry.state(), mode=mode, armed=armed)
 
     def _await_item_after(self, seq: int) -> int:
         def behind() -> int | None:

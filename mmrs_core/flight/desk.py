@@ -6,8 +6,9 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from .blackbox import BlackBox
 from .clock import Clock
-from .log import Log, Records
+from .log import Log
 from .objects import Locator
 from .slots import Slots
 from .vehicle import State
@@ -24,13 +25,15 @@ class Desk:
         conditions: by identifier; locators: by description of the object.
         stop: set when the robot is to stop.
         say: tells people what goes on.
+        dry: whether there is no vehicle.
     """
 
     clock: Clock
     slots: Slots
     log: Log
-    records: Records
+    box: BlackBox
     conditions: Mapping[str, Condition]
     locators: Mapping[str, Locator]
     stop: threading.Event
     say: Say
+    dry: bool = False

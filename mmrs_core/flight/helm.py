@@ -39,6 +39,11 @@ class Helm:
         """Return whether the vehicle has such a mode."""
         return mode in self._numbers
 
+    def mode(self) -> str:
+        """Return the vehicle's mode in the runtime's words, or its number where there is none."""
+        number = self._telemetry.mode()
+        return next((name for name, each in self._numbers.items() if each == number), str(number))
+
     def enter(self, mode: str) -> None:
         """Change the mode; the vehicle forgets the speed it was told.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
 
 from .desk import Desk
 from .program import Robot
@@ -11,7 +10,7 @@ from .vehicle import Vehicle
 
 
 class Journal:
-    """Writes one robot's log and records.
+    """Writes one robot's log and black box.
 
     Attributes:
         move: the move that the robot is at.
@@ -43,18 +42,14 @@ class Journal:
         self.write("fault", event)
 
     def record(self, what: str, name: str, content: Mapping[str, object]) -> None:
-        """Keep something in the records, with time, place and move.
+        """Keep something in the black box, with place and move; `what` is ``reported`` or ``measured``."""
+        place = self._vehicle.state().place
+        self._desk.box.write(what, name=name, content=dict(content), move=self.move, place=place)
 
-        Raises:
-            Fault: it cannot be written.
-        """
-        state = self._vehicle.state()
-        self._desk.records.add(
-            robot=self._robot.id,
-            time=round(state.time, 3),
-            place=asdict(state.place),
-            move=self.move,
-            what=what,
-            name=name,
-            content=dict(content),
-        )
+    def waited(self, slots: Sequence[str], seconds: float) -> None:
+        """Keep in the black box for how long the robot has waited for own slots."""
+        self._desk.box.write("wait", slots=slots, seconds=round(seconds, 3), move=self.move)
+
+    def decide(self, what: str, why: str, response: str) -> None:
+        """Keep in the black box what was decided: an event, its reason, and what the robot does."""
+        self._desk.box.write("decision", what=what, why=why, response=response, move=self.move)

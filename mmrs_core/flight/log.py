@@ -64,25 +64,6 @@ class Log:
             self._file.close()
 
 
-class Records:
-    """What a robot reported and measured, one JSON object a line; the file appears with the first."""
-
-    def __init__(self, path: Path, *, dry: bool) -> None:
-        """Keep the path; nothing is opened yet. `dry`: every record says that there was no vehicle."""
-        self._path = path
-        self._mark = {"dry_run": True} if dry else {}
-
-    def add(self, **fields: object) -> None:
-        """Append one record.
-
-        Raises:
-            Fault: it cannot be written.
-        """
-        line = json.dumps(fields | self._mark, ensure_ascii=True, default=str)
-        with _writing(self._path), self._path.open("a", encoding="ascii", newline="\n") as file:
-            file.write(line + "\n")
-
-
 @contextmanager
 def _writing(path: Path) -> Iterator[None]:
     try:

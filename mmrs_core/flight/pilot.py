@@ -28,6 +28,7 @@ from .program import (
     Then,
     Turn,
 )
+from .recording import fix
 from .responses import policy_for
 from .uploads import Flight, fence_of, mission_of, rally_of
 from .vehicle import Vehicle
@@ -149,6 +150,8 @@ class Pilot:
         return self._steps[moves[-1]]
 
     def _passed(self, place: Place) -> None:
+        if self._desk.dry:
+            fix(self._desk.box, self._vehicle.state(), place)
         self.track.append((self.journal.move, place))
 
     def _recharge(self, seconds: float) -> None:

@@ -5,20 +5,25 @@ from __future__ import annotations
 import threading
 from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path
+from importlib.metadata import version
+from platform import python_version
 from traceback import format_exception
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from . import recording
 from .ardupilot import MavlinkVehicle
+from .blackbox import BlackBox, black_box_path
 from .desk import Desk
 from .dry import DryVehicle
 from .faults import CRASHED, LINK_LOST, STOPPED, TAKEN_OVER, Fault
 from .judgement import Judgement
 from .link import Link
-from .log import Log, Records
+from .log import Log
 from .options import Options
 from .pilot import Pilot
 from .ports import Port, open_port
-from .program import Robot
+from .program import Geographic, Robot
 from .responses import policy_for, respond
 from .screen import say
 from .slots import Slots
@@ -89,6 +94,7 @@ class Session:
     def _end_early(self, fault: Fault) -> int:
         response = self._response_to(fault)
         say(f"{self.robot.id!a}: {fault.event}: {fault}; response: {response}")
+        self.pilot.journal.decide(fault.event, str(fault), response)
         self.watch.relax()
         try:
             self.pilot.journal.fail(fault.event)
@@ -121,10 +127,7 @@ class Session:
 
     def _tell_garbled(self, frames: int) -> None:
         say(f"{self.robot.id!a}: {frames} frames from the link could not be read")
-        try:
-            self.pilot.journal.record("counted", "unreadable frames", {"frames": frames})
-        except Fault as error:
-            say(f"{self.robot.id!a}: {error}")
+        self.desk.box.write("counted", frames={"unreadable": frames})
 
     def _response_to(self, fault: Fault) -> str:
         if fault.event == STOPPED:
@@ -136,20 +139,32 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
     options, judgement = shared.options, shared.judgement
     log = Log(options.log / robot.log, options.run, robot.id)
     stack.callback(log.close)
-    records = Records(options.log / f"{Path(robot.log).stem}.records.ndjson", dry=options.dry)
+    box = BlackBox(
+        black_box_path(options.log / robot.log),
+        options.run,
+        robot.id,
+        options.clock.now,
+        mark={"dry_run": True} if options.dry else {},
+    )
+    stack.callback(box.close)
     desk = Desk(
         options.clock,
         shared.slots,
         log,
-        records,
+        box,
         judgement.conditions,
         judgement.locators,
         shared.stop,
         say,
+        options.dry,
     )
     watch = Watch(robot, options.clock, shared.stop)
     link = None if options.dry else _link(robot, options, watch, stack)
     vehicle = _vehicle(robot, options, watch, link)
+    box.write("start", **_facts(robot, options, link))
+    if link is not None:
+        geographic = isinstance(robot.home, Geographic)
+        link.observe(recording.Recording(box, options.clock, vehicle.state, geographic=geographic))
     pilot = Pilot(robot, vehicle, desk)
     watch.current = lambda: pilot.waits.policies
     return Session(robot, vehicle, link, watch, desk, pilot, options.on_stop)
@@ -173,6 +188,18 @@ def _link(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Lin
     if not link.wait(lambda: link.component, reach.patience * options.clock.speedup):
         raise Fault(LINK_LOST, f"no vehicle at {url}{_why_unheard(link)}")
     return link
+
+
+def _facts(robot: Robot, options: Options, link: Link | None) -> dict[str, object]:
+    beat = link.latest("HEARTBEAT") if link is not None else None
+    firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
+    return {
+        "link": options.reach.urls[robot.id] if link is not None else None,
+        "vehicle": robot.vehicle,
+        "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
+        "home": robot.home,
+        "versions": {"python": python_version(), "pymavlink": version("pymavlink")},
+    }
 
 
 def _port(url: str) -> Port:

@@ -18,6 +18,8 @@ class State:
         time: seconds of the run. place: where it is. speed: metres per second.
         heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
             None where the vehicle does not say.
+        mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
+            for it, the vehicle's number. armed: whether the motors may run.
     """
 
     time: float
@@ -25,6 +27,8 @@ class State:
     speed: float
     heading: float
     energy: float | None
+    mode: str = ""
+    armed: bool = False
 
 
 class Vehicle(Protocol):

@@ -62,6 +62,7 @@ class Waits:
         """Raise a fault, or only say it where a policy has the robot carry on."""
         if policy_for(fault.event, self._robot, self.policies).response != CONTINUE:
             raise fault
+        self._journal.decide(fault.event, str(fault), CONTINUE)
         self._desk.say(f"{self._robot.id!a} carries on although {fault}")
 
     def _follow(self, policies: tuple[Policy, ...]) -> None:
@@ -96,6 +97,8 @@ class Waits:
             self._check(names, begun, alone)
             slots.await_change(GLANCE_SECONDS)
             self._vehicle.rest(0.0)
+        if told:
+            self._journal.waited(names, clock.now() - begun)
 
     def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
         if self._desk.stop.is_set():

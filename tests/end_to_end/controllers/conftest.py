@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import socket
 import subprocess
 import sys
@@ -49,6 +50,12 @@ class Controllers:
                 _, said = process.communicate()
                 pytest.fail(f"{script} does not end; it said:\n{said}")
         return process.returncode, said
+
+    def box(self, robot: str, *kinds: str) -> list[dict]:
+        """Return the lines of a robot's black box, those of some kinds only if any are named."""
+        text = (self.logs / f"{robot}.blackbox.ndjson").read_text("ascii")
+        lines = map(json.loads, text.splitlines())
+        return [line for line in lines if not kinds or line["kind"] in kinds]
 
     def replayed(self, *, partial: bool = False) -> ReplayResult:
         return replay(self.program, read_logs([self.logs]), partial=partial)

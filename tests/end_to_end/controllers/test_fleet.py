@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 import pytest
@@ -103,7 +102,7 @@ def test_a_value_that_is_measured_is_recorded_with_its_place(controllers, hangar
     _, links = hangar(flown, values={"CO2": lambda seconds: 412.5})
     code, said = made.run("fleet.py", *links)
     assert code == 0, said
-    (record,) = map(json.loads, (made.logs / "alpha.records.ndjson").read_text("ascii").splitlines())
+    (record,) = made.box("alpha", "measured")
     assert record["content"] == {"device": "gas", "result": 412.5}
     assert record["place"]["latitude"] == pytest.approx(42.37009, abs=1e-5)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import resource
 import subprocess
 import sys
@@ -65,7 +64,7 @@ def test_a_dry_run_measures_nothing_and_says_in_every_record_that_it_was_one(con
     )
     code, said = made.run("fleet.py", "--dry-run")
     assert code == 0, said
-    written = (made.logs / "alpha.records.ndjson").read_text("ascii").splitlines()
-    records = [json.loads(line) for line in written]
-    assert [record["dry_run"] for record in records] == [True, True]
-    assert records[0]["content"] == {"device": "gas", "result": None}
+    assert {line["dry_run"] for line in made.box("alpha")} == {True}
+    measured, reported = made.box("alpha", "measured", "reported")
+    assert measured["content"] == {"device": "gas", "result": None}
+    assert reported["name"] == "seen"

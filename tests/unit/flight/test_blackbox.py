@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+import json
+from math import nan
+
+import pytest
+
+from mmrs_core.flight.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.program import Geographic
+
+
+@pytest.fixture
+def path(tmp_path):
+    return black_box_path(tmp_path / "logs/alpha.jsonl")
+
+
+@pytest.fixture
+def opened(path):
+    """Return a function that opens the box; it is closed when the test is over."""
+    boxes = []
+
+    def open_box(**options):
+        boxes.append(BlackBox(path, "run-0", "alpha", lambda: 1.5, **options))
+        return boxes[-1]
+
+    yield open_box
+    for box in boxes:
+        box.close()
+
+
+def lines(path):
+    return [json.loads(line) for line in path.read_text("ascii").splitlines()]
+
+
+def test_every_line_says_whose_it_is_and_when_it_was_written(path, opened):
+    opened().write("fix", place=Geographic(42.0, 13.0, 5.0), energy=None)
+    (line,) = lines(path)
+    assert path.name == "alpha.blackbox.ndjson"
+    assert (line["run"], line["robot"], line["time"], line["kind"]) == ("run-0", "alpha", 1.5, "fix")
+    assert line["place"] == {"latitude": 42.0, "longitude": 13.0, "height": 5.0}
+    assert line["wall"].endswith("Z")
+
+
+def test_what_is_no_number_is_null(path, opened):
+    opened().write("measured", name="CO2", content={"result": nan})
+    assert lines(path)[0]["content"] == {"result": None}
+
+
+def test_a_full_file_is_put_aside_under_the_next_number(path, opened):
+    box = opened(largest=400)
+    for number in range(8):
+        box.write("text", severity="INFO", text=f"line {number}")
+    parts = sorted(path.parent.glob("alpha.blackbox.*.ndjson"))
+    assert [part.name for part in parts][:2] == ["alpha.blackbox.0001.ndjson", "alpha.blackbox.0002.ndjson"]
+    assert [line["text"] for part in (*parts, path) for line in lines(part)] == [
+        f"line {n}" for n in range(8)
+    ]
+    assert all(part.stat().st_size <= 400 for part in (*parts, path))
+
+
+def test_what_was_cut_off_stays_a_line_of_its_own(path, opened):
+    path.parent.mkdir()
+    path.write_bytes(b'{"run": "run-0", "ro')
+    opened().write("text", severity="INFO", text="again")
+    assert json.loads(path.read_text("ascii").splitlines()[1])["text"] == "again"
+
+
+def test_a_box_that_cannot_be_written_is_said_once_and_stops_nothing(path, opened):
+    path.parent.write_text("not a folder", "ascii")
+    said = []
+    box = opened(say=said.append)
+    box.write("text", text="one")
+    box.write("text", text="two")
+    (line,) = said
+    assert "alpha.blackbox.ndjson: the black box cannot be written" in line
