@@ -106,7 +106,7 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(workshop, program, place, {})
-    logs = write_logs(run, program, folder / "logs")
+    logs = write_logs(run, program, folder / "logs", place.types)
     files.append(("what each robot did", folder / "logs", len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]

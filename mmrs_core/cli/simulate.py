@@ -16,7 +16,8 @@ def simulate(
     call: typer.Context,
     behaviour: Behaviour,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where to write a log a robot.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write logs and black boxes."),
     ] = None,
     context: Context = None,
     robots: Robots = None,
@@ -51,7 +52,7 @@ def simulate(
     if output is not None:
         refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)
     run = fly(workshop, loaded.program, loaded.place, conditions, chosen)
-    logs = write_logs(run, loaded.program, output) if output is not None else ()
+    logs = write_logs(run, loaded.program, output, loaded.place.types) if output is not None else ()
     if json:
         say_json({"ending": run.ending, "tracks": run.tracks, "notes": run.notes, "logs": logs})
     else:

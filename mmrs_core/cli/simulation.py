@@ -18,6 +18,7 @@ from mmrs_core.cli.journey import Workshop
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.runtime.run import Run
+from mmrs_core.scene import RobotType
 
 _HOLDS = {"yes": True, "true": True, "no": False, "false": False}
 
@@ -92,13 +93,25 @@ def fly(
     )
 
 
-def write_logs(run: Run, program: Program, folder: Path) -> tuple[Path, ...]:
-    """Write the log of every robot; logs of other robots that an earlier run left there go away."""
+def write_logs(
+    run: Run, program: Program, folder: Path, types: Mapping[str, RobotType] | None = None
+) -> tuple[Path, ...]:
+    """Write the log and the black box of every robot; return the logs.
+
+    What an earlier simulation left there of other robots goes away.
+
+    Raises:
+        ProtectedError: if the black box of a flight lies there.
+    """
+    from mmrs_core.cli.flights.recording import remove_boxes, write_boxes
+
     names = [log_name(robot.id) for robot in program.robots]
+    remove_boxes(folder)
     _remove_older(folder, set(names))
     with LogWriter(folder) as writer:
         for record in run.records:
             writer.write(record)
+    write_boxes(run, program, types or {}, folder)
     return tuple(folder / name for name in names if (folder / name).exists())
 
 

@@ -1,0 +1,209 @@
+"""Reads the black boxes of robots: everything that was known, decided and done, one JSON object a line.
+
+A box is read although its end was cut off or lines of it were damaged, as when the power went: what
+cannot be read is told, and the rest is used. Lines are read one by one, so that days fit in memory.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import IO
+
+from mmrs_core.behaviour.log import SUFFIX
+from mmrs_core.errors import UnreadableError
+
+BOX = ".blackbox"
+BOX_SUFFIX = ".ndjson"
+LONGEST_LINE = 1_000_000
+
+_PART = re.compile(rf"(?P<stem>.+){re.escape(BOX)}(?:\.(?P<number>\d+))?{re.escape(BOX_SUFFIX)}")
+_OWN = frozenset({"run", "robot", "time", "wall", "kind"})
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line.
+
+    Attributes:
+        time: seconds of the run.
+        wall: date and time of day as written, ISO 8601; empty where there is none.
+        kind: ``fix``, ``command``, ``decision`` …; kinds that nobody knows are entries, too.
+        content: what else the line says, by key.
+    """
+
+    run: str
+    robot: str
+    time: float
+    wall: str
+    kind: str
+    content: Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Damage:
+    """What cannot be read. Attributes: name of the file, line (0: the file as a whole), what is wrong."""
+
+    file: str
+    line: int
+    what: str
+
+    def __str__(self) -> str:
+        """Return one line for people."""
+        return f"{self.file}:{self.line}: {self.what}" if self.line else f"{self.file}: {self.what}"
+
+
+Tell = Callable[[Damage], None]
+
+
+@dataclass(frozen=True, slots=True)
+class BlackBox:
+    """The box of one robot.
+
+    Attributes:
+        stem: of its files, which is that of the robot's log.
+        parts: oldest first.
+        missing: what of it is not there, for people; empty if nothing seems to be.
+    """
+
+    stem: str
+    parts: tuple[Path, ...]
+    missing: tuple[str, ...] = ()
+
+    def entries(self, tell: Tell) -> Iterator[Entry]:
+        """Yield every entry that can be read, in the order of the lines; tell what cannot be.
+
+        Raises:
+            UnreadableError: if a part cannot be opened.
+        """
+        for part in self.parts:
+            yield from entries_of(part, tell)
+
+
+def black_boxes(paths: Iterable[Path]) -> tuple[BlackBox, ...]:
+    """Return the boxes that paths lead to, by stem; none where there are none.
+
+    Args:
+        paths: folders; logs, whose boxes lie beside them; or any part of a box, which stands for all.
+    """
+    stems: dict[tuple[Path, str], None] = {}
+    for path in paths:
+        if path.is_dir():
+            found = sorted(path.glob(f"*{BOX}*{BOX_SUFFIX}"))
+            stems |= {(path, stem): None for part in found if (stem := _stem(part))}
+        elif stem := _stem(path) or (path.stem if path.suffix == SUFFIX else ""):
+            stems[(path.parent, stem)] = None
+    boxes = (_box(folder, stem) for folder, stem in stems)
+    return tuple(box for box in boxes if box.parts)
+
+
+def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
+    """Yield the entries of one file; tell what cannot be read.
+
+    Raises:
+        UnreadableError: if the file cannot be opened.
+    """
+    try:
+        with path.open("rb") as file:
+            for number, line in enumerate(_lines(file), start=1):
+                entry, fault = _entry(line)
+                if entry is not None:
+                    yield entry
+                elif fault:
+                    tell(Damage(path.name, number, fault))
+    except OSError as error:
+        raise UnreadableError(f"{path}: cannot be read as a black box: {error.strerror or error}") from error
+
+
+def _stem(path: Path) -> str:
+    found = _PART.fullmatch(path.name)
+    return found["stem"] if found else ""
+
+
+def _box(folder: Path, stem: str) -> BlackBox:
+    numbered: dict[int, Path] = {}
+    current: list[Path] = []
+    for path in folder.glob(f"*{BOX}*{BOX_SUFFIX}"):
+        found = _PART.fullmatch(path.name)
+        if found and found["stem"] == stem:
+            if found["number"]:
+                numbered[int(found["number"])] = path
+            else:
+                current.append(path)
+    parts = (*(numbered[number] for number in sorted(numbered)), *current)
+    return BlackBox(stem, parts, tuple(_missing(stem, numbered, bool(current))))
+
+
+def _missing(stem: str, numbered: Iterable[int], current: bool) -> Iterator[str]:
+    numbers = sorted(numbered)
+    absent = sorted(set(range(1, numbers[-1])) - set(numbers)) if numbers else []
+    for first, last in _stretches(absent):
+        which = f"part {first}" if first == last else f"parts {first} to {last}"
+        yield f"{stem}{BOX}: {which} of {numbers[-1]} {'is' if first == last else 'are'} missing"
+    if numbers and not current:
+        yield f"{stem}{BOX}: its last part, {stem}{BOX}{BOX_SUFFIX}, is missing"
+
+
+def _stretches(numbers: list[int]) -> Iterator[tuple[int, int]]:
+    first = None
+    for i, number in enumerate(numbers):
+        first = number if first is None else first
+        if i + 1 == len(numbers) or numbers[i + 1] != number + 1:
+            yield first, number
+            first = None
+
+
+def _lines(file: IO[bytes]) -> Iterator[bytes]:
+    """Yield lines with their ends; of one that is longer than any entry, only the beginning."""
+    while line := file.readline(LONGEST_LINE):
+        yield line
+        while line and not line.endswith(b"\n") and len(line) == LONGEST_LINE:
+            line = file.readline(LONGEST_LINE)
+
+
+def _entry(line: bytes) -> tuple[Entry | None, str]:
+    """Return an entry, or None and what keeps the line from being one; neither for an empty line."""
+    if not line.strip():
+        return None, ""
+    try:
+        value: object = json.loads(line)
+    except (ValueError, RecursionError):
+        return None, _why(line)
+    if not isinstance(value, dict):
+        return None, "not an object"
+    run, robot, kind = (value.get(name) for name in ("run", "robot", "kind"))
+    if not (isinstance(run, str) and isinstance(robot, str) and isinstance(kind, str) and robot and kind):
+        return None, "run, robot or kind is missing"
+    time = number_of(value.get("time"))
+    if time is None or time < 0:
+        return None, "its time is not a number from 0 on"
+    wall = value.get("wall")
+    content = {name: each for name, each in value.items() if name not in _OWN}
+    return Entry(run, robot, time, wall if isinstance(wall, str) else "", kind, content), ""
+
+
+def number_of(value: object) -> float | None:
+    """Return a finite number; None for anything else.
+
+    >>> number_of(3), number_of(True), number_of("3"), number_of(float("nan"))
+    (3.0, None, None, None)
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if isfinite(number) else None
+
+
+def _why(line: bytes) -> str:
+    if b"\0" in line:
+        return "zero bytes, as power loss leaves them"
+    if not line.endswith(b"\n"):
+        return "longer than any entry" if len(line) == LONGEST_LINE else "cut off while it was written"
+    return "not JSON"

@@ -1,0 +1,59 @@
+"""Reads what is left of a damaged log, for people; the judge of runs takes whole logs only."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from mmrs_core.behaviour.blackbox import Damage
+from mmrs_core.behaviour.log import LONGEST_LINE, SUFFIX, faults_of
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.errors import UnreadableError
+
+
+def salvage_log(path: Path) -> tuple[tuple[StepRecord, ...], tuple[Damage, ...]]:
+    """Return the steps in a log that can be read, and what cannot be.
+
+    Raises:
+        UnreadableError: if the file cannot be opened.
+    """
+    try:
+        lines = path.read_bytes().splitlines()
+    except OSError as error:
+        raise UnreadableError(f"{path}: cannot be read as a log: {error.strerror or error}") from error
+    records: list[StepRecord] = []
+    damages: list[Damage] = []
+    for number, line in enumerate(lines, start=1):
+        record, fault = _record(line)
+        if record is not None:
+            records.append(record)
+        elif line.strip():
+            cut = number == len(lines) and not line.endswith(b"}")
+            damages.append(Damage(path.name, number, "cut off while it was written" if cut else fault))
+    return tuple(records), tuple(damages)
+
+
+def logs_in(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the logs that paths lead to, each once: a folder stands for all in it.
+
+    Other files, such as the parts of a black box, are none.
+    """
+    found: dict[Path, None] = {}
+    for path in paths:
+        found |= dict.fromkeys(sorted(path.glob(f"*{SUFFIX}")) if path.is_dir() else [path])
+    return tuple(path for path in found if path.suffix == SUFFIX)
+
+
+def _record(line: bytes) -> tuple[StepRecord | None, str]:
+    if len(line) > LONGEST_LINE:
+        return None, "longer than any step"
+    try:
+        value: object = json.loads(line)
+    except (ValueError, RecursionError):
+        return None, "zero bytes, as power loss leaves them" if b"\0" in line else "not JSON"
+    if faults := faults_of(value):
+        return None, "; ".join(faults)
+    assert isinstance(value, dict)
+    counts = {name: int(value[name]) for name in ("seq", "lamport")}
+    return StepRecord(**{**value, **counts, "time": float(value["time"])}), ""

@@ -1,0 +1,167 @@
+"""Reads logs and black boxes of one flight, whatever state they are in."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mmrs_core.behaviour.blackbox import BlackBox, Damage, Entry, black_boxes, number_of
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.salvage import logs_in, salvage_log
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
+from mmrs_core.cli.flights.values import Flight, Flown
+from mmrs_core.errors import UnreadableError
+from mmrs_core.scene import RobotType
+
+SIMULATION = "simulation"
+"""What stands for the link where there was no vehicle."""
+MOST_ENTRIES = 100_000
+"""How many entries of one robot are kept, fixes and messages aside."""
+_MOST_DAMAGES = 20
+
+
+@dataclass(slots=True)
+class _Contents:
+    """What the box of one robot holds, so far."""
+
+    fixes: Fixes = field(default_factory=Fixes)
+    entries: list[Entry] = field(default_factory=list)
+    messages: int = 0
+    counts: list[Counter[str]] = field(default_factory=list)
+    runs: dict[str, None] = field(default_factory=dict)
+    dropped: int = 0
+    wall: str = ""
+
+    def add(self, entry: Entry) -> None:
+        """Take an entry."""
+        self.runs[entry.run] = None
+        self.wall = self.wall or entry.wall
+        if entry.kind == "fix":
+            self.fixes.add(entry)
+        elif entry.kind == "message":
+            self.messages += 1
+        elif entry.kind == "counted":
+            self._count(entry)
+        elif len(self.entries) < MOST_ENTRIES:
+            self.entries.append(entry)
+        else:
+            self.dropped += 1
+
+    def _count(self, entry: Entry) -> None:
+        """Keep the newest counts of each process that the robot had: they only grow."""
+        if not self.counts or any(each.kind == "start" for each in self.entries[-1:]):
+            self.counts.append(Counter())
+        frames = entry.content.get("frames")
+        for name, count in frames.items() if isinstance(frames, Mapping) else ():
+            number = number_of(count)
+            if number is not None:
+                self.counts[-1][str(name)] = max(self.counts[-1][str(name)], int(number))
+
+    @property
+    def simulated(self) -> bool:
+        return any(each.kind == "start" and each.content.get("link") == SIMULATION for each in self.entries)
+
+
+def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, RobotType]) -> Flight:
+    """Return what logs and black boxes tell; damages are in the flight, for people.
+
+    Args:
+        paths: logs, parts of black boxes, or folders of them.
+        program: the behaviour whose run it was.
+        types: of its robots, by name, as far as they are known.
+
+    Raises:
+        UnreadableError: if a file cannot be opened, or there is neither log nor black box.
+    """
+    damages: list[str] = []
+    steps = _steps(paths, damages)
+    boxes = black_boxes(paths)
+    if not steps and not boxes:
+        raise UnreadableError(f"{', '.join(map(str, paths))}: neither a log nor a black box is here")
+    contents = _contents(boxes, damages)
+    known = {robot.id for robot in program.robots}
+    for stranger in sorted({*steps, *contents} - known):
+        damages.append(f"{stranger}: no such robot in the behaviour; left out")
+    damages += _runs(steps, contents)
+    robots = {
+        robot.id: _flown(
+            robot.id,
+            steps.get(robot.id, ()),
+            contents.get(robot.id, _Contents()),
+            zero_of(robot, program, types.get(robot.type_name)),
+            damages,
+        )
+        for robot in program.robots
+    }
+    begun = min((each.wall for each in contents.values() if each.wall), default="")
+    run = next((each for each in (*_of_steps(steps), *_of_boxes(contents)) if each), "")
+    return Flight(run, robots, tuple(damages), len(boxes), begun)
+
+
+def _steps(paths: Sequence[Path], damages: list[str]) -> dict[str, list[StepRecord]]:
+    steps: dict[str, list[StepRecord]] = {}
+    for path in logs_in(paths):
+        records, unread = salvage_log(path)
+        damages += _told(unread, len(unread))
+        for record in records:
+            steps.setdefault(record.robot, []).append(record)
+    return steps
+
+
+def _contents(boxes: Iterable[BlackBox], damages: list[str]) -> dict[str, _Contents]:
+    contents: dict[str, _Contents] = {}
+    for box in boxes:
+        unread: list[Damage] = []
+        count = 0
+
+        def tell(damage: Damage, unread: list[Damage] = unread) -> None:
+            nonlocal count
+            count += 1
+            if len(unread) < _MOST_DAMAGES:
+                unread.append(damage)
+
+        for entry in box.entries(tell):
+            contents.setdefault(entry.robot, _Contents()).add(entry)
+        damages += [*box.missing, *_told(unread, count)]
+    return contents
+
+
+def _told(unread: Sequence[Damage], count: int) -> Iterator[str]:
+    yield from map(str, unread[:_MOST_DAMAGES])
+    if count > _MOST_DAMAGES:
+        yield f"{unread[0].file}: {count - _MOST_DAMAGES} more lines cannot be read"
+
+
+def _flown(
+    robot: str, records: Sequence[StepRecord], contents: _Contents, zero: Zero, damages: list[str]
+) -> Flown:
+    fixes = contents.fixes
+    track = fixes.track(zero, exact=contents.simulated)
+    if fixes.unplaced:
+        damages.append(f"{robot}: {fixes.unplaced} fixes have no place in the frame of the behaviour")
+    if fixes.turned:
+        damages.append(
+            f"{robot}: the time of {fixes.turned} fixes goes back; they count as of the one before"
+        )
+    if contents.dropped:
+        damages.append(f"{robot}: {contents.dropped} entries beyond {MOST_ENTRIES} are left out")
+    counted: Counter[str] = sum(contents.counts, Counter())
+    entries = tuple(contents.entries)
+    return Flown(robot, tuple(records), track, entries, contents.messages, counted, contents.simulated)
+
+
+def _runs(steps: Mapping[str, Sequence[StepRecord]], contents: Mapping[str, _Contents]) -> Iterator[str]:
+    runs = {*_of_steps(steps), *_of_boxes(contents)}
+    if len(runs) > 1:
+        yield f"these are of different runs: {', '.join(map(repr, sorted(runs)))}"
+
+
+def _of_steps(steps: Mapping[str, Sequence[StepRecord]]) -> dict[str, None]:
+    return dict.fromkeys(record.run for records in steps.values() for record in records)
+
+
+def _of_boxes(contents: Mapping[str, _Contents]) -> dict[str, None]:
+    return dict.fromkeys(run for each in contents.values() for run in each.runs)

@@ -1,0 +1,101 @@
+"""A flight as logs and black boxes tell it: plain values in the local frame of the behaviour."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mmrs_core.behaviour.blackbox import Entry
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.geometry.frames import Floats
+from mmrs_core.scene import Position
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """Where a robot was when.
+
+    Attributes:
+        times: (n,) seconds of the run, never falling.
+        positions: (n, 3) metres east, north, up.
+        energies: (n,) part of the battery that is left, 0 to 1; nan where nobody knows.
+        limit: seconds between two fixes from which on nobody knows where the robot was between them; inf
+            where it is known to have gone straight, as in a simulation.
+    """
+
+    times: Floats
+    positions: Floats
+    energies: Floats
+    limit: float = float("inf")
+
+    @property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """Return (since, until) of every stretch of time in which nobody knows where the robot was."""
+        found = np.flatnonzero(np.diff(self.times) > self.limit)
+        return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
+
+    def at(self, time: float) -> Position | None:
+        """Return where the robot was; None before the first fix, after the last, and in a gap."""
+        if not len(self.times) or not self.times[0] <= time <= self.times[-1]:
+            return None
+        after = min(int(np.searchsorted(self.times, time, side="right")), len(self.times) - 1)
+        since, until = self.times[after - 1] if after else self.times[0], self.times[after]
+        if until - since > self.limit and since < time < until:
+            return None
+        part = (time - since) / (until - since) if until > since else 1.0
+        east, north, up = self.positions[max(after - 1, 0)] * (1 - part) + self.positions[after] * part
+        return float(east), float(north), float(up)
+
+
+NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0))
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What one robot did.
+
+    Attributes:
+        records: its steps, in the order of its log.
+        track: empty where there is no black box.
+        entries: of its black box, in order: all but fixes, messages and counts.
+        messages: how many there were, by direction and type; counted: frames, by how they were counted.
+        simulated: whether there was no vehicle.
+    """
+
+    robot: str
+    records: tuple[StepRecord, ...] = ()
+    track: Track = NOWHERE
+    entries: tuple[Entry, ...] = ()
+    messages: int = 0
+    counted: Mapping[str, int] = field(default_factory=dict)
+    simulated: bool = False
+
+    def of_kind(self, kind: str) -> tuple[Entry, ...]:
+        """Return the entries of one kind."""
+        return tuple(entry for entry in self.entries if entry.kind == kind)
+
+    @property
+    def end(self) -> float:
+        """Return the time of the last thing that is known of the robot, seconds."""
+        times = [*self.track.times[-1:].tolist(), *(entry.time for entry in self.entries[-1:])]
+        return max([*times, *(record.time for record in self.records[-1:])], default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """What all robots did.
+
+    Attributes:
+        run: identifier of the run; empty where nothing could be read.
+        robots: by name, those of the behaviour in its order; one without log or box is here, too.
+        damages: what could not be read, or does not fit together, for people.
+        boxes: how many black boxes there are.
+    """
+
+    run: str
+    robots: Mapping[str, Flown]
+    damages: tuple[str, ...] = ()
+    boxes: int = 0
+    begun: str = ""
