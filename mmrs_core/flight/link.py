@@ -1,30 +1,63 @@
-"""A MAVLink link: one thread reads it and keeps the latest of everything; anybody may send."""
+"""A link to one vehicle: the latest of everything that it says, waits for more, and what is sent to it."""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
-
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .clock import Clock
 from .faults import LINK_LOST, Fault
-from .ports import Port
-from .signing import sign
+from .identity import LATE_MILLISECONDS, Identity
+from .ports import Address, Port
+from .radio import GLANCE_SECONDS, Radio, is_autopilot
+from .signing import Signer
 
 Message = Any
 Found = TypeVar("Found")
 Observer = Callable[[Message, bool], None]
 """Is given every message and whether it goes out; called from whatever thread sends or reads."""
 
-GROUND_SYSTEM = 255
-GROUND_COMPONENT = 190
-HEARTBEAT_SECONDS = 1.0
-GLANCE_SECONDS = 0.2
 TRIES = 5
+ANSWER_SECONDS = 1.5
+ITEM_SECONDS = 0.25
+ANYBODY = 0
+"""Stands for every component of the vehicle's system."""
+
+TELL_BOOT = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYSTEM_TIME", "ATTITUDE"})
+OF_ALL = frozenset(
+    {
+        "CAMERA_FEEDBACK",
+        "CAMERA_IMAGE_CAPTURED",
+        "COLLISION",
+        "DISTANCE_SENSOR",
+        "NAMED_VALUE_FLOAT",
+        "OBSTACLE_DISTANCE",
+    }
+)
+"""Messages that count as the vehicle's whichever of its components sends them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Retries:
+    """How often to send at most what is not answered, and how long to wait each time.
+
+    As the mission protocol publishes them (https://mavlink.io/en/services/mission.html); slow radios
+    need more.
+
+    Attributes:
+        tries: how often to send.
+        answer: seconds for an answer.
+        item: seconds for an item of a mission that is read back.
+    """
+
+    tries: int = TRIES
+    answer: float = ANSWER_SECONDS
+    item: float = ITEM_SECONDS
 
 
 class Link:
@@ -33,50 +66,98 @@ class Link:
     Attributes:
         guard: called again and again during every wait; raises what should end it.
         system, component: the vehicle's address; 0 until it was heard of.
-        garbled: how many frames could not be read, or were not signed as they should be.
-        trouble: what the port has last complained of; empty once the vehicle is heard again.
-        tries: how often to send at most what is not answered.
+        retries: how often, and how long apart, to send what is not answered.
     """
 
-    def __init__(self, port: Port, clock: Clock, system: int = 0, key: bytes | None = None) -> None:
+    def __init__(
+        self,
+        port: Port | Radio,
+        clock: Clock,
+        system: int = 0,
+        key: bytes | None = None,
+        retries: Retries | None = None,
+    ) -> None:
         """Listen to a vehicle.
 
         Args:
-            port: open.
+            port: open, for this vehicle alone; or a radio, which robots may share.
             clock: of the run.
-            system: of the vehicle; 0 is whichever speaks first.
-            key: to sign what is sent with; what comes must then be signed with it, too.
+            system: of the vehicle; 0 is whichever speaks first that no other robot has.
+            key: to sign with on a port of its own; what comes must then be signed with it, too.
+            retries: None: as published.
+
+        Raises:
+            ValueError: another robot has that vehicle.
         """
+        radio = port if isinstance(port, Radio) else Radio(port, clock, Signer(key) if key else None)
         self.clock = clock
         self.guard: Callable[[], None] = lambda: None
         self.system = system
         self.component = 0
-        self.garbled = 0
-        self.trouble = ""
-        self.tries = TRIES
+        self.retries = retries or Retries()
+        self._radio = radio
         self._wanted = system
-        self._port = port
-        self._mav = mavlink.MAVLink(port, srcSystem=GROUND_SYSTEM, srcComponent=GROUND_COMPONENT)
-        self._mav.robust_parsing = True
-        if key is not None:
-            sign(self._mav, key)
-        self._sending = threading.Lock()
+        self._identity = Identity(max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup))
         self._changed = threading.Condition()
         self._latest: dict[str, tuple[Message, float]] = {}
-        self._inboxes: list[tuple[frozenset[str], deque[Message]]] = []
+        self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
         self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
-        self._beaten = float("-inf")
-        self._open = True
-        self._ended = False
-        self._thread = threading.Thread(target=self._listen, name="mavlink reader", daemon=True)
-        self._thread.start()
+        self._ended = ""
+        radio.join(self)
 
     def close(self) -> None:
         """Stop listening."""
-        self._open = False
-        self._thread.join()
-        self._port.close()
+        self._radio.leave(self)
+
+    @property
+    def listening(self) -> bool:
+        """Return whether something may still come."""
+        return self._radio.listening
+
+    @property
+    def trouble(self) -> str:
+        """Return what the port has last complained of; empty once something is heard again."""
+        return self._radio.trouble
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """Return how many frames on the radio were not used, by type and reason."""
+        return dict(self._radio.dropped)
+
+    @property
+    def garbled(self) -> int:
+        """Return how many frames could not be read, or were not signed as they should be."""
+        return sum(self._radio.dropped[reason] for reason in ("unreadable", "not signed with the key"))
+
+    @property
+    def tries(self) -> int:
+        """Return how often to send at most what is not answered."""
+        return self.retries.tries
+
+    @tries.setter
+    def tries(self, tries: int) -> None:
+        self.retries = replace(self.retries, tries=tries)
+
+    @property
+    def starts(self) -> int:
+        """Return how often the vehicle was seen to start anew."""
+        return self._identity.starts
+
+    def doubt(self) -> str:
+        """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
+        if self._identity.twin:
+            return f"there are two vehicles with system id {self.system}: {self._identity.twin}"
+        others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
+        if not self._wanted and others:
+            shown = " and ".join(map(str, sorted([self.system, *others])))
+            return f"vehicles with the system ids {shown} speak on this link: say which, as URL@{self.system}"
+        return ""
+
+    def strangers(self) -> str:
+        """Return who speaks on the radio instead of the vehicle; empty if nobody does."""
+        shown = ", ".join(map(str, sorted(self._radio.heard)))
+        return f"heard system {shown}, and not {self._wanted}" if shown and self._wanted else ""
 
     def observe(self, observer: Observer) -> None:
         """Have every message told from now on: what is sent, and what the vehicle says.
@@ -89,11 +170,7 @@ class Link:
         """Send one message; where the port does not take it, it is lost like any on a poor link."""
         for observer in self._observers:
             observer(message, True)
-        with self._sending:
-            try:
-                self._mav.send(message)
-            except OSError as error:
-                self.trouble = error.strerror or str(error)
+        self._radio.send(message, self._identity.sender)
 
     def latest(self, kind: str) -> Message | None:
         """Return the last message of that name from the vehicle."""
@@ -118,7 +195,7 @@ class Link:
         until = self.clock.now() + seconds
         while True:
             if self._ended:
-                raise Fault(LINK_LOST, self.trouble)
+                raise Fault(LINK_LOST, self._ended)
             self.guard()
             with self._changed:
                 found = test()
@@ -127,64 +204,63 @@ class Link:
                     return found or None
                 self._changed.wait(min(self.clock.real(left), GLANCE_SECONDS))
 
+    def wake(self) -> None:
+        """Have a wait ask its guard and its test again at once."""
+        with self._changed:
+            self._changed.notify_all()
+
     @contextmanager
-    def inbox(self, *kinds: str) -> Iterator[deque[Message]]:
-        """Collect every message of these names from now on."""
-        entry = (frozenset(kinds), deque[Message]())
+    def inbox(self, *kinds: str, component: int | None = None) -> Iterator[deque[Message]]:
+        """Collect every message of these names from now on.
+
+        Args:
+            kinds: names of messages.
+            component: of the vehicle's system that must have sent them; None: the autopilot.
+        """
+        entry = (frozenset(kinds), self.component if component is None else component, deque[Message]())
         with self._changed:
             self._inboxes.append(entry)
         try:
-            yield entry[1]
+            yield entry[2]
         finally:
             with self._changed:
-                self._inboxes.remove(entry)
+                self._inboxes = [other for other in self._inboxes if other is not entry]
 
-    def _listen(self) -> None:
-        while self._open:
-            self._beat()
-            try:
-                data = self._port.read(min(self.clock.real(HEARTBEAT_SECONDS), GLANCE_SECONDS))
-            except OSError as error:
-                self._end(f"the link has broken: {error.strerror or error}")
-                return
-            for message in self._mav.parse_buffer(data) or ():
-                self._keep(message)
+    def meets(self, heartbeat: Message) -> bool:
+        """Return whether an autopilot's heartbeat is that of the vehicle; it is the link's from then on."""
+        system = heartbeat.get_srcSystem()
+        if self._wanted not in (0, system) or (not self._wanted and self._radio.claimed(system)):
+            return False
+        self.system = system
+        self.component = heartbeat.get_srcComponent()
+        return True
 
-    def _end(self, reason: str) -> None:
-        with self._changed:
-            self.trouble, self._ended = reason, True
-            self._changed.notify_all()
-
-    def _beat(self) -> None:
-        if self.clock.now() - self._beaten >= HEARTBEAT_SECONDS:
-            self._beaten = self.clock.now()
-            self.send(
-                mavlink.MAVLink_heartbeat_message(
-                    mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3
-                )
-            )
-
-    def _keep(self, message: Message) -> None:
-        kind = message.get_type()
-        if kind == "BAD_DATA":
-            self.garbled += 1
-            return
-        if kind == "HEARTBEAT" and message.type != mavlink.MAV_TYPE_GCS and not self.component:
-            self._meet(message)
-        if message.get_srcSystem() != self.system or message.get_srcComponent() != self.component:
+    def hears(self, message: Message, sender: Address | None) -> None:
+        """Take a message from the vehicle's system."""
+        own = message.get_srcComponent() == self.component
+        if own and not self._identity.speaks_from(sender, time.monotonic(), heartbeat=is_autopilot(message)):
+            self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
             return
         for observer in self._observers:
             observer(message, False)
         with self._changed:
-            self._heard = self.clock.now()
-            self.trouble = ""
-            self._latest[kind] = (message, self._heard)
-            for kinds, collected in self._inboxes:
-                if kind in kinds:
-                    collected.append(message)
+            self._keep(message, own=own)
             self._changed.notify_all()
 
-    def _meet(self, heartbeat: Message) -> None:
-        if self._wanted in (0, heartbeat.get_srcSystem()):
-            self.system = heartbeat.get_srcSystem()
-            self.component = heartbeat.get_srcComponent()
+    def learns(self, reason: str) -> None:
+        """Be told that nothing will come any more."""
+        with self._changed:
+            self._ended = reason
+            self._changed.notify_all()
+
+    def _keep(self, message: Message, *, own: bool) -> None:
+        kind, now = message.get_type(), self.clock.now()
+        if own:
+            self._heard = now
+            if kind in TELL_BOOT:
+                self._identity.booted(message.time_boot_ms)
+        if own or kind in OF_ALL:
+            self._latest[kind] = (message, now)
+        for kinds, component, collected in self._inboxes:
+            if kind in kinds and component in (ANYBODY, message.get_srcComponent()):
+                collected.append(message)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import socket
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
+
+Address = tuple[str, int]
 
 LARGEST = 65_535
 """Bytes that a datagram can hold."""
@@ -11,12 +13,23 @@ LARGEST = 65_535
 LAST_PORT = 65_535
 USUAL_BAUD = 57_600
 SOCKETS = ("udpin", "udpout", "tcp")
+LAST_SYSTEM = 255
+
+
+class Received(NamedTuple):
+    """What has come, and from where; no sender where all that speak share one wire."""
+
+    data: bytes
+    sender: Address | None = None
+
+
+NOTHING = Received(b"")
 
 
 class Port(Protocol):
-    """Carries bytes to and from a vehicle."""
+    """Carries bytes to and from vehicles."""
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         """Return what has come, waiting for so many real seconds at most; empty if nothing has.
 
         Raises:
@@ -24,8 +37,8 @@ class Port(Protocol):
         """
         ...
 
-    def write(self, data: bytes) -> object:
-        """Send bytes, or drop them where nobody can be reached yet.
+    def write(self, data: bytes, to: Address | None = None) -> object:
+        """Send bytes to a sender, or drop them where nobody can be reached yet.
 
         Raises:
             OSError: they are lost; those after them need not be.
@@ -55,7 +68,21 @@ def open_port(url: str) -> Port:
     return TcpPort(address) if scheme == "tcp" else UdpPort(address, listens=scheme == "udpin")
 
 
-def address_of(url: str) -> tuple[str, int] | None:
+def split_system(text: str) -> tuple[str, int]:
+    """Return the url and the MAVLink system of ``URL[@SYSTEM]``; 0 where none is given.
+
+    Raises:
+        ValueError: the system is no number from 1 to 255.
+    """
+    url, separator, number = text.rpartition("@")
+    if not separator:
+        return text, 0
+    if not number.isdecimal() or not 0 < int(number) <= LAST_SYSTEM:
+        raise ValueError(f"{text}: {number!r} after the @ is no MAVLink system from 1 to {LAST_SYSTEM}")
+    return url, int(number)
+
+
+def address_of(url: str) -> Address | None:
     """Return host and port of a url; None where it names a serial device.
 
     Raises:
@@ -79,31 +106,30 @@ def _baud_of(url: str) -> int:
 
 
 class UdpPort:
-    """A UDP socket; one that listens answers whoever spoke last."""
+    """A UDP socket; one that listens sends to those that it is told, when they have spoken."""
 
-    def __init__(self, address: tuple[str, int], listens: bool) -> None:
+    def __init__(self, address: Address, listens: bool) -> None:
         """Bind to the address, or send to it."""
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._peer = None if listens else address
         if listens:
             self._socket.bind(address)
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         """Return the next datagram."""
         self._socket.settimeout(seconds)
         try:
-            data, sender = self._socket.recvfrom(LARGEST)
+            return Received(*self._socket.recvfrom(LARGEST))
         except (TimeoutError, ConnectionRefusedError, ConnectionResetError):
-            return b""
-        self._peer = sender
-        return data
+            return NOTHING
 
-    def write(self, data: bytes) -> object:
+    def write(self, data: bytes, to: Address | None = None) -> object:
         """Send a datagram if there is somebody to send it to; an unreachable peer loses it."""
-        if self._peer is None:
+        peer = to or self._peer
+        if peer is None:
             return None
         try:
-            return self._socket.sendto(data, self._peer)
+            return self._socket.sendto(data, peer)
         except ConnectionRefusedError:
             return None
 
@@ -119,7 +145,7 @@ class TcpPort:
         """Connect."""
         self._socket = socket.create_connection(address, timeout=10.0)
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         """Return what has come.
 
         Raises:
@@ -129,12 +155,12 @@ class TcpPort:
         try:
             data = self._socket.recv(LARGEST)
         except TimeoutError:
-            return b""
+            return NOTHING
         if not data:
             raise ConnectionError("the vehicle's side has closed the connection")
-        return data
+        return Received(data)
 
-    def write(self, data: bytes) -> object:
+    def write(self, data: bytes, to: Address | None = None) -> object:
         """Send all of it."""
         self._socket.sendall(data)
         return None
@@ -160,11 +186,11 @@ class SerialPort:
         except Exception as error:
             raise OSError(f"{url}: cannot be opened: {error}") from error
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         """Return what has come."""
-        return bytes(self._file.recv(LARGEST)) if self._file.select(seconds) else b""
+        return Received(bytes(self._file.recv(LARGEST))) if self._file.select(seconds) else NOTHING
 
-    def write(self, data: bytes) -> object:
+    def write(self, data: bytes, to: Address | None = None) -> object:
         """Send all of it."""
         return self._file.write(data)
 

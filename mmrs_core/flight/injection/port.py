@@ -15,7 +15,7 @@ from contextlib import suppress
 from random import Random
 
 from ..clock import Clock
-from ..ports import Port
+from ..ports import NOTHING, Address, Port, Received
 from .spec import Injection
 
 
@@ -89,24 +89,24 @@ class InjectedPort:
         self._sender = threading.Thread(target=self._send_late, name="late pieces", daemon=True)
         self._sender.start()
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         """Return the next piece that arrives."""
         until = time.monotonic() + seconds
         while True:
             piece = self._arriving.due(self._clock.now())
             left = until - time.monotonic()
             if piece is not None or left <= 0.0:
-                return piece or b""
+                return piece or NOTHING
             wait = min(left, self._clock.real(self._arriving.next() - self._clock.now()))
-            read = self._port.read(wait)
-            for when, copy in self._incoming.passing(read) if read else ():
-                self._arriving.add(when, copy)
+            data, sender = self._port.read(wait)
+            for when, copy in self._incoming.passing(data) if data else ():
+                self._arriving.add(when, Received(copy, sender))
 
-    def write(self, data: bytes) -> object:
+    def write(self, data: bytes, to: Address | None = None) -> object:
         """Send a piece, now or when its delay is over."""
         with self._changed:
             for when, copy in self._outgoing.passing(bytes(data)) if data else ():
-                self._leaving.add(when, copy)
+                self._leaving.add(when, Received(copy, to))
             if self._leaving.next() <= self._clock.now():
                 self._send_due()
             self._changed.notify_all()
@@ -132,22 +132,22 @@ class InjectedPort:
 
     def _send_due(self) -> None:
         while (piece := self._leaving.due(self._clock.now())) is not None:
-            self._port.write(piece)
+            self._port.write(*piece)
 
 
 class _Queue:
-    """Pieces in the order in which they are due."""
+    """Pieces, with whom they come from or go to, in the order in which they are due."""
 
     def __init__(self) -> None:
-        self._pieces: list[tuple[float, int, bytes]] = []
+        self._pieces: list[tuple[float, int, Received]] = []
         self._count = 0
 
-    def add(self, when: float, piece: bytes) -> None:
+    def add(self, when: float, piece: Received) -> None:
         self._count += 1
         heapq.heappush(self._pieces, (when, self._count, piece))
 
     def next(self) -> float:
         return self._pieces[0][0] if self._pieces else float("inf")
 
-    def due(self, now: float) -> bytes | None:
+    def due(self, now: float) -> Received | None:
         return heapq.heappop(self._pieces)[2] if self.next() <= now else None

@@ -7,6 +7,7 @@ import threading
 from contextlib import contextmanager
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core import flight
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
@@ -41,12 +42,12 @@ class Port:
     def __init__(self) -> None:
         self.reads = 0
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float):
         self.reads += 1
         threading.Event().wait(seconds)
-        return b""
+        return flight.ports.NOTHING
 
-    def write(self, data: bytes) -> None:
+    def write(self, data: bytes, to=None) -> None:
         raise OSError("no buffer space")
 
     def close(self) -> None:
@@ -59,15 +60,15 @@ def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason():
         with pytest.raises(flight.faults.Fault, match="has closed the connection") as fault:
             link.wait(lambda: None, 30.0)
         assert fault.value.event == "LINK_LOST"
-        assert not link._thread.is_alive()
+        assert not link.listening
         link.close()
 
 
 def test_what_cannot_be_sent_is_lost_and_the_link_says_why():
     link = flight.link.Link(Port(), flight.clock.Clock())
-    link.send(flight.link.mavlink.MAVLink_mission_ack_message(1, 1, 0, 0))
+    link.send(mavlink.MAVLink_mission_ack_message(1, 1, 0, 0))
     assert link.trouble == "no buffer space"
-    assert link._thread.is_alive()
+    assert link.listening
     link.close()
 
 

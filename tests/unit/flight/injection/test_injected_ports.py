@@ -8,6 +8,7 @@ import pytest
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.injection import Rehearsal, injections
+from mmrs_core.flight.ports import NOTHING, Received
 
 URLS = {"alpha": "udpin:127.0.0.1:1"}
 PIECES = [b"%04d" % number for number in range(2000)]
@@ -21,13 +22,13 @@ class Wire:
         self.written: list[bytes] = []
         self.when: list[float] = []
 
-    def read(self, seconds: float) -> bytes:
+    def read(self, seconds: float) -> Received:
         if self.incoming:
-            return self.incoming.popleft()
+            return Received(self.incoming.popleft())
         time.sleep(min(seconds, 0.01))
-        return b""
+        return NOTHING
 
-    def write(self, data: bytes) -> None:
+    def write(self, data: bytes, to=None) -> None:
         self.written.append(data)
         self.when.append(time.monotonic())
 
@@ -89,7 +90,7 @@ def test_equal_seeds_make_equal_faults_and_others_others():
 
 def test_what_comes_in_is_lost_as_well_but_not_the_same_pieces():
     port = wrapped(Wire(PIECES), "loss=0.3")
-    got = [piece for piece in (port.read(0.0) or port.read(0.001) for _ in PIECES) if piece]
+    got = [piece for piece in (port.read(0.0).data or port.read(0.001).data for _ in PIECES) if piece]
     port.close()
     assert 0.25 < 1 - len(got) / len(PIECES) < 0.35
     assert got != sent("loss=0.3")
@@ -111,9 +112,9 @@ def test_a_delayed_piece_is_sent_later_by_the_clock_of_the_run():
 def test_a_delayed_piece_is_heard_later_and_reading_still_returns_in_time():
     port = wrapped(Wire([b"late"]), "delay=0.3")
     begun = time.monotonic()
-    assert port.read(0.05) == b""
+    assert port.read(0.05).data == b""
     assert time.monotonic() - begun < 0.25
-    assert port.read(5.0) == b"late"
+    assert port.read(5.0).data == b"late"
     assert time.monotonic() - begun >= 0.29
     port.close()
 
@@ -139,7 +140,7 @@ def test_a_cut_is_both_ways_or_one_way(text, heard, passed):
     wire = Wire([b"in"])
     port = wrapped(wire, text)
     port.write(b"out")
-    assert (port.read(0.05) == b"in", wire.written == [b"out"]) == (heard, passed)
+    assert (port.read(0.05).data == b"in", wire.written == [b"out"]) == (heard, passed)
     port.close()
 
 
@@ -170,7 +171,7 @@ def test_what_happened_is_counted_for_the_black_box():
 
 def test_a_port_that_takes_nothing_tells_it_as_before():
     class Broken(Wire):
-        def write(self, data: bytes) -> None:
+        def write(self, data: bytes, to=None) -> None:
             raise OSError("gone")
 
     port = wrapped(Broken(), "loss=0")
