@@ -5,10 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, Undefined
+from jinja2 import (
+    BaseLoader,
+    ChoiceLoader,
+    Environment,
+    FileSystemLoader,
+    PrefixLoader,
+    StrictUndefined,
+    TemplateError,
+    Undefined,
+)
 
 from mmrs_core.contributions.targets import Target
-from mmrs_core.errors import InternalError
+from mmrs_core.errors import InternalError, MmrsError
 from mmrs_core.generation.escaping import (
     Code,
     cell,
@@ -19,11 +28,21 @@ from mmrs_core.generation.escaping import (
     python_lines,
     python_literal,
 )
+from mmrs_core.generation.overrides import Overrides
+from mmrs_core.generation.tracing import Served, Serves, taken_out, unforged
+
+SHIPPED = "shipped"
+"""Before the name of a template: the target's own, also where another takes its place."""
 
 
-def environment_of(target: Target) -> Environment:
-    """Return the environment in which a target's templates are rendered."""
-    return environment_in(target.templates, target.filters)
+def environment_of(target: Target, overrides: Overrides | None = None) -> Environment:
+    """Return the environment in which a target's templates are rendered, or those that take their place."""
+    environment = environment_in(target.templates, target.filters)
+    if overrides is not None:
+        own = FileSystemLoader(target.templates)
+        shadowing: list[BaseLoader] = [FileSystemLoader(overrides.folder), own, PrefixLoader({SHIPPED: own})]
+        environment.loader = ChoiceLoader(shadowing)
+    return environment
 
 
 def environment_in(folder: Path, more: Mapping[str, Callable[..., str]]) -> Environment:
@@ -43,6 +62,7 @@ def environment_in(folder: Path, more: Mapping[str, Callable[..., str]]) -> Envi
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        extensions=[Serves],
     )
     filters: dict[str, Callable[..., str]] = {
         "py": python_literal,
@@ -59,20 +79,36 @@ def environment_in(folder: Path, more: Mapping[str, Callable[..., str]]) -> Envi
 
 
 def rendered(environment: Environment, template: str, view: object) -> str:
-    """Return a template's text for a view.
+    """Return a template's text for a view; raises as `rendered_with_lines`."""
+    return rendered_with_lines(environment, template, view)[0]
+
+
+def rendered_with_lines(
+    environment: Environment, template: str, view: object, overrides: Overrides | None = None
+) -> tuple[str, tuple[Served, ...]]:
+    """Return a template's text for a view, and which of its lines serve which steps.
 
     Raises:
         InternalError: the template is broken, or writes a value that no filter encoded.
+        MmrsError: so does one of the templates that people put in its place.
     """
     try:
-        return environment.get_template(template).render(view)
-    except (TemplateError, ValueError) as error:
-        raise InternalError(f"template {template}: {error}") from error
+        return taken_out(environment.get_template(template).render(view))
+    except (TemplateError, ValueError, TypeError, AttributeError) as error:
+        where = f"template {template}{_line_of(error)}: {error}"
+        if overrides is not None and overrides.hashes:
+            raise MmrsError(f"{overrides.folder}: {where}") from error
+        raise InternalError(where) from error
+
+
+def _line_of(error: Exception) -> str:
+    line = getattr(error, "lineno", None)
+    return f", line {line}" if line else ""
 
 
 def _encoded(value: object) -> object:
     if isinstance(value, Code):
-        return value
+        return unforged(value)
     raise ValueError(f"{value!r} is written without a filter that encodes it")
 
 

@@ -82,14 +82,15 @@ def _quoted(text: str) -> Code:
     return Code('"' + literal[1:-1].replace("\\'", "'").replace('"', '\\"') + '"')
 
 
-def json_literal(value: object) -> Code:
-    """Return a value as JSON in ASCII, indented by two.
+def json_literal(value: object, indent: int = 0) -> Code:
+    """Return a value as JSON in ASCII, indented by two; further lines by as much again as `indent` says.
 
     Raises:
         ValueError: it holds a number that is not finite.
         TypeError: it holds something that JSON has no form for.
     """
-    return Code(json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False))
+    text = json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False)
+    return Code(text.replace("\n", "\n" + " " * indent))
 
 
 def comment(value: object) -> Code:

@@ -3,20 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import PurePosixPath
+from dataclasses import dataclass
+from pathlib import Path, PurePath, PurePosixPath
 
 from jinja2 import Environment
 
+from mmrs_core.behaviour.program import Move, Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, GeneratedFile, Target, TargetInput
 from mmrs_core.errors import InternalError, UnsupportedError
-from mmrs_core.generation.environment import environment_of, rendered
-from mmrs_core.generation.manifest import manifest_of, manifest_path
+from mmrs_core.generation.environment import environment_of, rendered_with_lines
+from mmrs_core.generation.manifest import (
+    Entry,
+    Facts,
+    Manifest,
+    entries_of,
+    manifest_path,
+    recorded,
+    versions_of,
+    written,
+)
+from mmrs_core.generation.overrides import Overrides, check_known
+from mmrs_core.generation.tracing import Served, with_lines
 
 RENDERED = ".jinja"
 
 
 def render(
-    target: Target, input: TargetInput, *, allow_lossy: bool = False, provider: str = "mmrs-core"
+    target: Target,
+    input: TargetInput,
+    *,
+    allow_lossy: bool = False,
+    provider: str = "mmrs-core",
+    overrides: Overrides | None = None,
 ) -> tuple[GeneratedFile, ...]:
     """Return the files of a target for a behaviour, the manifest last.
 
@@ -25,20 +43,55 @@ def render(
         input: the behaviour and what goes with it.
         allow_lossy: leave out what the target cannot express; the manifest lists it.
         provider: the distribution that contributed the target, for the manifest.
+        overrides: templates and other files that take the place of the target's own.
 
     Raises:
         UnsupportedError: the target cannot express all of the behaviour; lists everything.
         InternalError: the target's templates are broken, or its paths collide or leave the folder.
+        MmrsError: a file that is to take the place of another is broken, or there is no such other.
     """
     losses = tuple(dict.fromkeys(target.refusals(input)))
     if losses and not allow_lossy:
         raise UnsupportedError(_refused(target.name, losses), losses)
     specs = tuple(target.files(input))
     _check_paths(target, specs)
-    environment = environment_of(target)
-    files = tuple(GeneratedFile(spec.path, _content(environment, target, spec), spec.once) for spec in specs)
-    trace = ((spec.path, step) for spec in specs for step in spec.trace)
-    return (*files, manifest_of(target, provider, files, losses, trace))
+    if overrides is not None:
+        check_known(overrides, target, specs)
+    press = Press(target, environment_of(target, overrides), overrides)
+    facts = _facts_of(input.program)
+    files: list[GeneratedFile] = []
+    entries: list[Entry] = []
+    for spec in specs:
+        content, served = press.content(spec)
+        files.append(GeneratedFile(spec.path, content, spec.once))
+        entries += entries_of(spec.path, with_lines(spec.trace, served), facts)
+    replaced = overrides.hashes if overrides is not None else {}
+    records = tuple(recorded(file, spec.template) for file, spec in zip(files, specs, strict=True))
+    versions = versions_of(provider)
+    manifest = Manifest(target.name, versions, losses, replaced, records, tuple(entries))
+    return (*files, written(manifest))
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """What makes files of a target's templates."""
+
+    target: Target
+    environment: Environment
+    overrides: Overrides | None = None
+
+    def content(self, spec: FileSpec) -> tuple[bytes, tuple[Served, ...]]:
+        """Return what a file holds, and which of its lines serve which steps."""
+        if spec.source is not None:
+            return (self._instead_of(spec.path) or spec.source).read_bytes(), ()
+        if not spec.template.endswith(RENDERED):
+            path = self._instead_of(spec.template) or self.target.templates / spec.template
+            return path.read_bytes(), ()
+        text, served = rendered_with_lines(self.environment, spec.template, spec.view, self.overrides)
+        return text.encode("utf-8"), served
+
+    def _instead_of(self, name: str) -> Path | None:
+        return self.overrides.path(name) if self.overrides is not None else None
 
 
 def _refused(target: str, losses: Sequence[str]) -> str:
@@ -46,14 +99,6 @@ def _refused(target: str, losses: Sequence[str]) -> str:
     return f"target {target} cannot express {count} of the behaviour: {'; '.join(losses[:3])}" + (
         " ..." if len(losses) > 3 else ""
     )
-
-
-def _content(environment: Environment, target: Target, spec: FileSpec) -> bytes:
-    if spec.source is not None:
-        return spec.source.read_bytes()
-    if spec.template.endswith(RENDERED):
-        return rendered(environment, spec.template, spec.view).encode("utf-8")
-    return (target.templates / spec.template).read_bytes()
 
 
 def _check_paths(target: Target, specs: Sequence[FileSpec]) -> None:
@@ -65,3 +110,22 @@ def _check_paths(target: Target, specs: Sequence[FileSpec]) -> None:
         if spec.path.casefold() in taken:
             raise InternalError(f"target {target.name}: path {spec.path!r} is written twice")
         taken.add(spec.path.casefold())
+
+
+def _facts_of(program: Program) -> dict[tuple[str, str], Facts]:
+    return {
+        (robot.id, move.id): _facts(robot, index, move)
+        for robot in program.robots
+        for index, move in enumerate(robot.moves)
+    }
+
+
+def _facts(robot: RobotProgram, index: int, move: Move) -> Facts:
+    line = f":{move.place.line}" if move.place.line else ""
+    model = f"{PurePath(move.place.file).name}{line}" if move.place.file else ""
+    sets = (f"{owner}.{slot}" for action in (*move.before, *move.after) for owner, slot in action.sets)
+    transition = robot.transitions.get(index)
+    if transition is None:
+        return Facts(model, sets=tuple(dict.fromkeys(sets)))
+    then = tuple(robot.moves[way].id for way in transition.ways)
+    return Facts(model, then, transition.waits, transition.condition or "", tuple(dict.fromkeys(sets)))

@@ -35,7 +35,8 @@ def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = Fals
     files = tuple(files)
     if not files:
         return ()
-    known = {entry.path: entry for entry in read_manifest(directory / files[-1].path)}
+    manifest = read_manifest(directory / files[-1].path)
+    known = {entry.path: entry for entry in manifest.files} if manifest is not None else {}
     written = [file for file in files if not (file.once and (directory / file.path).exists())]
     if not force:
         _refuse_strangers(written[:-1], directory, known)

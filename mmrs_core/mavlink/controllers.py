@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from importlib.resources import files as files_of
 from pathlib import Path
 
 from mmrs_core.behaviour.program import RobotProgram
-from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.movements import losses_of
-from mmrs_core.mavlink.program import conditions_of, objects_in, robot_view, trace_of
+from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
 from mmrs_core.mavlink.safety import policies_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
@@ -20,6 +21,15 @@ from mmrs_core.scene import Policy
 RUNTIME = "mmrs_flight"
 RUNTIME_SOURCES = Path(str(files_of("mmrs_core"))) / "flight"
 TEMPLATES = shipped("codegen_templates") / "mavlink-python"
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleView:
+    """The module of one robot's controller as the templates see it."""
+
+    name: str
+    robot: str
+    trace: TracedStep
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
@@ -31,11 +41,13 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(
             f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
         )
-    conditions = sorted({condition for robot in robots for condition in conditions_of(robot)})
-    objects = sorted({found for robot in robots for found in objects_in(robot)})
+    conditions, objects = deciding(input.program), seeking(input.program)
     common = {
         "mission": input.program.name,
-        "modules": list(zip(modules, [robot.id for robot in robots], strict=True)),
+        "modules": [
+            ModuleView(module, robot.id, TracedStep("controller", robot.id, ""))
+            for module, robot in zip(modules, robots, strict=True)
+        ],
         "conditions": conditions,
         "objects": objects,
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.log import log_name
@@ -33,11 +33,12 @@ class StepView:
     call: Call
     task: str
     rule: str
+    trace: TracedStep
 
 
 @dataclass(frozen=True, slots=True)
 class RobotView:
-    """One robot as the template sees it."""
+    """One robot as the template sees it; `head` is what is said of it before its steps, by name."""
 
     id: str
     mission: str
@@ -46,6 +47,10 @@ class RobotView:
     steps: tuple[StepView, ...]
     conditions: tuple[str, ...]
     objects: tuple[str, ...]
+
+    def trace(self, name: str) -> TracedStep:
+        """Return what a line of the head serves: no move, but the robot."""
+        return TracedStep(name, self.id, "")
 
 
 def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
@@ -56,7 +61,8 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     fence, points = (fence_of(areas), refuges(areas, clearance)) if geographic else ((), ())
     vertices: list[Point] = [vertex for ring in fence for vertex in ring]
     context = context_of(robot, input, [*vertices, *points], geographic=geographic)
-    steps = tuple(_step(index, context) for index in _ordered(robot))
+    traced = zip(_ordered(robot), trace_of(robot), strict=True)
+    steps = tuple(_step(index, context, step) for index, step in traced)
     head = tuple(each for each in _head(context, input, fence, points, clearance) if each[1] != ())
     words = {"Robot"} | _words((head, [step.call for step in steps]))
     return RobotView(
@@ -72,6 +78,34 @@ def conditions_of(robot: RobotProgram) -> tuple[str, ...]:
 def objects_in(robot: RobotProgram) -> tuple[str, ...]:
     """Return the descriptions of the objects that a robot goes to or points at, sorted."""
     return tuple(sorted({found for move in robot.moves for found in objects_of(move)}))
+
+
+def deciding(program: Program) -> dict[str, tuple[TracedStep, ...]]:
+    """Return, for each condition, the moves after which somebody asks for it; sorted by condition."""
+    return _by_name(
+        (transition.condition, TracedStep("choice", robot.id, move.id, move.task, move.rule))
+        for robot in program.robots
+        for index, move in enumerate(robot.moves)
+        if (transition := robot.transitions.get(index)) is not None and transition.condition is not None
+    )
+
+
+def seeking(program: Program) -> dict[str, tuple[TracedStep, ...]]:
+    """Return, for each object's description, the moves that need its place; sorted by description."""
+    return _by_name(
+        (found, TracedStep("object", robot.id, move.id, move.task, move.rule))
+        for robot in program.robots
+        for move in robot.moves
+        for found in objects_of(move)
+    )
+
+
+def _by_name(pairs: Iterable[tuple[str | None, TracedStep]]) -> dict[str, tuple[TracedStep, ...]]:
+    found: dict[str, tuple[TracedStep, ...]] = {}
+    for name, step in pairs:
+        if name is not None:
+            found[name] = (*found.get(name, ()), step)
+    return dict(sorted(found.items()))
 
 
 def trace_of(robot: RobotProgram) -> tuple[TracedStep, ...]:
@@ -102,7 +136,7 @@ def _ordered(robot: RobotProgram) -> tuple[int, ...]:
     return (*reached, *(index for index in range(len(robot.moves)) if index not in set(reached)))
 
 
-def _step(index: int, context: RobotContext) -> StepView:
+def _step(index: int, context: RobotContext, trace: TracedStep) -> StepView:
     robot = context.robot
     move, transition = robot.moves[index], robot.transitions.get(index)
     named: list[tuple[str, object]] = []
@@ -112,7 +146,8 @@ def _step(index: int, context: RobotContext) -> StepView:
     if transition is not None:
         named.append(("then", _then(transition, robot)))
     named += [(name, value) for name, value in (("task", move.task), ("rule", move.rule)) if value]
-    return StepView(Call("Step", (move.id, movement_of(move, context)), tuple(named)), move.task, move.rule)
+    call = Call("Step", (move.id, movement_of(move, context)), tuple(named))
+    return StepView(call, move.task, move.rule, trace)
 
 
 def _then(transition: Transition, robot: RobotProgram) -> Call:

@@ -26,28 +26,20 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     """
     for mission in missions_of(input):
         trace = tuple(row.step for row in mission.rows)
-        yield FileSpec(f"{mission.stem}.plan", "plan.jinja", {"plan": plan_of(mission)}, trace=trace)
+        yield FileSpec(f"{mission.stem}.plan", "plan.jinja", view_of(mission), trace=trace)
 
 
-def plan_of(mission: Mission) -> dict[str, object]:
-    """Return a plan as QGroundControl reads it; heights are above home."""
-    usual = _usual_speed(mission.context)
+def view_of(mission: Mission) -> dict[str, object]:
+    """Return what the template sees; heights are above home."""
     return {
-        "fileType": "Plan",
-        "version": 1,
-        "groundStation": "MMRS",
-        "mission": {
-            "version": 2,
-            "firmwareType": ARDUPILOT,
-            "vehicleType": mission.context.vehicle.mav_type,
-            "cruiseSpeed": usual,
-            "hoverSpeed": usual,
-            "globalPlanAltitudeMode": HEIGHT_ABOVE_HOME,
-            "plannedHomePosition": list(mission.home),
-            "items": [_simple(row) for row in mission.rows],
-        },
-        "geoFence": {"version": 2, "circles": [], "polygons": [_polygon(ring) for ring in mission.fence]},
-        "rallyPoints": {"version": 2, "points": [list(spot) for spot in mission.rally]},
+        "firmware": ARDUPILOT,
+        "vehicle": mission.context.vehicle.mav_type,
+        "speed": _usual_speed(mission.context),
+        "height_above_home": HEIGHT_ABOVE_HOME,
+        "home": list(mission.home),
+        "items": [{"step": row.step, "content": _simple(row)} for row in mission.rows],
+        "fence": {"version": 2, "circles": [], "polygons": [_polygon(ring) for ring in mission.fence]},
+        "rally": {"version": 2, "points": [list(spot) for spot in mission.rally]},
     }
 
 

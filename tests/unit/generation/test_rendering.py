@@ -100,6 +100,8 @@ def test_the_manifest_lists_hashes_versions_and_what_serves_what(target):
             "move": "a1",
             "task": "photos",
             "rule": "by_hand",
+            "lines": None,
+            "then": ["a2"],
         }
     ]
 

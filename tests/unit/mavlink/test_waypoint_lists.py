@@ -108,10 +108,11 @@ def test_home_is_row_0_with_its_height_above_the_sea():
 
 def test_every_line_is_traced_to_its_move():
     manifest = json.loads(texts(*FLIGHT)["wpl.manifest.json"])
-    assert [(step["step"], step["move"]) for step in manifest["trace"]][:3] == [
-        ("item 1", "up"),
-        ("item 2", "a"),
-        ("item 3", "a"),
+    assert [(step["step"], step["move"], step["lines"]) for step in manifest["trace"]][:4] == [
+        ("home", "", [2, 2]),
+        ("item 1", "up", [3, 3]),
+        ("item 2", "a", [4, 4]),
+        ("item 3", "a", [5, 5]),
     ]
 
 

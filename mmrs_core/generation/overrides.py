@@ -1,0 +1,76 @@
+"""A folder in which people keep their own versions of a target's templates and other files."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from mmrs_core.contributions.targets import FileSpec, Target
+from mmrs_core.errors import MmrsError, UnreadableError
+
+PART = "_"
+"""What the names of files begin with that other templates of the folder include or extend."""
+
+
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """The files that take the place of a target's own.
+
+    Attributes:
+        folder: of the target, in the folder that was given.
+        hashes: SHA-256 of each file, by its name with forward slashes.
+    """
+
+    folder: Path
+    hashes: Mapping[str, str]
+
+    def path(self, name: str) -> Path | None:
+        """Return the file that takes the place of that one; None if none does."""
+        return self.folder / name if name in self.hashes else None
+
+
+def overrides_in(folder: Path, target: Target, others: Collection[str] = ()) -> Overrides:
+    """Return what a folder has for a target: the files in ``<folder>/<target>``.
+
+    Args:
+        folder: with one folder for each target.
+        target: that is rendered.
+        others: names of the other targets, whose folders are left alone.
+
+    Raises:
+        UnreadableError: there is no such folder.
+        MmrsError: it holds something that is no target's folder.
+    """
+    if not folder.is_dir():
+        raise UnreadableError(f"{folder}: there is no such folder of templates")
+    strange = sorted(each.name for each in folder.iterdir() if each.name not in {target.name, *others})
+    if strange:
+        known = ", ".join(sorted({target.name, *others}))
+        raise MmrsError(f"{folder / strange[0]}: no target is called so; known are {known}")
+    own = folder / target.name
+    files = sorted(path for path in own.rglob("*") if path.is_file())
+    return Overrides(
+        own, {path.relative_to(own).as_posix(): sha256(path.read_bytes()).hexdigest() for path in files}
+    )
+
+
+def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec]) -> None:
+    """Do nothing if each file takes the place of one that the target has.
+
+    Raises:
+        MmrsError: if one does not; names what the target has.
+    """
+    templates = {
+        path.relative_to(target.templates).as_posix()
+        for path in target.templates.rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    known = templates | {spec.path for spec in specs if spec.source is not None}
+    for name in overrides.hashes:
+        if name not in known and not name.rpartition("/")[2].startswith(PART):
+            raise MmrsError(
+                f"{overrides.folder / name}: target {target.name} has no such file;"
+                f" it has {', '.join(sorted(known))}, and files of your own begin with '{PART}'"
+            )
