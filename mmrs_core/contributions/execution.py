@@ -139,6 +139,30 @@ class Preparing(Protocol):
 
 
 @runtime_checkable
+class Recovering(Protocol):
+    """What a backend may have beside the rest: a robot that goes on where its program was broken off."""
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Begin to bring the robot back to where it was; `finished` says when it is there.
+
+        Args:
+            passed: the moves that it has ended, in order.
+            begun: the move that it is to begin once more; empty where it has ended its last one.
+            now: the time.
+        """
+        ...
+
+
+@runtime_checkable
+class Watched(Protocol):
+    """What a backend may have beside the rest: whether a robot that stopped must still be watched."""
+
+    def watched(self, now: float) -> bool:
+        """Return whether the robot has stopped, and would do something else if nobody watched it."""
+        ...
+
+
+@runtime_checkable
 class Pausable(Protocol):
     """What a backend may have beside the rest: a robot that can halt in the middle of anything."""
 
@@ -190,7 +214,6 @@ class Live:
         run: identifier of the run.
         folder: of the logs; None where none are kept.
         link: how the robot is reached, as in ``--connect``; empty where nothing was said.
-        passed: moves that this robot has ended, in order, before the run was resumed.
         shared: what backends of the same run share, by names of their own; empty at first.
     """
 
@@ -200,7 +223,6 @@ class Live:
     run: str
     folder: Path | None = None
     link: str = ""
-    passed: tuple[str, ...] = ()
     shared: dict[str, object] = field(default_factory=dict)
 
 

@@ -1,14 +1,15 @@
 """Runs behaviours: lets every robot make its steps as soon as it can, and drives its backend.
 
-One process may run all robots of a program or some of them; notifies go over the bus. The run jumps
-from event to event of the backends, robots of one instant step in the program's order, so that with
-simulated time the same input gives the same steps.
+One process may run all robots of a program or some of them; notifies go over the bus. In simulated time
+the run jumps from event to event of the backends, robots of one instant step in the program's order, so
+that the same input gives the same steps. In real time it sleeps until something is due, or until a
+backend, the bus or an order wakes it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from math import inf
 
@@ -23,10 +24,14 @@ from mmrs_core.contributions.execution import (
     CommandId,
     Condition,
     Fault,
+    Watched,
 )
 from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.runtime.attention import BUS, Attention
+from mmrs_core.runtime.obedience import Obedience
+from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.peers import Peers
-from mmrs_core.runtime.robot import RunningRobot
+from mmrs_core.runtime.robot import Rules, RunningRobot
 from mmrs_core.scene import Policy
 
 PACE = 0.05
@@ -45,6 +50,13 @@ class Terms:
         observe: called with each step before it has an effect; a log, for example.
         seconds: of the run's clock, after which it is cut off.
         steps: number of them after which it is cut off, since a Choice can go round for ever.
+        resumed: the steps that were made before the run was broken off, those of a robot in order.
+        suspends: whether a battery that is low, and whose policy brings the robot down, breaks its program
+            off without a fault, so that the run can be resumed with a full one.
+        patience: seconds for which the run then waits for the order to resume once nobody else works.
+        attention: through which backends wake the interpreter; None in simulated time.
+        orders: what people order meanwhile.
+        say: tells people what goes on.
     """
 
     run: str = "run-0"
@@ -52,6 +64,12 @@ class Terms:
     observe: Observer | None = None
     seconds: float = inf
     steps: int = 1_000_000
+    resumed: tuple[StepRecord, ...] = ()
+    suspends: bool = False
+    patience: float = 0.0
+    attention: Attention | None = None
+    orders: Orders = field(default_factory=Orders)
+    say: Callable[[str], None] = lambda words: None
 
 
 TO_THE_END = Terms()
@@ -70,6 +88,7 @@ class Ending:
         unconfirmed: robots that did not confirm that they have stopped.
         time: seconds of the run's clock.
         steps: how many were made.
+        suspended: robots whose programs were broken off, to be resumed with a full battery.
     """
 
     outcome: Outcome
@@ -78,6 +97,7 @@ class Ending:
     unconfirmed: tuple[str, ...]
     time: float
     steps: int
+    suspended: tuple[str, ...] = ()
 
 
 def interpret(
@@ -103,16 +123,19 @@ def interpret(
         terms: who is told, and what cuts the run off.
 
     Raises:
-        ValueError: if a backend is for a robot that the program does not have.
+        ValueError: if a backend is for a robot that the program does not have, or the steps to resume from
+            are not the program's.
         UnsupportedError: if a condition is unknown; lists all of them.
     """
     _refuse_unknown(program, backends, conditions)
-    robots = [
-        RunningRobot(robot, backends[robot.id], bus, conditions, (policies or {}).get(robot.id, ()))
-        for robot in program.robots
-        if robot.id in backends
-    ]
-    return _Run(program, robots, bus, clock, terms).go()
+    answers: dict[str, bool] = {}
+    robots = []
+    for robot in program.robots:
+        if robot.id in backends:
+            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, answers)
+            robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
+            robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
+    return _Run(program, robots, bus, clock, terms, answers).go()
 
 
 def _refuse_unknown(
@@ -135,32 +158,60 @@ def _refuse_unknown(
 
 class _Run:
     def __init__(
-        self, program: Program, robots: list[RunningRobot], bus: Bus, clock: Clock, terms: Terms
+        self,
+        program: Program,
+        robots: list[RunningRobot],
+        bus: Bus,
+        clock: Clock,
+        terms: Terms,
+        answers: dict[str, bool],
     ) -> None:
         self._robots, self._bus, self._clock, self._terms = robots, bus, clock, terms
         self._by_id = {robot.id: order for order, robot in enumerate(robots)}
         self._whole = len(robots) == len(program.robots)
-        self._peers = Peers(program)
+        self._peers = Peers(program, self._by_id, bus)
+        self._obedience = Obedience(robots, terms.orders, answers, clock)
         self._made = 0
         self._ready = list(range(len(robots)))
         self._wakes: list[tuple[float, int]] = []
         self._deadlock: tuple[Waiting, ...] = ()
         self._unconfirmed: list[str] = []
+        self._idle_since: float | None = None
+        if terms.attention is not None:
+            attention = terms.attention
+            bus.on_change(lambda: attention.call(BUS))
+            terms.orders.called = clock.wake
 
     def go(self) -> Generator[StepRecord, None, Ending]:
         try:
+            self._take_up()
             while True:
+                self._obey()
                 yield from self._settled()
+                self._look_after_stopping()
                 if not self._deadlock and self._is_quiet():
                     self._deadlock = self._waiting()
                 until = self._next_wake()
-                if self._made >= self._terms.steps or until == inf or until > self._terms.seconds:
+                if self._made >= self._terms.steps or until > self._terms.seconds or self._is_over(until):
                     break
                 self._clock.sleep_until(until)
                 self._wake()
         finally:
             self._halt()
         return self._ending()
+
+    def _take_up(self) -> None:
+        """Bring robots of a run that was broken off back to where they were."""
+        for robot in self._robots:
+            if robot.point.is_final:
+                self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
+                self._bus.leave(robot.id)
+            elif robot.number > 0:
+                robot.recover(self._clock.now())
+
+    def _obey(self) -> None:
+        for robot in self._obedience.obey():
+            heappush(self._ready, self._by_id[robot])
 
     def _settled(self) -> Iterator[StepRecord]:
         """Make every step that is due now, the program's first robot first."""
@@ -176,7 +227,11 @@ class _Run:
 
     def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
         while not robot.point.is_final and self._made < self._terms.steps:
+            was_suspended = robot.suspended
             step = robot.due(self._clock.now(), self._peers)
+            if robot.suspended and not was_suspended:
+                self._terms.say(f"'{robot.id}': {robot.fault}; comes down for its battery ({robot.response})")
+                self._stop(robot, robot.response)
             if step is None or not self._order(robot, step):
                 return
             yield from self._make(robot, step)
@@ -201,8 +256,12 @@ class _Run:
 
     def _make(self, robot: RunningRobot, step: Step) -> Iterator[StepRecord]:
         record = self._record(robot, step)
-        if self._terms.observe is not None:
-            self._terms.observe(record)
+        try:
+            if self._terms.observe is not None:
+                self._terms.observe(record)
+        except OSError as error:
+            self._lose_log(robot, error)
+            return
         yield record
         robot.follow(step)
         self._made += 1
@@ -210,6 +269,13 @@ class _Run:
             self._deliver(robot, step)
         if robot.point.is_final:
             self._retire(robot)
+
+    def _lose_log(self, robot: RunningRobot, error: OSError) -> None:
+        """End the program of a robot whose steps cannot be recorded: none may be made then."""
+        if not self._clock.passes_by_itself:
+            raise error
+        robot.fail(Fault("LOG_FAILED", error.strerror or str(error)))
+        self._retire(robot)
 
     def _record(self, robot: RunningRobot, step: Step) -> StepRecord:
         time = round(self._clock.now(), 6)
@@ -241,22 +307,44 @@ class _Run:
             if other.point.phase is Phase.OUT:
                 heappush(self._ready, order)
 
+    def _look_after_stopping(self) -> None:
+        """Note which robots have confirmed that they stopped, or cannot."""
+        now = self._clock.now()
+        for robot in self._robots:
+            if robot.stopping:
+                self._look_after(robot, now)
+
+    def _look_after(self, robot: RunningRobot, now: float) -> None:
+        try:
+            trouble = robot.backend.fault(now)
+            robot.stopping = trouble is None and not robot.backend.finished(now)
+        except LinkLostError as error:
+            trouble, robot.stopping = Fault("LINK_LOST", str(error)), False
+        if trouble is not None:
+            self._terms.say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
+            self._unconfirmed.append(robot.id)
+        elif not robot.stopping:
+            self._terms.say(f"'{robot.id}': has stopped ({robot.response})")
+        self._obedience.stopped(robot.id, robot.stopping, trouble)
+
     def _wake_time(self, robot: RunningRobot) -> float:
         now = self._clock.now()
         event = robot.next_event(now)
         if event is None or event <= now:
             event = now + PACE
-        if robot.delivery is not None or (not self._whole and robot.point.phase is Phase.OUT):
+        unsure = robot.delivery is not None or robot.question or robot.held
+        if unsure or (not self._whole and robot.point.phase is Phase.OUT):
             event = min(event, now + PACE)
         return event
 
     def _next_wake(self) -> float:
-        """Return when to look again; inf when the run has ended."""
-        if self._is_quiet() and not any(robot.deadline < inf for robot in self._robots if robot.is_waiting):
-            return inf
+        """Return when to look again; inf where nothing is foreseen."""
+        if self._is_quiet() and not self._is_patient():
+            return self._patience_ends()
         while self._wakes and self._robots[self._wakes[0][1]].wake != self._wakes[0][0]:
             heappop(self._wakes)
-        return self._wakes[0][0] if self._wakes else inf
+        pace = self._clock.now() + PACE if any(robot.stopping for robot in self._robots) else inf
+        return min(self._wakes[0][0] if self._wakes else inf, self._patience_ends(), pace)
 
     def _wake(self) -> None:
         now = self._clock.now()
@@ -264,10 +352,48 @@ class _Run:
             time, order = heappop(self._wakes)
             if self._robots[order].wake == time:
                 heappush(self._ready, order)
+        if self._terms.attention is not None:
+            self._attend(self._terms.attention.taken())
+
+    def _attend(self, called: frozenset[str]) -> None:
+        for order, robot in enumerate(self._robots):
+            affected = robot.point.phase is Phase.OUT or robot.delivery is not None
+            if robot.id in called or (BUS in called and affected):
+                heappush(self._ready, order)
+
+    def _is_over(self, until: float) -> bool:
+        """Return whether nothing will happen any more."""
+        if not self._clock.passes_by_itself:
+            return until == inf
+        if any(robot.stopping or self._is_watched(robot) for robot in self._robots):
+            return False
+        working = [robot for robot in self._robots if not robot.point.is_final and not robot.suspended]
+        if not working or (self._is_quiet() and not self._is_patient()):
+            return self._clock.now() >= self._patience_ends(begin=True)
+        return False
+
+    def _is_watched(self, robot: RunningRobot) -> bool:
+        watched = robot.fault is not None and isinstance(robot.backend, Watched)
+        return watched and robot.backend.watched(self._clock.now())  # type: ignore[attr-defined]
+
+    def _patience_ends(self, *, begin: bool = False) -> float:
+        """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
+        if not any(robot.suspended for robot in self._robots):
+            self._idle_since = None
+            return -inf if begin else inf
+        if begin and self._idle_since is None:
+            self._idle_since = self._clock.now()
+        return inf if self._idle_since is None else self._idle_since + self._terms.patience
+
+    def _is_patient(self) -> bool:
+        """Return whether a wait of some robot will end by itself."""
+        return any(robot.deadline < inf for robot in self._robots if robot.is_waiting)
 
     def _is_quiet(self) -> bool:
         """Return whether every robot is at its end or waits, so that no slot changes any more."""
-        return self._whole and all(robot.point.is_final or robot.is_waiting for robot in self._robots)
+        return self._whole and all(
+            robot.point.is_final or robot.is_waiting or robot.suspended for robot in self._robots
+        )
 
     def _waiting(self) -> tuple[Waiting, ...]:
         return tuple(
@@ -275,23 +401,32 @@ class _Run:
         )
 
     def _halt(self) -> None:
+        """Stop every robot that is still at work, and wait until each has confirmed it."""
         for robot in self._robots:
-            if not robot.point.is_final:
+            if not robot.point.is_final and not robot.suspended:
                 self._stop(robot, "HOLD")
+        self._look_after_stopping()
+        while any(robot.stopping for robot in self._robots):
+            self._clock.sleep_until(self._clock.now() + PACE)
+            self._look_after_stopping()
+        self._obedience.give_up()
 
     def _stop(self, robot: RunningRobot, response: str) -> None:
+        robot.response = response
         try:
             robot.backend.stop(self._clock.now(), response)
         except LinkLostError:
             self._unconfirmed.append(robot.id)
+        else:
+            robot.stopping = self._clock.passes_by_itself
 
     def _ending(self) -> Ending:
         faults = {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
+        suspended = tuple(robot.id for robot in self._robots if robot.suspended)
         done = all(robot.point.phase is Phase.DONE for robot in self._robots)
-        if not self._is_quiet() and not all(robot.point.is_final for robot in self._robots):
+        if suspended or (not self._is_quiet() and not all(robot.point.is_final for robot in self._robots)):
             outcome = Outcome.INCOMPLETE
         else:
             outcome = Outcome.FAILED if faults else Outcome.SUCCESS if done else Outcome.STUCK
-        return Ending(
-            outcome, self._deadlock, faults, tuple(self._unconfirmed), self._clock.now(), self._made
-        )
+        unconfirmed = tuple(dict.fromkeys(self._unconfirmed))
+        return Ending(outcome, self._deadlock, faults, unconfirmed, self._clock.now(), self._made, suspended)

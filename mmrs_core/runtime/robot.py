@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from math import inf
 
 from mmrs_core.behaviour.policies import patience, response_to
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
-from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
-from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault
+from mmrs_core.behaviour.semantics import NOTIFY, Phase, Point, Step, action_at, entry, fault, steps
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Recovering
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.scene import Policy
+
+HANDS_OFF = "NOTHING"
+TAKEN_OVER = "TAKEN_OVER"
+"""A pilot has the robot: no policy answers that, the program lets go of it."""
+
+COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
+"""Responses after which a battery can be changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """What a robot goes by beside its program.
+
+    Attributes:
+        conditions: by identifier.
+        policies: of its type and kind, which go after the program's.
+        suspends: whether a low battery only breaks the program off, to go on with a full one.
+        answers: of the operator, by question; others add to it.
+    """
+
+    conditions: Mapping[str, Condition]
+    policies: tuple[Policy, ...]
+    suspends: bool
+    answers: Mapping[str, bool]
 
 
 class RunningRobot:
@@ -27,16 +53,15 @@ class RunningRobot:
         delivery: a notify that owners of slots have still to answer or to acknowledge; None: there is none.
         number: of its next step.
         response: how it was told to stop.
+        ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
+        held: whether somebody ordered it to hold.
+        suspended: whether its program is broken off until its battery was changed.
+        stopping: whether it has still to confirm that it has stopped.
+        recovering: whether it is on its way back to where its program was broken off.
+        question: identifier of the condition that it waits to be decided; empty: of none.
     """
 
-    def __init__(
-        self,
-        program: RobotProgram,
-        backend: Backend,
-        bus: Bus,
-        conditions: Mapping[str, Condition],
-        policies: tuple[Policy, ...],
-    ) -> None:
+    def __init__(self, program: RobotProgram, backend: Backend, bus: Bus, rules: Rules) -> None:
         self.id = program.id
         self.backend = backend
         self.point = entry(program, program.start)
@@ -48,8 +73,12 @@ class RunningRobot:
         self.delivery: Delivery | None = None
         self.number = 0
         self.response = ""
-        self._program, self._bus, self._conditions = program, bus, conditions
-        self._policies = (*program.policies, *policies)
+        self.ordered: tuple[Fault, str] | None = None
+        self.held = self.suspended = self.stopping = self.recovering = False
+        self.question = ""
+        self._program, self._bus, self._rules = program, bus, rules
+        self._policies = (*program.policies, *rules.policies)
+        self._passed: list[str] = []
         self._begun = False
         self._waits_since: float | None = None
         self._peer_lost_at: float | None = None
@@ -79,25 +108,55 @@ class RunningRobot:
 
     def follow(self, step: Step) -> None:
         """Go where a step leads."""
+        if step.label == "end":
+            self._passed.append(step.move)
         self.point = step.leads_to
-        self._begun, self._waits_since, self._peer_lost_at = False, None, None
-        self.lacking, self.deadline = (), inf
+        self._forget()
+
+    def restore(self, records: Iterable[StepRecord]) -> None:
+        """Be where its own log leads, whose steps are those of its program in order.
+
+        Raises:
+            ValueError: if they are not.
+        """
+        for record in records:
+            self.follow(_followed(self._program, self.point, record))
+            self.lamport, self.number = record.lamport, record.seq + 1
+
+    def recover(self, now: float) -> None:
+        """Begin to go back to where the program was broken off."""
+        self.fault, self.suspended, self.response = None, False, ""
+        self._forget()
+        if isinstance(self.backend, Recovering):
+            self.recovering = True
+            begun = self.move.id if self.point.phase is Phase.BUSY else ""
+            self.backend.recover(tuple(self._passed), begun, now)
+
+    def end_by(self, found: Fault, response: str) -> None:
+        """Have the program end because somebody ordered that."""
+        self.ordered, self.held = (found, response), False
 
     def due(self, now: float, peers: Peers) -> Step | None:
         """Return the step to be made now, beginning what has to be begun; None: not yet.
 
         The only place where a fault of a robot, its device, its link or a condition becomes a step.
         """
+        if self.suspended:
+            return self._ended(*self.ordered) if self.ordered is not None else None
+        if self.ordered is not None:
+            return self._ended(*self.ordered)
         try:
             found = self._unanswered(now) or self._due(now, peers)
         except LinkLostError as error:
             found = Fault("LINK_LOST", str(error))
-        if isinstance(found, Fault):
+        if not isinstance(found, Fault):
+            return found
+        response = self._response_to(found)
+        if self._rules.suspends and found.which == "BATTERY_LOW" and response in COMES_DOWN:
             self._give_up()
-            self.fault = found
-            self.response = response_to(found.which, self._effective_policies())
-            return fault(self._program, self.point, str(found))
-        return found
+            self.fault, self.response, self.suspended, self.recovering = found, response, True, False
+            return None
+        return self._ended(found, response)
 
     def send(self) -> None:
         """Send the notify that was recorded last."""
@@ -111,6 +170,26 @@ class RunningRobot:
             return inf
         event = self.backend.next_event(now)
         return min(event, self.deadline) if event is not None else None
+
+    def fail(self, found: Fault) -> None:
+        """End the program by a fault that cannot be recorded."""
+        step = self._ended(found, self._response_to(found))
+        self.point = step.leads_to
+
+    def _ended(self, found: Fault, response: str) -> Step:
+        self._give_up()
+        self.fault, self.response = found, response
+        self.ordered, self.suspended, self.recovering = None, False, False
+        return fault(self._program, self.point, str(found))
+
+    def _response_to(self, found: Fault) -> str:
+        if found.which == TAKEN_OVER:
+            return HANDS_OFF
+        return response_to(found.which, self._effective_policies())
+
+    def _forget(self) -> None:
+        self._begun, self._waits_since, self._peer_lost_at = False, None, None
+        self.lacking, self.deadline, self.question = (), inf, ""
 
     def _unanswered(self, now: float) -> Fault | None:
         """Return the fault that ends waiting for owners of slots; None: they have answered, or still may."""
@@ -135,6 +214,10 @@ class RunningRobot:
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
         if self.delivery is not None and self.delivery.waiting:
             return None
+        if self.held or self.recovering:
+            found = self._detained(now)
+            if found is not None or self.held or self.recovering:
+                return found
         phase = self.point.phase
         if phase is Phase.READY:
             return self._next()
@@ -144,6 +227,15 @@ class RunningRobot:
         if action is not None and action.is_a(NOTIFY):
             return self._next()
         return self._activity(action, now)
+
+    def _detained(self, now: float) -> Fault | None:
+        """Return what goes wrong while nothing else may be begun."""
+        found = self.backend.fault(now)
+        if found is not None and not self._bears(found):
+            return found
+        if self.recovering and self.backend.finished(now):
+            self.recovering = False
+        return None
 
     def _next(self) -> Step:
         return steps(self._program, self.point, frozenset())[0]
@@ -171,6 +263,8 @@ class RunningRobot:
         if len(possible) == 1:
             return possible[0]
         holds = self._decision(now)
+        if holds is None:
+            return self._wait(now, active, peers)
         if isinstance(holds, Fault):
             return holds
         return possible[0] if holds else possible[1]
@@ -188,22 +282,29 @@ class RunningRobot:
         return next((reason for end, reason in ends if end <= now), None)
 
     def _too_long(self) -> tuple[float, Fault]:
-        found = Fault("WAIT_TOO_LONG", f"waits for {', '.join(self.lacking)}")
+        found = Fault("WAIT_TOO_LONG", f"waits for {', '.join(self.lacking) or self.question}")
         return (self._waits_since or 0.0) + self._patience(found), found
 
     def _peer_lost(self, now: float, peers: Peers) -> tuple[float, Fault]:
         lost = sorted({robot for name in self.lacking for robot in peers.lost((self.id, name))})
         found = Fault("PEER_LOST", f"waits for {', '.join(self.lacking)} of {', '.join(lost)}")
         if not lost:
+            self._peer_lost_at = None
             return inf, found
         if self._peer_lost_at is None:
             self._peer_lost_at = now
         return self._peer_lost_at + self._patience(found), found
 
-    def _decision(self, now: float) -> bool | Fault:
+    def _decision(self, now: float) -> bool | Fault | None:
+        """Return what the condition says; None as long as nobody can know."""
         identifier = self._program.transitions[self.point.move].condition or ""
+        condition = self._rules.conditions[identifier]
         try:
-            holds = self._conditions[identifier].holds(self.backend.state(now))
+            state = replace(self.backend.state(now), answers=dict(self._rules.answers))
+            if not condition.known(state):
+                self.question = identifier
+                return None
+            holds = condition.holds(state)
         except LinkLostError:
             raise
         except Exception as error:  # a condition is foreign code: whatever it raises is the robot's fault
@@ -237,3 +338,17 @@ class RunningRobot:
             return inf
         seconds = patience(found.which, self._effective_policies())
         return inf if seconds is None else seconds
+
+
+def _followed(program: RobotProgram, point: Point, record: StepRecord) -> Step:
+    """Return the step that a record tells of, whatever slots are active."""
+    waits = {(program.id, name) for name in program.slots}
+    for step in steps(program, point, waits):
+        if (step.label, step.move, step.detail, step.slot) == (
+            record.label,
+            record.move,
+            record.detail,
+            record.slot,
+        ):
+            return step
+    raise ValueError(f"robot '{program.id}': step {record.seq} of its log is none of its program's")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from math import inf
 
 import pytest
@@ -11,7 +10,7 @@ from mmrs_core.behaviour.program import Action
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import BackendInput, Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.clock import SimulatedClock
+from mmrs_core.runtime.clock import RealClock, SimulatedClock
 from mmrs_core.runtime.interpreter import Terms, interpret
 from mmrs_core.runtime.run import assumed
 from mmrs_core.runtime.simulation import SimulatedRobot
@@ -354,19 +353,6 @@ def test_many_robots_run_much_faster_than_real_time(fly):
     assert run.ending.time == pytest.approx(200 * 60.0)
 
 
-class FastWorld:
-    """The world's time, a hundred times as fast."""
-
-    def __init__(self):
-        self._start = time.monotonic()
-
-    def now(self):
-        return (time.monotonic() - self._start) * 100.0
-
-    def sleep_until(self, when):
-        time.sleep(max(0.0, when - self.now()) / 100.0)
-
-
 def test_a_run_can_follow_the_worlds_time(kinds):
     behaviour = program(
         robot("a", [go("g", (12, 0, 0), after=(notify("b.s"),))]),
@@ -376,7 +362,7 @@ def test_a_run_can_follow_the_worlds_time(kinds):
     for each in behaviour.robots:
         given = BackendInput(behaviour, each, robot_type(), **kinds, environment={}, options={})
         backends[each.id] = SimulatedRobot(given)
-    clock = FastWorld()
+    clock = RealClock(100.0)
     records = list(interpret(behaviour, backends, bus=InProcessBus(behaviour), clock=clock, conditions={}))
     result = replay(behaviour, records)
     assert result.accepted

@@ -1,0 +1,169 @@
+"""A thread that has a vehicle do one thing after another, so that nobody else has to wait for it."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+
+from mmrs_core.flight.faults import CRASHED, Fault
+
+IDLE_SECONDS = 0.1
+"""Real seconds between two looks at a vehicle that has nothing to do."""
+
+
+class Interrupted(Exception):  # noqa: N818  # no error: something else is to be done first
+    """The present job must end at once."""
+
+
+class Job:
+    """What a vehicle is to do, in parts: one that was interrupted is begun again."""
+
+    def __init__(self, *parts: Callable[[], None]) -> None:
+        """Do these parts one after another; none is done at once."""
+        self._parts = deque(parts)
+
+    def append(self, part: Callable[[], None]) -> None:
+        """Do this part, too, after all others."""
+        self._parts.append(part)
+
+    def then(self, *parts: Callable[[], None]) -> None:
+        """Do these parts right after the present one."""
+        for offset, part in enumerate(parts):
+            self._parts.insert(1 + offset, part)
+
+    def run(self) -> None:
+        """Do what has not been done yet; returns when all of it has."""
+        while self._parts:
+            self._parts[0]()
+            self._parts.popleft()
+
+
+class Worker:
+    """Carries out the job that it was given last.
+
+    Attributes:
+        fault: what went wrong, until something is begun afresh.
+    """
+
+    def __init__(self, name: str, watch: Callable[[], None], halt: Callable[[], None]) -> None:
+        """Start the thread; it has nothing to do yet.
+
+        Args:
+            name: of the thread.
+            watch: looked at all the time; raises a Fault.
+            halt: brings the vehicle to a halt and returns when it stands.
+        """
+        self.fault: Fault | None = None
+        self.changed: Callable[[], None] = lambda: None
+        self._watch, self._halt = watch, halt
+        self._news = threading.Condition()
+        self._job: Job | None = None
+        self._newest = 0
+        self._running = 0
+        self._done = True
+        self._holds = self._halted = self._closing = False
+        self._thread = threading.Thread(target=self._live, name=name, daemon=True)
+        self._thread.start()
+
+    def begin(self, job: Job, *, afresh: bool = False) -> None:
+        """Drop the present job, if any, and do this one; `afresh`: forget faults and pauses, too."""
+        with self._news:
+            if afresh:
+                self.fault, self._holds, self._halted = None, False, False
+            self._job, self._done = job, False
+            self._newest += 1
+            self._news.notify_all()
+
+    @property
+    def done(self) -> bool:
+        """Return whether the job given last has been done."""
+        return self._done
+
+    @property
+    def halted(self) -> bool:
+        """Return whether the vehicle was told to pause, and stands."""
+        return self._holds and self._halted
+
+    def pause(self) -> None:
+        """Halt in the middle of the job."""
+        with self._news:
+            if not self._holds:
+                self._holds, self._halted = True, False
+                self._newest += 1
+                self._news.notify_all()
+
+    def resume(self) -> None:
+        """Go on with the job."""
+        with self._news:
+            self._holds = False
+            self._newest += 1
+            self._news.notify_all()
+
+    def close(self) -> None:
+        """End the thread; whatever is being done is left as it is."""
+        with self._news:
+            self._closing = True
+            self._newest += 1
+            self._news.notify_all()
+        self._thread.join()
+
+    def guard(self) -> None:
+        """Raise what should end a wait of the job.
+
+        Raises:
+            Interrupted: something else is to be done.
+            Fault: something has gone wrong.
+        """
+        if threading.current_thread() is not self._thread:
+            return
+        if self._newest != self._running:
+            raise Interrupted
+        self._watch()
+
+    def _live(self) -> None:
+        while not self._closing:
+            with self._news:
+                if self._newest == self._running:
+                    self._news.wait(IDLE_SECONDS)
+                self._running = self._newest
+                task = self._task()
+            self._attempt(task)
+
+    def _task(self) -> Callable[[], None]:
+        if self.fault is not None or self._closing:
+            return lambda: None
+        if self._holds:
+            return self._watch if self._halted else self._come_to_a_halt
+        return self._watch if self._done or self._job is None else self._work
+
+    def _attempt(self, task: Callable[[], None]) -> None:
+        try:
+            task()
+        except Interrupted:
+            return
+        except Fault as fault:
+            self._fail(fault)
+        except Exception as error:  # the thread must live on: the robot may still have to be stopped
+            self._fail(Fault(CRASHED, f"the program itself fails: {error!r}"))
+
+    def _work(self) -> None:
+        job = self._job
+        assert job is not None
+        job.run()
+        with self._news:
+            if self._job is job:
+                self._done = True
+        self.changed()
+
+    def _come_to_a_halt(self) -> None:
+        self._halt()
+        with self._news:
+            self._halted = True
+        self.changed()
+
+    def _fail(self, fault: Fault) -> None:
+        with self._news:
+            if self._newest == self._running:
+                self.fault = fault
+        self.changed()
