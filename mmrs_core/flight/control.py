@@ -1,0 +1,222 @@
+"""The control channel: orders to the robots of a process, over loopback TCP, in lines of JSON.
+
+A process that runs robots writes ``control.json`` into the folder of its logs: port, token, process and
+robots, readable by its user only. An order is one line::
+
+    {"token": "…", "order": "hold", "robots": ["Drone1"]}
+
+without `robots` it is for all of them; ``answer`` has `question` and `answer` beside. There is one line of
+answer for each robot, as soon as it has obeyed or refused, with the seconds that it took, then
+``{"done": true}``. Run this module to give orders: ``python -m mmrs_flight.control hold --log logs``.
+"""
+
+from __future__ import annotations
+
+import hmac
+import json
+import os
+import queue
+import secrets
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from errno import EEXIST
+from pathlib import Path
+from typing import Any
+
+from .orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
+
+FILE = "control.json"
+ANSWER_SECONDS = 30.0
+"""Longest time that a robot has for an answer; a client may ask for less with `seconds`."""
+
+LONGEST_LINE = 65_536
+IDLE_SECONDS = 60.0
+CONNECTIONS = 16
+"""How many people at once are heard."""
+
+Status = Callable[[str], Mapping[str, object]]
+
+
+class Control:
+    """Listens for orders in threads of its own, and hands them to the robots' inboxes."""
+
+    def __init__(self, folder: Path, run: str, inboxes: Mapping[str, Inbox], status: Status) -> None:
+        """Begin to listen.
+
+        Args:
+            folder: of the logs; where the channel is announced.
+            run: identifier of the run.
+            inboxes: by robot; all robots of this process.
+            status: what there is to say of a robot, as JSON has it; called from any thread.
+
+        Raises:
+            OSError: the channel cannot be opened or announced.
+        """
+        self._inboxes = dict(inboxes)
+        self._status = status
+        self._token = secrets.token_urlsafe(24)
+        self._free = threading.BoundedSemaphore(CONNECTIONS)
+        self._server = socket.create_server(("127.0.0.1", 0))
+        facts = {
+            "port": self._server.getsockname()[1],
+            "token": self._token,
+            "pid": os.getpid(),
+            "run": run,
+            "robots": list(self._inboxes),
+        }
+        try:
+            self._path = _announce(folder, json.dumps(facts) + "\n")
+        except OSError:
+            self._server.close()
+            raise
+        self._closing = False
+        self._thread = threading.Thread(target=self._listen, name="control channel", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Listen no more, and take the announcement away."""
+        self._closing = True
+        with suppress(OSError):
+            # Somebody who calls wakes the thread that waits for calls.
+            socket.create_connection(self._server.getsockname(), 1.0).close()
+        self._thread.join()
+        self._server.close()
+        self._path.unlink(missing_ok=True)
+
+    def _listen(self) -> None:
+        while True:
+            connection, _ = self._server.accept()
+            if self._closing or not self._free.acquire(blocking=False):
+                connection.close()
+                if self._closing:
+                    return
+                continue
+            threading.Thread(target=self._serve, args=(connection,), name="orders", daemon=True).start()
+
+    def _serve(self, connection: socket.socket) -> None:
+        try:
+            with connection, connection.makefile("rwb") as file:
+                connection.settimeout(IDLE_SECONDS)
+                while line := file.readline(LONGEST_LINE):
+                    for reply in self._replies(line):
+                        file.write(json.dumps(reply).encode("ascii") + b"\n")
+                        file.flush()
+        except OSError:
+            # Whoever gave the order does not want to hear its end; the robots obey all the same.
+            return
+        finally:
+            self._free.release()
+
+    def _replies(self, line: bytes) -> Iterator[Mapping[str, object]]:
+        try:
+            given = self._understood(line)
+        except ValueError as error:
+            yield {"error": str(error)}
+            return
+        order, robots, seconds = given
+        if order.name == STATUS:
+            yield from ({"robot": robot, **self._status(robot)} for robot in robots)
+        else:
+            yield from self._obeyed(order, robots, seconds)
+        yield {"done": True}
+
+    def _obeyed(self, order: Order, robots: list[str], seconds: float) -> Iterator[Mapping[str, object]]:
+        answers: queue.SimpleQueue[Receipt] = queue.SimpleQueue()
+        for robot in robots:
+            self._inboxes[robot].give(order, answers.put)
+        missing, until = set(robots), time.monotonic() + seconds
+        while missing:
+            try:
+                receipt = answers.get(timeout=max(0.0, until - time.monotonic()))
+            except queue.Empty:
+                break
+            missing.discard(receipt.robot)
+            yield _line(receipt.robot, order, bool(receipt.confirmed), receipt.seconds, receipt.why)
+        for robot in sorted(missing):
+            yield _line(robot, order, False, seconds, "no answer yet; it will still be obeyed")
+
+    def _understood(self, line: bytes) -> tuple[Order, list[str], float]:
+        given = _object(line)
+        if not hmac.compare_digest(str(given.get("token", "")).encode(), self._token.encode()):
+            raise ValueError("token: is not that of this process")
+        robots = given.get("robots") or list(self._inboxes)
+        if not isinstance(robots, list) or not all(isinstance(robot, str) for robot in robots):
+            raise ValueError("robots: is no list of names")
+        unknown = [robot for robot in robots if robot not in self._inboxes]
+        if unknown:
+            known = ", ".join(map(ascii, self._inboxes))
+            raise ValueError(f"{', '.join(map(ascii, unknown))}: no robot of this process, which has {known}")
+        return _order(given), list(dict.fromkeys(robots)), _seconds(given.get("seconds", ANSWER_SECONDS))
+
+
+def _line(robot: str, order: Order, confirmed: bool, seconds: float, why: str) -> Mapping[str, object]:
+    return {
+        "robot": robot,
+        "order": order.name,
+        "confirmed": confirmed,
+        "seconds": round(seconds, 4),
+        "why": why,
+    }
+
+
+def _object(line: bytes) -> dict[str, Any]:
+    try:
+        given = json.loads(line)
+    except (ValueError, RecursionError) as error:
+        raise ValueError("an order is one line of JSON") from error
+    if not isinstance(given, dict):
+        raise ValueError("an order is an object of JSON")
+    return given
+
+
+def _order(given: Mapping[str, Any]) -> Order:
+    name = given.get("order")
+    if name not in ORDERS:
+        raise ValueError(f"order: {name!a} is none of {', '.join(ORDERS)}")
+    if name != ANSWER:
+        return Order(str(name))
+    question, answer = given.get("question"), given.get("answer")
+    if not isinstance(question, str) or not question or not isinstance(answer, bool):
+        raise ValueError("answer: needs a question, and an answer that is true or false")
+    return Order(ANSWER, question, answer)
+
+
+def _seconds(given: object) -> float:
+    if isinstance(given, bool) or not isinstance(given, int | float) or not 0 < given <= ANSWER_SECONDS:
+        raise ValueError(f"seconds: is no number above 0 up to {ANSWER_SECONDS:.0f}")
+    return float(given)
+
+
+def _announce(folder: Path, text: str) -> Path:
+    """Write the announcement where no process that is still there has put its own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    usual = folder / FILE
+    if usual.exists() and not _answers(usual):
+        usual.unlink(missing_ok=True)
+    for path in (usual, folder / f"{usual.stem}-{os.getpid()}{usual.suffix}"):
+        try:
+            number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        except FileExistsError:
+            continue
+        with os.fdopen(number, "w", encoding="ascii") as file:
+            file.write(text)
+        return path
+    raise FileExistsError(EEXIST, "already there, of a process that still runs", str(usual))
+
+
+def _answers(path: Path) -> bool:
+    try:
+        port = int(json.loads(path.read_text("ascii"))["port"])
+        socket.create_connection(("127.0.0.1", port), 1.0).close()
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    from .ordering import main
+
+    raise SystemExit(main())

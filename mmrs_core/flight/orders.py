@@ -1,0 +1,139 @@
+"""Orders of people to robots: given by any thread, obeyed by the robot's own, and confirmed by it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+HOLD = "hold"
+RESUME = "resume"
+RETURN = "return"
+LAND = "land"
+STOP = "stop"
+ANSWER = "answer"
+STATUS = "status"
+
+ORDERS = {
+    HOLD: "halt and stay until the next order",
+    RESUME: "go on after a hold, or after a change of batteries",
+    RETURN: "end the program and come home by the way it came",
+    LAND: "end the program and come down where it is",
+    STOP: "end the program as --on-stop says",
+    ANSWER: "answer a question that the robot waits for",
+    STATUS: "tell where the robot is and what it does",
+}
+"""What can be ordered, and what it means."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Something that a robot is to do.
+
+    Attributes:
+        name: one of `ORDERS`.
+        question, answer: of ``answer``.
+    """
+
+    name: str
+    question: str = ""
+    answer: bool = False
+
+
+class Receipt:
+    """One order to one robot, until the robot has obeyed it.
+
+    Attributes:
+        order: what was ordered. robot: who has to obey.
+        confirmed: whether it has; None: not yet known. why: for people, why not, or how.
+        seconds: real seconds from the order to its confirmation.
+    """
+
+    def __init__(self, robot: str, order: Order, answered: Callable[[Receipt], None]) -> None:
+        """Begin to count the seconds; `answered` is called once, by the thread that answers."""
+        self.robot = robot
+        self.order = order
+        self.confirmed: bool | None = None
+        self.why = ""
+        self.seconds = 0.0
+        self._begun = time.monotonic()
+        self._answered = answered
+        self._lock = threading.Lock()
+
+    def confirm(self, how: str = "") -> None:
+        """Say that the robot has obeyed; only the first answer counts."""
+        self._answer(True, how)
+
+    def refuse(self, why: str) -> None:
+        """Say why the robot does not obey; only the first answer counts."""
+        self._answer(False, why)
+
+    def _answer(self, confirmed: bool, why: str) -> None:
+        with self._lock:
+            if self.confirmed is not None:
+                return
+            self.confirmed, self.why = confirmed, why
+            self.seconds = time.monotonic() - self._begun
+        self._answered(self)
+
+
+class Inbox:
+    """The orders to one robot that it has not looked at yet.
+
+    Attributes:
+        answers: what people have answered so far, by question.
+    """
+
+    def __init__(
+        self,
+        robot: str,
+        *,
+        arrived: Callable[[], None] = lambda: None,
+        answered: Callable[[Receipt], None] = lambda receipt: None,
+    ) -> None:
+        """Begin empty.
+
+        Args:
+            robot: whose it is.
+            arrived: called, from any thread, when there is something new.
+            answered: called, from any thread, when an order was obeyed or refused.
+        """
+        self.robot = robot
+        self.answers: dict[str, bool] = {}
+        self._arrived = arrived
+        self._answered = answered
+        self._waiting: deque[Receipt] = deque()
+        self._closed = ""
+
+    def give(self, order: Order, reply: Callable[[Receipt], None] = lambda receipt: None) -> Receipt:
+        """Give the robot an order; `reply` is called when it has obeyed or refused."""
+
+        def answered(receipt: Receipt) -> None:
+            self._answered(receipt)
+            reply(receipt)
+
+        receipt = Receipt(self.robot, order, answered)
+        if order.name == ANSWER:
+            self.answers = {**self.answers, order.question: order.answer}
+            receipt.confirm()
+        elif self._closed:
+            receipt.refuse(self._closed)
+        else:
+            self._waiting.append(receipt)
+        self._arrived()
+        return receipt
+
+    def take(self) -> Receipt | None:
+        """Return the oldest order that was not taken yet; None where there is none."""
+        try:
+            return self._waiting.popleft()
+        except IndexError:
+            return None
+
+    def close(self, why: str) -> None:
+        """Refuse all orders from now on, and those that were not taken."""
+        self._closed = why
+        while (receipt := self.take()) is not None:
+            receipt.refuse(why)

@@ -1,0 +1,175 @@
+"""The control channel: who is heard, and what is answered."""
+
+from __future__ import annotations
+
+import json
+import socket
+import stat
+import threading
+from contextlib import ExitStack
+
+import pytest
+
+from mmrs_core.flight.control import Control
+from mmrs_core.flight.ordering import Unreachable, give, main
+from mmrs_core.flight.orders import Inbox, Order
+
+
+@pytest.fixture
+def inboxes():
+    return {"alpha": Inbox("alpha"), "beta": Inbox("beta")}
+
+
+@pytest.fixture
+def opened(tmp_path):
+    """Return a function that opens a channel; all are closed when the test is over."""
+    with ExitStack() as stack:
+
+        def open_channel(inboxes, folder=tmp_path):
+            control = Control(folder, "run-0", inboxes, lambda robot: {"mode": "guided", "energy": 0.5})
+            stack.callback(control.close)
+            return control
+
+        yield open_channel
+
+
+@pytest.fixture
+def robots():
+    """Return a function that has robots obey all they are told, in threads of their own."""
+    over = threading.Event()
+    threads = []
+
+    def obey(*inboxes, refuse=None):
+        def work(inbox):
+            while not over.is_set():
+                if (receipt := inbox.take()) is not None:
+                    receipt.refuse(refuse) if refuse else receipt.confirm()
+                over.wait(0.005)
+
+        for inbox in inboxes:
+            threads.append(threading.Thread(target=work, args=(inbox,)))
+            threads[-1].start()
+
+    yield obey
+    over.set()
+    for thread in threads:
+        thread.join()
+
+
+def ask(folder, **content):
+    """Send one line to the channel in a folder, with its token unless another is given."""
+    facts = json.loads((folder / "control.json").read_text("ascii"))
+    with (
+        socket.create_connection(("127.0.0.1", facts["port"])) as connection,
+        connection.makefile("rwb") as file,
+    ):
+        file.write(json.dumps({"token": facts["token"], **content}).encode() + b"\n")
+        file.flush()
+        return json.loads(file.readline())
+
+
+def test_every_robot_confirms_an_order_to_all(tmp_path, opened, inboxes, robots):
+    opened(inboxes)
+    robots(*inboxes.values())
+    replies = list(give(tmp_path, "hold"))
+    assert {reply["robot"] for reply in replies} == {"alpha", "beta"}
+    assert all(reply["confirmed"] and reply["seconds"] < 1.0 for reply in replies)
+
+
+def test_an_order_to_one_robot_is_not_heard_by_the_others(tmp_path, opened, inboxes, robots):
+    opened(inboxes)
+    robots(inboxes["beta"])
+    (reply,) = give(tmp_path, "land", ["beta"])
+    assert (reply["robot"], reply["confirmed"]) == ("beta", True)
+    assert inboxes["alpha"].take() is None
+
+
+def test_a_robot_that_does_not_answer_is_told_after_the_seconds_asked_for(tmp_path, opened, inboxes):
+    opened(inboxes)
+    (reply,) = give(tmp_path, "hold", ["alpha"], seconds=0.1)
+    assert not reply["confirmed"]
+    assert "no answer yet" in reply["why"]
+
+
+def test_a_robot_that_refuses_says_why(tmp_path, opened, inboxes, robots, capsys):
+    opened(inboxes)
+    robots(inboxes["alpha"], refuse="is in the workshop")
+    assert main(["hold", "alpha", "--log", str(tmp_path)]) == 1
+    assert capsys.readouterr().out == "'alpha': hold not confirmed (is in the workshop)\n"
+
+
+def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path, opened, inboxes):
+    opened(inboxes)
+    receipt = inboxes["alpha"].give(Order("hold"))
+    inboxes["alpha"].close("its program has ended")
+    (reply,) = give(tmp_path, "hold", ["alpha"])
+    assert (receipt.confirmed, receipt.why) == (False, "its program has ended")
+    assert reply["why"] == "its program has ended"
+
+
+def test_an_answer_is_known_to_the_robot_at_once(tmp_path, opened, inboxes):
+    opened(inboxes)
+    list(give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True))
+    assert inboxes["alpha"].answers == {"is it safe": True}
+    assert inboxes["beta"].answers == {}
+
+
+def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
+    opened(inboxes)
+    assert main(["status", "--log", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "'alpha': mode guided, energy 0.5"
+
+
+def test_who_does_not_know_the_token_is_not_obeyed(tmp_path, opened, inboxes):
+    opened(inboxes)
+    assert ask(tmp_path, token="guessed", order="land") == {"error": "token: is not that of this process"}
+    assert inboxes["alpha"].take() is None
+
+
+def test_only_its_user_may_read_the_token(tmp_path, opened, inboxes):
+    opened(inboxes)
+    assert stat.S_IMODE((tmp_path / "control.json").stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize(
+    ("content", "complaint"),
+    [
+        ({"order": "explode"}, "order: 'explode' is none of hold"),
+        ({"order": "hold", "robots": ["gamma"]}, "'gamma': no robot of this process"),
+        ({"order": "hold", "robots": 7}, "robots: is no list of names"),
+        ({"order": "hold", "seconds": True}, "seconds: is no number"),
+        ({"order": "answer", "question": "is it safe"}, "answer: needs a question"),
+    ],
+)
+def test_an_order_that_makes_no_sense_is_refused_in_words(tmp_path, opened, inboxes, content, complaint):
+    opened(inboxes)
+    assert complaint in ask(tmp_path, **content)["error"]
+
+
+def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, inboxes, robots):
+    opened({"alpha": inboxes["alpha"]})
+    opened({"beta": inboxes["beta"]})
+    robots(*inboxes.values())
+    assert {reply["robot"] for reply in give(tmp_path, "hold")} == {"alpha", "beta"}
+
+
+def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, opened, inboxes, robots):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        facts = {"port": server.getsockname()[1], "token": "old", "robots": ["alpha"]}
+    (tmp_path / "control.json").write_text(json.dumps(facts), "ascii")
+    opened(inboxes)
+    robots(*inboxes.values())
+    assert len(list(give(tmp_path, "hold"))) == 2
+
+
+def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path, inboxes):
+    Control(tmp_path, "run-0", inboxes, lambda robot: {}).close()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(Unreachable, match="no robots are running"):
+        list(give(tmp_path, "hold"))
+
+
+def test_a_robot_that_nobody_runs_is_not_found(tmp_path, opened, inboxes):
+    opened(inboxes)
+    with pytest.raises(Unreachable, match="'gamma': not running; there are 'alpha', 'beta'"):
+        list(give(tmp_path, "hold", ["gamma"]))
