@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import BlackBox, Damage, Entry, black_boxes, number_of
-from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
@@ -62,7 +62,9 @@ class _Contents:
 
     @property
     def simulated(self) -> bool:
-        return any(each.kind == "start" and each.content.get("link") == SIMULATION for each in self.entries)
+        """Return whether there was no vehicle: in a simulation, and in a dry run."""
+        starts = (each.content for each in self.entries if each.kind == "start")
+        return any(each.get("link") == SIMULATION or each.get("dry_run") is True for each in starts)
 
 
 def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, RobotType]) -> Flight:
@@ -86,6 +88,13 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
     for stranger in sorted({*steps, *contents} - known):
         damages.append(f"{stranger}: no such robot in the behaviour; left out")
     damages += _runs(steps, contents)
+    for robot in program.robots:
+        given = steps.get(robot.id, [])
+        steps[robot.id] = [record for record in given if _is_of(robot, record)]
+        if strange := len(given) - len(steps[robot.id]):
+            damages.append(
+                f"{robot.id}: {strange} steps are of moves or actions that the behaviour does not have"
+            )
     robots = {
         robot.id: _flown(
             robot.id,
@@ -99,6 +108,16 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
     begun = min((each.wall for each in contents.values() if each.wall), default="")
     run = next((each for each in (*_of_steps(steps), *_of_boxes(contents)) if each), "")
     return Flight(run, robots, tuple(damages), len(boxes), begun)
+
+
+def _is_of(robot: RobotProgram, record: StepRecord) -> bool:
+    """Return whether a step names a move of the robot, and an action that this move has."""
+    move = next((move for move in robot.moves if move.id == record.move), None)
+    if move is None or record.label not in ("act", "ntf"):
+        return move is not None
+    side, _, index = record.detail.partition(":")
+    actions = {"pre": move.before, "post": move.after}.get(side, ())
+    return index.isdecimal() and len(index) < 6 and int(index) < len(actions)
 
 
 def _steps(paths: Sequence[Path], damages: list[str]) -> dict[str, list[StepRecord]]:

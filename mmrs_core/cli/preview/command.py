@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.parameters import Assume, Context, Robots, Seed, robot_files
+from mmrs_core.cli.parameters import Assume, Context, Robots, Seed, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
 
 if TYPE_CHECKING:
@@ -35,12 +35,17 @@ def preview(
     robots: Robots = None,
     seed: Seed = 0,
     assume: Assume = None,
+    logs: Annotated[
+        list[Path] | None,
+        typer.Option("--logs", metavar="DIR", help="Logs of a flight of the behaviour; may be repeated."),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Draw a mission: map, timeline, heights, on one page.
 
     A mission is planned and drawn as planned. A behaviour is simulated and drawn as it went, with what
-    its conditions are told to answer. The map is written as SVG, too.
+    its conditions are told to answer. With --logs it is drawn as it was flown, over what was planned.
+    The map is written as SVG, too.
     """
     from mmrs_core.cli.behaviours import is_behaviour
     from mmrs_core.cli.journey import Journey, Workshop
@@ -49,7 +54,9 @@ def preview(
 
     workshop = Workshop(settings_of(call))
     types = robot_files(robots)
-    if is_behaviour(workshop, project):
+    if logs:
+        picture = _of_flight(workshop, behaviour_file(project), context, types, assume, logs)
+    elif is_behaviour(workshop, project):
         picture = _of_behaviour(workshop, project, context, types, assume)
     else:
         picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
@@ -93,6 +100,29 @@ def _of_behaviour(
     return picture_of_run(
         program, run.records, run.tracks, contributed.move_kinds, contributed.map_symbols, around
     )
+
+
+def _of_flight(
+    workshop: Workshop,
+    file: Path,
+    context: Path | None,
+    robots: tuple[Path, ...],
+    assume: list[str] | None,
+    logs: list[Path],
+) -> Picture:
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.flights.gathering import read_flight
+    from mmrs_core.cli.flights.planned import planned_for
+    from mmrs_core.cli.preview.from_flight import picture_of_flight
+    from mmrs_core.cli.preview.from_run import Surroundings
+    from mmrs_core.cli.simulation import answers
+
+    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    program, place = loaded.program, loaded.place
+    flight = read_flight(logs, program, place.types)
+    planned = planned_for(workshop, loaded, flight, answers(assume))
+    around = Surroundings(place.areas or (), loaded.elements, place.types)
+    return picture_of_flight(program, flight, planned, workshop.contributions, around)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

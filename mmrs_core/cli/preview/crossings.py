@@ -38,7 +38,10 @@ def crossings(robot: RobotPicture, zones: Iterable[Zone]) -> Iterator[Crossing]:
 
 
 def corners(leg: Leg) -> Iterator[tuple[float, Position]]:
-    """Yield (time, position) at every corner of a leg, travelled at an even pace."""
+    """Yield (time, position) at every corner of a leg, travelled at an even pace where no times are known."""
+    if leg.times:
+        yield from zip(leg.times, leg.points, strict=True)
+        return
     lengths = [0.0, *accumulate(dist(a, b) for a, b in pairwise(leg.points))]
     whole = lengths[-1] or 1.0
     for point, so_far in zip(leg.points, lengths, strict=True):

@@ -77,7 +77,7 @@ def picture_of_run(
         robots=robots,
         zones=zones_of(surroundings.areas, clearances),
         things=things_of(surroundings.elements, symbols),
-        handovers=tuple(_handovers(program, by_robot)),
+        handovers=tuple(handovers_of(program, by_robot)),
         makespan=max((steps[-1].time for steps in by_robot.values() if steps), default=0.0),
     )
 
@@ -97,7 +97,7 @@ def _robot(
         type_name=robot.type_name,
         home=robot.home or (way.positions or [(0.0, 0.0, 0.0)])[0],
         legs=tuple(_legs(moves, records, way, kinds)),
-        bars=tuple(_bars(moves, records, kinds)),
+        bars=tuple(bars_of_records(moves, records, kinds)),
         heights=tuple((sample.time, sample.up) for sample in track),
         summary=(("moves", str(len(robot.moves))), ("way", length(flown)), ("time", clock(end))),
     )
@@ -113,8 +113,8 @@ def _legs(
     for record in records:
         if record.label == "act":
             acts.setdefault(record.move, []).append(record.time)
-    for begin, end in _movements(records):
-        points = track.between(begin.time, end.time)
+    for begin, end in movements(records):
+        points, times = track.between(begin.time, end.time)
         move = moves[begin.move]
         if not points:
             continue
@@ -122,18 +122,23 @@ def _legs(
         stays = sum(dist(a, b) for a, b in pairwise(points)) < _STANDSTILL
         if stays and not done and (move.is_a(_RECHARGE) or not move.is_a(_HOLD)):
             continue
-        kind = "hold" if stays and move.is_a(_HOLD) else _kind(move, kinds)
+        kind = "hold" if stays and move.is_a(_HOLD) else kind_of_leg(move, kinds)
         way = points[:1] if stays else points
-        yield Leg(kind, way, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}")
+        paced = () if stays else times
+        yield Leg(
+            kind, way, begin.time, end.time, move.task, actions=done, moves=f"move {move.id}", times=paced
+        )
 
 
-def _movements(records: Sequence[StepRecord]) -> Iterator[tuple[StepRecord, StepRecord]]:
+def movements(records: Sequence[StepRecord]) -> Iterator[tuple[StepRecord, StepRecord]]:
+    """Yield every begin of a move with the step after it."""
     for record, following in pairwise(records):
         if record.label == "begin":
             yield record, following
 
 
-def _kind(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
+def kind_of_leg(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
+    """Return the kind of the leg that a move that moves is."""
     name = most_specific(move.metaclasses, kinds)
     state = kinds[name].leaves if name is not None else None
     if state in _STATES:
@@ -141,7 +146,7 @@ def _kind(move: Move, kinds: Mapping[Name, MoveKind]) -> str:
     return "transit" if move.rule == "transit" or not (move.task or move.before or move.after) else "work"
 
 
-def _bars(
+def bars_of_records(
     moves: Mapping[str, Move], records: Sequence[StepRecord], kinds: Mapping[Name, MoveKind]
 ) -> Iterator[Bar]:
     """Yield what every stretch of time between two steps was spent on: the later step tells."""
@@ -156,11 +161,17 @@ def _bars(
         elif move.is_a(_RECHARGE):
             kind = "recharge"
         else:
-            kind = "hold" if move.is_a(_HOLD) else _kind(move, kinds)
+            kind = "hold" if move.is_a(_HOLD) else kind_of_leg(move, kinds)
         yield Bar(kind, record.time, following.time, move.task, f"move {move.id}")
 
 
-def _handovers(program: Program, by_robot: Mapping[str, Sequence[StepRecord]]) -> Iterator[Handover]:
+def handovers_of(program: Program, by_robot: Mapping[str, Sequence[StepRecord]]) -> Iterator[Handover]:
+    """Yield who told whom to go on, and since when the other had waited.
+
+    Args:
+        program: the behaviour.
+        by_robot: the steps of each robot, in the order of its log.
+    """
     waits = list(_waits(program, by_robot))
     for robot in program.robots:
         moves = {move.id: move for move in robot.moves}
@@ -204,12 +215,16 @@ class _Track:
         self._times = [sample.time for sample in samples]
         self.positions: list[Position] = [sample.position for sample in samples]
 
-    def between(self, begin: float, end: float) -> tuple[Position, ...]:
-        """Return the corners from begin to end, first and last interpolated; empty where nothing is known."""
+    def between(self, begin: float, end: float) -> tuple[tuple[Position, ...], tuple[float, ...]]:
+        """Return the corners from begin to end, first and last interpolated, and when it was there.
+
+        Both are empty where nothing is known.
+        """
         if not self.positions:
-            return ()
-        inside = self.positions[bisect_right(self._times, begin) : bisect_left(self._times, end)]
-        return (self.at(begin), *inside, self.at(end))
+            return (), ()
+        inside = slice(bisect_right(self._times, begin), bisect_left(self._times, end))
+        corners = (self.at(begin), *self.positions[inside], self.at(end))
+        return corners, (begin, *self._times[inside], end)
 
     def at(self, time: float) -> Position:
         """Return where the robot was; before the first sample and after the last it stood still."""

@@ -10,7 +10,7 @@ from mmrs_core.cli.preview.crossings import crossings
 from mmrs_core.cli.preview.legend import legend_height, legend_markup
 from mmrs_core.cli.preview.map_furniture import furniture, grid, patterns
 from mmrs_core.cli.preview.map_places import kept_shape, task_shapes, thing_shape, zone_shape
-from mmrs_core.cli.preview.map_ways import coverage, home, robot_way
+from mmrs_core.cli.preview.map_ways import coverage, home, marks_of, planned_way, robot_way
 from mmrs_core.cli.preview.map_words import words
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.picture import Picture, Zone
@@ -45,7 +45,12 @@ def _layers(picture: Picture, projection: Projection) -> Iterator[str]:
     yield _layer("clearance", (kept_shape(zone, projection) for zone in picture.zones))
     yield _layer("areas", _barriers(picture, projection))
     yield _layer("things", (thing_shape(thing, projection) for thing in picture.things))
+    if picture.flown:
+        yield _layer("planned", (planned_way(i, robot, projection) for i, robot in robots))
     yield _layer("ways", (robot_way(i, robot, projection) for i, robot in robots))
+    if picture.flown:
+        marks = (mark for i, robot in robots for mark in marks_of(i, robot, projection))
+        yield _layer("marks", marks)
     yield _layer("homes", (home(i, robot, projection) for i, robot in robots))
     yield _layer("labels", (words(picture, projection),))
     yield _layer("furniture", furniture(projection))

@@ -14,7 +14,19 @@ from mmrs_core.cli.preview.projection import Projection
 from mmrs_core.scene import Point
 
 _ARROW_EVERY = 90.0
-_KINDS = {"launch": "take-off", "transit": "transit", "work": "work", "hold": "hold", "recover": "landing"}
+_KINDS = {
+    "launch": "take-off",
+    "transit": "transit",
+    "work": "work",
+    "hold": "hold",
+    "recover": "landing",
+    "response": "not planned",
+}
+_MARKS = {
+    "photo": "M-3-2H3V2H-3Z",
+    "missing": "M-4-3H4V3H-4ZM-4-3L4 3",
+    "fault": "M-6-6L6 6M6-6L-6 6",
+}
 STAYING = ("work", "hold")
 """The kinds of legs whose stays are marked."""
 STAY = 5.5
@@ -28,6 +40,24 @@ def coverage(picture: Picture, projection: Projection) -> Iterator[str]:
         look = {"class": "covered", "fill": style_of(index).colour, "data-robot": index}
         if rings:
             yield element("path", {**look, "d": projection.closed(rings)})
+
+
+def planned_way(index: int, robot: RobotPicture, projection: Projection) -> str:
+    """Return where a robot that has flown should have, beneath where it did; empty where nobody knows."""
+    lines = " ".join(f"M{projection.line(way)}" for way in robot.planned)
+    if not lines:
+        return ""
+    look = {"class": "planned", "d": lines, "stroke": style_of(index).colour, "data-robot": index}
+    return element("path", look, title(f"{robot.name}: as planned"))
+
+
+def marks_of(index: int, robot: RobotPicture, projection: Projection) -> Iterator[str]:
+    """Yield the marks of what happened on the way."""
+    for mark in robot.marks:
+        x, y = projection.place(mark.at)
+        look = {"class": f"mark {mark.kind}", "transform": f"translate({number(x)} {number(y)})"}
+        shape = element("path", {"d": _MARKS[mark.kind], "stroke": style_of(index).colour})
+        yield element("g", {**look, "data-robot": index}, shape, title(f"{robot.name}: {mark.tip}"))
 
 
 def robot_way(index: int, robot: RobotPicture, projection: Projection) -> str:

@@ -108,12 +108,18 @@
     }
     return points[points.length - 1];
   };
+  const timed = (leg, time) => {
+    const i = Math.max(1, leg.times.findIndex((each) => each > time));
+    const f = (time - leg.times[i - 1]) / Math.max(leg.times[i] - leg.times[i - 1], 1e-9);
+    return leg.points[i - 1].map((value, axis) => value + f * (leg.points[i][axis] - value));
+  };
+  const within = (leg, time) => leg.times ? timed(leg, time)
+    : along(leg.points, (time - leg.begin) / Math.max(leg.end - leg.begin, 1e-9));
   const positionOf = (robot, time) => {
     let at = robot.home;
     for (const leg of robot.legs) {
       if (time < leg.begin) break;
-      at = time >= leg.end ? leg.points[leg.points.length - 1]
-        : along(leg.points, (time - leg.begin) / Math.max(leg.end - leg.begin, 1e-9));
+      at = time >= leg.end ? leg.points[leg.points.length - 1] : within(leg, time);
       if (time < leg.end) break;
     }
     return at;

@@ -10,7 +10,7 @@ from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
-from mmrs_core.cli.preview.picture import Picture, RobotPicture, Thing
+from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, Thing
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.projection import projection_of
 from mmrs_core.cli.preview.signs import sign, symbols_in
@@ -29,6 +29,14 @@ _LAYERS = (
     ("ways", "ways"),
     ("labels", "names"),
     ("grid", "grid"),
+)
+_FLOWN_LAYERS = (("planned", "ways as planned"), ("marks", "photos and faults"))
+_FLOWN_KEY = (
+    ("planned", "pale: as planned"),
+    ("response", "dotted: not in the plan"),
+    ("photo", "photo"),
+    ("missing", "photo not confirmed"),
+    ("fault", "fault"),
 )
 
 
@@ -74,7 +82,8 @@ def _lead(picture: Picture) -> str:
     robots, tasks = len(picture.robots), len(picture.tasks)
     counts = [f"{robots} robot{'s' * (robots != 1)}"]
     counts += [f"{tasks} task{'s' * (tasks != 1)}"] if tasks else []
-    return f"{', '.join(counts)}, done after {clock(picture.makespan)}. Origin: {picture.origin}."
+    done = "flown for" if picture.flown else "done after"
+    return f"{', '.join(counts)}, {done} {clock(picture.makespan)}. Origin: {picture.origin}."
 
 
 def _frame(picture: Picture) -> str:
@@ -86,7 +95,8 @@ def _frame(picture: Picture) -> str:
 
 def _controls(picture: Picture) -> str:
     robots = (_robot_box(i, robot) for i, robot in enumerate(picture.robots))
-    layers = (_box({"data-toggle": name}, text(words)) for name, words in _LAYERS)
+    shown = (*_FLOWN_LAYERS, *_LAYERS) if picture.flown else _LAYERS
+    layers = (_box({"data-toggle": name}, text(words)) for name, words in shown)
     return element(
         "aside",
         None,
@@ -134,6 +144,7 @@ def _key(picture: Picture) -> str:
         ("obstacle", "obstacle"),
         ("kept", "kept clear"),
         ("emergency", "emergency area"),
+        *(_FLOWN_KEY if picture.flown else ()),
     )
     signs = (element("li", None, sign(symbol), text(symbol.label)) for symbol in symbols_in(picture))
     return element(
@@ -192,7 +203,12 @@ def _notes(picture: Picture) -> str:
     if not picture.notes:
         return ""
     items = (element("li", None, text(note)) for note in picture.notes)
-    return element("section", None, element("h2", None, "Assumptions"), element("ul", None, items))
+    return element(
+        "section",
+        None,
+        element("h2", None, "What to know" if picture.flown else "Assumptions"),
+        element("ul", None, items),
+    )
 
 
 def _data(picture: Picture) -> str:
@@ -201,16 +217,7 @@ def _data(picture: Picture) -> str:
         {
             "home": robot.home[:2],
             "colour": style_of(index).colour,
-            "legs": [
-                {
-                    "begin": leg.begin,
-                    "end": leg.end,
-                    "points": [[round(p[0], 2), round(p[1], 2)] for p in leg.points],
-                    "tip": leg_tip(robot.name, leg),
-                }
-                for leg in robot.legs
-                if not leg.aside
-            ],
+            "legs": [_leg_data(robot, leg) for leg in robot.legs if not leg.aside],
         }
         for index, robot in enumerate(picture.robots)
     ]
@@ -220,6 +227,16 @@ def _data(picture: Picture) -> str:
     dumped = json.dumps({"robots": robots, "axis": axis, "projection": projection})
     safe = dumped.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
     return f'<script type="application/json" id="data">{safe}</script>'
+
+
+def _leg_data(robot: RobotPicture, leg: Leg) -> dict[str, object]:
+    data: dict[str, object] = {
+        "begin": leg.begin,
+        "end": leg.end,
+        "points": [[round(p[0], 2), round(p[1], 2)] for p in leg.points],
+        "tip": leg_tip(robot.name, leg),
+    }
+    return data | {"times": [round(time, 2) for time in leg.times]} if len(leg.times) > 1 else data
 
 
 def _script() -> str:

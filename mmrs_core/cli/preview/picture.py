@@ -26,6 +26,7 @@ class Leg:
         note: more to say about it, one line; may be empty.
         moves: which moves of the behaviour it is; empty where that is not known.
         aside: whether it is on a way of a choice that is not the longest of its ways.
+        times: when it was at each of the points; empty: it travels at an even pace.
     """
 
     kind: str
@@ -38,6 +39,7 @@ class Leg:
     note: str = ""
     moves: str = ""
     aside: bool = False
+    times: tuple[float, ...] = ()
 
     @property
     def stays(self) -> bool:
@@ -75,6 +77,15 @@ class Arm:
 
 
 @dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that happened at a place: a ``photo``, a ``missing`` one, or a ``fault``, in words."""
+
+    kind: str
+    at: Position
+    tip: str
+
+
+@dataclass(frozen=True, slots=True)
 class RobotPicture:
     """One robot: where it starts, what it travels, what it does when.
 
@@ -85,6 +96,9 @@ class RobotPicture:
         summary: (what, how much) for the table beneath the picture.
         arms: the ways of its choices, in the order in which they are tested; inner ones after their outer.
         symbol: of its kind, if anybody contributed one.
+        planned: where a robot that has flown should have: straight legs.
+        planned_heights: as `heights`, of the plan of a robot that has flown.
+        marks: what happened on the way.
     """
 
     name: str
@@ -98,6 +112,9 @@ class RobotPicture:
     summary: Details = ()
     arms: tuple[Arm, ...] = ()
     symbol: MapSymbol | None = None
+    planned: tuple[tuple[Position, ...], ...] = ()
+    planned_heights: tuple[tuple[float, float], ...] = ()
+    marks: tuple[Mark, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +208,7 @@ class Picture:
         origin: where (0, 0) lies, for people.
         makespan: seconds until the last robot has finished.
         notes: assumptions that people must know.
+        flown: whether it shows what happened, and not a plan or a simulation.
     """
 
     title: str
@@ -203,3 +221,4 @@ class Picture:
     makespan: float = 0.0
     notes: tuple[str, ...] = ()
     surface: float | None = None
+    flown: bool = False

@@ -59,7 +59,7 @@ def profile_markup(picture: Picture) -> str:
 
 
 def _range(picture: Picture) -> tuple[float, float]:
-    ups = [up for robot in picture.robots for _, up in robot.heights] or [0.0]
+    ups = [up for robot in picture.robots for _, up in (*robot.heights, *robot.planned_heights)] or [0.0]
     ups += [point[2] for robot in picture.robots for leg in robot.legs if leg.aside for point in leg.points]
     if picture.surface is not None:
         ups.append(picture.surface)
@@ -80,6 +80,7 @@ def _chart(index: int, picture: Picture, axis: TimeAxis, strip: _Strip) -> str:
         (_passed(crossing, robot, axis, strip) for crossing in passed),
         _surface(picture, strip),
         _limits(robot, strip),
+        _planned(robot, axis, strip),
         _line(index, robot, axis, strip),
         (_aside(leg, robot, axis, strip, style_of(index).colour) for leg in robot.legs if leg.aside),
         element("text", name, text(shortened(robot.name, _NAMES))),
@@ -135,6 +136,16 @@ def _line(index: int, robot: RobotPicture, axis: TimeAxis, strip: _Strip) -> str
     dashes = {"stroke_dasharray": style.dashes or None}
     line = {"class": "height", "d": f"M{way}", "stroke": style.colour}
     return element("path", {**line, **dashes}, element("title", None, text(f"height of {robot.name}")))
+
+
+def _planned(robot: RobotPicture, axis: TimeAxis, strip: _Strip) -> str:
+    """Return the heights that a robot that has flown should have had."""
+    inside = [(time, up) for time, up in robot.planned_heights if time <= axis.end]
+    if len(inside) < 2:
+        return ""
+    way = "L".join(f"{number(axis.at(time))} {number(strip.at(up))}" for time, up in inside)
+    look = {"class": "height planned", "d": f"M{way}"}
+    return element("path", look, element("title", None, text(f"height of {robot.name} as planned")))
 
 
 def _aside(leg: Leg, robot: RobotPicture, axis: TimeAxis, strip: _Strip, colour: str) -> str:

@@ -32,6 +32,7 @@ _WHATS = {
     "hold": "holds",
     "recharge": "recharges",
     "choice": "chooses",
+    "response": "does what no move says",
 }
 
 

@@ -1,0 +1,214 @@
+"""Makes the picture of a flight: what robots did by their logs and black boxes, over what was planned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import dist
+
+import numpy as np
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.figures import clock, length
+from mmrs_core.cli.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
+from mmrs_core.cli.flights.planned import Planned
+from mmrs_core.cli.flights.thinning import pieces, thinned
+from mmrs_core.cli.flights.values import Flight, Flown, Track
+from mmrs_core.cli.preview.from_run import (
+    Surroundings,
+    bars_of_records,
+    handovers_of,
+    kind_of_leg,
+    picture_of_run,
+)
+from mmrs_core.cli.preview.picture import Arm, Bar, Leg, Mark, Picture, RobotPicture
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.rules import MoveKind
+from mmrs_core.scene import Name, Position
+
+_HOLD = (BEHAVIOUR, "HoldPosition")
+_STILL = 0.3
+_STAYING = 3.0
+"""Metres from the middle within which a robot that is to stay is taken to stay."""
+_LONGEST_UNNAMED = 1.0
+"""Metres of a way outside of all moves that are not shown."""
+
+
+def picture_of_flight(
+    program: Program,
+    flight: Flight,
+    planned: Planned,
+    contributed: Contributions,
+    surroundings: Surroundings,
+) -> Picture:
+    """Return what to show of a flight; tracks are thinned out by a tolerance that a note tells."""
+    run = planned.run
+    plan = picture_of_run(
+        program,
+        run.records if run else (),
+        run.tracks if run else {},
+        contributed.move_kinds,
+        contributed.map_symbols,
+        surroundings,
+    )
+    kinds = contributed.move_kinds
+    shots = shots_in(program, flight, surroundings.types)
+    shown = [_Shown(robot, flight.robots[robot.id], kinds, shots[robot.id]) for robot in program.robots]
+    robots = tuple(each.over(picture) for each, picture in zip(shown, plan.robots, strict=True))
+    coarsest = max(each.tolerance for each in shown) if shown else 0.0
+    return replace(
+        plan,
+        robots=robots,
+        handovers=tuple(handovers_of(program, {id: flown.records for id, flown in flight.robots.items()})),
+        makespan=max((flown.end for flown in flight.robots.values()), default=0.0),
+        notes=(*_notes(flight, coarsest), *planned.notes),
+        flown=True,
+    )
+
+
+def _notes(flight: Flight, tolerance: float) -> Iterator[str]:
+    if any(flown.simulated for flown in flight.robots.values()):
+        yield "this run had no vehicles: it was simulated"
+    else:
+        yield f"ways are drawn within {tolerance:g} m of what the vehicles told"
+    for robot, flown in flight.robots.items():
+        if not len(flown.track.times):
+            yield f"{robot}: where it was is not known, there is no black box of it"
+        elif gaps := flown.track.gaps:
+            whole = sum(until - since for since, until in gaps)
+            yield f"{robot}: nothing was heard of where it was for {clock(whole)} in {len(gaps)} gaps"
+    yield from flight.damages
+
+
+class _Shown:
+    """One robot of a flight."""
+
+    def __init__(
+        self,
+        program: RobotProgram,
+        flown: Flown,
+        kinds: Mapping[Name, MoveKind],
+        shots: Sequence[Shot],
+    ) -> None:
+        self._program, self._flown, self._kinds, self._shots = program, flown, kinds, shots
+        self._moves = {move.id: move for move in program.moves}
+        self._track, self.tolerance = thinned(flown.track)
+
+    def over(self, plan: RobotPicture) -> RobotPicture:
+        """Return the robot's picture over that of its plan."""
+        flown, moves = self._flown, self._moves
+        legs = sorted((*self._legs(), *self._between_moves()), key=lambda leg: leg.begin)
+        way = sum(dist(a, b) for piece in pieces(self._track) for a, b in pairwise(piece.tolist()))
+        known = (("way", length(way)),) if len(self._track.times) else (("way", "not known"),)
+        return replace(
+            plan,
+            legs=tuple(legs),
+            bars=(*bars_of_records(moves, flown.records, self._kinds), *self._after_fault()),
+            heights=tuple(zip(self._track.times.tolist(), self._track.positions[:, 2].tolist(), strict=True)),
+            planned=tuple(leg.points for leg in plan.legs if not leg.stays),
+            planned_heights=plan.heights,
+            arms=(Arm("as planned", 0.0, plan.bars[-1].end, plan.bars),) if plan.bars else (),
+            marks=tuple(self._marks()),
+            summary=(("moves", _moves_done(self._program, flown)), *known, ("time", clock(flown.end))),
+        )
+
+    def _legs(self) -> Iterator[Leg]:
+        records = self._flown.records
+        acts = _acts(records)
+        for begin, after in zip(records, (*records[1:], None), strict=True):
+            if begin.label != "begin":
+                continue
+            move = self._moves[begin.move]
+            end = after.time if after is not None else self._flown.end
+            acted = (self._flown.track.at(time) for time in acts.get((move.id, begin.seq), ()))
+            yield from self._leg(move, begin.time, end, tuple(each for each in acted if each is not None))
+
+    def _leg(self, move: Move, begin: float, end: float, acted: tuple[Position, ...]) -> Iterator[Leg]:
+        kind, moves = kind_of_leg(move, self._kinds), f"move {move.id}"
+        for times, points in _stretches(self._track, begin, end):
+            reach = _reach(points)
+            if move.is_a(_HOLD) and reach < _STAYING:
+                yield Leg("hold", points[:1], times[0], times[-1], move.task, actions=acted, moves=moves)
+            elif reach > _STILL or acted:
+                yield Leg(
+                    kind, points, times[0], times[-1], move.task, actions=acted, moves=moves, times=times
+                )
+            acted = ()
+
+    def _between_moves(self) -> Iterator[Leg]:
+        """Yield the ways that belong to no move: what policies, people and autopilots did."""
+        records = self._flown.records
+        busy = [(a.time, b.time) for a, b in pairwise(records) if a.label == "begin"]
+        since = 0.0
+        for begin, end in (*busy, (self._flown.end, self._flown.end)):
+            for times, points in _stretches(self._track, since, begin):
+                if _reach(points) > _LONGEST_UNNAMED:
+                    note = "not in the plan"
+                    yield Leg("response", points, times[0], times[-1], note=note, times=times)
+            since = max(since, end)
+
+    def _after_fault(self) -> Iterator[Bar]:
+        last = self._flown.records[-1] if self._flown.records else None
+        if last is not None and last.label == "fault" and self._flown.end > last.time:
+            yield Bar("response", last.time, self._flown.end, note=f"after {last.detail}")
+
+    def _marks(self) -> Iterator[Mark]:
+        for shot in self._shots:
+            if shot.at is not None and shot.state != SIMULATED:
+                kind = "missing" if shot.state == UNCONFIRMED else "photo"
+                yield Mark(kind, shot.at, f"photo at {clock(shot.time)}: {shot.state}")
+        for record in self._flown.records:
+            at = self._flown.track.at(record.time) if record.label == "fault" else None
+            if at is not None:
+                yield Mark("fault", at, f"{record.detail} at {clock(record.time)}, move {record.move}")
+
+
+def _moves_done(program: RobotProgram, flown: Flown) -> str:
+    done = len({record.move for record in flown.records if record.label == "end"})
+    return f"{done} of {len(program.moves)}"
+
+
+def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
+    """Return when device actions were done, by move and the number of the step that began it."""
+    acts: dict[tuple[str, int], list[float]] = {}
+    before: list[float] = []
+    begun: tuple[str, int] | None = None
+    for record in records:
+        if record.label == "begin":
+            begun = (record.move, record.seq)
+            acts[begun] = before
+        elif record.label == "act":
+            after = begun is not None and record.detail.startswith("post")
+            (acts[begun] if after and begun else before).append(record.time)
+        elif record.label in ("take", "choose"):
+            before = []
+    return acts
+
+
+def _stretches(
+    track: Track, begin: float, end: float
+) -> Iterator[tuple[tuple[float, ...], tuple[Position, ...]]]:
+    """Yield times and positions of what is known of a stretch of time, one for each piece between gaps."""
+    if not len(track.times) or end < begin:
+        return
+    first, last = np.searchsorted(track.times, begin, side="right"), np.searchsorted(track.times, end)
+    times = track.times[first:last].tolist()
+    points = [tuple(each) for each in track.positions[first:last].tolist()]
+    for time, place in ((begin, 0), (end, len(times) + 1)):
+        at = track.at(time)
+        if at is not None:
+            times.insert(place, time)
+            points.insert(place, at)
+    since = 0
+    for i in range(1, len(times) + 1):
+        if i == len(times) or times[i] - times[i - 1] > track.limit:
+            if i - since > 0:
+                yield tuple(times[since:i]), tuple(points[since:i])
+            since = i
+
+
+def _reach(points: Sequence[Position]) -> float:
+    """Return how far points are apart, by the box around them, metres."""
+    return float(np.linalg.norm(np.ptp(np.asarray(points), axis=0)))
