@@ -181,12 +181,24 @@ def render(
     contributions: Contributions,
     *,
     allow_lossy: bool = False,
+    templates: Path | None = None,
 ) -> tuple[GeneratedFile, ...]:
     """Return the code of every robot for a target.
 
+    Args:
+        program: the behaviour.
+        place: where it happens.
+        target: its name.
+        contributions: of the plug-ins.
+        allow_lossy: leave out what the target cannot express; the manifest lists it.
+        templates: a folder of files that take the place of the targets' own.
+
     Raises:
         UnsupportedError: if there is no such target, or it cannot express what the behaviour holds.
+        UnreadableError: if there is no such folder of templates.
+        MmrsError: if that folder holds something unknown or broken.
     """
+    from mmrs_core.generation.overrides import overrides_in
     from mmrs_core.contributions.targets import TargetInput
     from mmrs_core.generation.render import render as rendered
 
@@ -199,7 +211,8 @@ def render(
         areas=place.areas or (),
     )
     provider = contributions.distribution_of("targets", chosen)
-    return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider)
+    overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
+    return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider, overrides=overrides)
 
 
 def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:

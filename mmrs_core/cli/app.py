@@ -10,9 +10,11 @@ import typer
 
 from mmrs_core.cli import (
     check,
+    control,
     convert,
     demo,
     diff,
+    explain,
     generate,
     metamodel,
     migrate,
@@ -42,7 +44,9 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("plan", plan.plan),
     ("check", check.check),
     ("generate", generate.generate),
+    ("explain", explain.explain),
     ("simulate", simulate.simulate),
+    ("control", control.control),
     ("replay", replay.replay),
     ("preview", preview.preview),
     ("show", show.show),
@@ -65,11 +69,20 @@ def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
     return app
 
 
-def generate_app() -> typer.Typer:
-    """Return the application ``mmrs-gen``."""
+def generate_app(command: Callable[..., int]) -> typer.Typer:
+    """Return the application ``mmrs-gen``, or ``mmrs-gen explain``, which has one command."""
     app = typer.Typer(rich_markup_mode=None, add_completion=False)
-    app.command()(generate.generate)
+    app.command()(command)
     return app
+
+
+def app_of(program: str, arguments: Sequence[str], settings: Settings) -> tuple[str, typer.Typer, list[str]]:
+    """Return what a program's help calls it, its application, and the arguments for that."""
+    if program != "mmrs-gen":
+        return program, app_for(arguments, settings), list(arguments)
+    if next(iter(arguments), None) == "explain":
+        return f"{program} explain", generate_app(explain.explain), list(arguments[1:])
+    return program, generate_app(generate.generate), list(arguments)
 
 
 def _core_app() -> typer.Typer:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ from mmrs_core.cli.tables import table
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Workshop
+    from mmrs_core.generation.manifest import Manifest
 
 
 def generate(
@@ -31,6 +33,12 @@ def generate(
     allow_lossy: Annotated[
         bool, typer.Option("--allow-lossy", help="Leave out what the target cannot express.")
     ] = False,
+    templates: Annotated[
+        Path | None,
+        typer.Option(
+            "--templates", metavar="DIR", help="Files to use in place of the target's own: DIR/TARGET/FILE."
+        ),
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Overwrite files that were changed by hand.")
     ] = False,
@@ -50,44 +58,68 @@ def generate(
             if value is None
         ]
         raise typer.BadParameter(f"missing: {', '.join(missing)}")
-    written = _generate(
-        workshop, behaviour_file(behaviour), target, output, context, robot_files(robots), allow_lossy, force
-    )
+    order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force)
+    written, manifest = _generate(workshop, behaviour_file(behaviour), order)
     if json:
-        say_json({"target": target, "files": written})
+        left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides)}
+        say_json({"target": target, "files": written, **left_out})
     else:
-        say(f"{target}: {counted(len(written), 'file')} written")
-        for path in written:
-            say(f"  {path}")
+        _tell_written(written, manifest)
     return 0
 
 
-def _generate(
-    workshop: Workshop,
-    file: Path,
-    target: str,
-    output: Path,
-    context: Path | None,
-    robots: tuple[Path, ...],
-    allow_lossy: bool,
-    force: bool,
-) -> tuple[Path, ...]:
+@dataclass(frozen=True, slots=True)
+class _Order:
+    """What is to be generated from a behaviour, and where to."""
+
+    target: str
+    output: Path
+    context: Path | None
+    robots: tuple[Path, ...]
+    templates: Path | None
+    allow_lossy: bool
+    force: bool
+
+
+def _tell_written(written: tuple[Path, ...], manifest: Manifest) -> None:
+    say(f"{manifest.target}: {counted(len(written), 'file')} written")
+    for path in written:
+        say(f"  {path}")
+    for sort, names in (
+        ("with a file of yours in place of the target's own", sorted(manifest.overrides)),
+        ("left out, since the target cannot express it", manifest.losses),
+    ):
+        if names:
+            say(f"{sort}:")
+        for name in names:
+            say(f"  {name}")
+
+
+def _generate(workshop: Workshop, file: Path, order: _Order) -> tuple[tuple[Path, ...], Manifest]:
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import require_safe, verdicts_of
     from mmrs_core.cli.protection import refuse_inputs
+    from mmrs_core.generation.manifest import manifest_in
     from mmrs_core.generation.writing import write
     from mmrs_core.pipeline import render
 
-    loaded = load_behaviour(workshop, file, context=context, robots=robots)
+    loaded = load_behaviour(workshop, file, context=order.context, robots=order.robots)
     program, place = loaded.program, loaded.place
     require_safe(program, verdicts_of(workshop, program, place), str(file))
     files = workshop.stage(
         "render",
         "generating",
-        lambda: render(program, place, target, workshop.contributions, allow_lossy=allow_lossy),
+        lambda: render(
+            program,
+            place,
+            order.target,
+            workshop.contributions,
+            allow_lossy=order.allow_lossy,
+            templates=order.templates,
+        ),
     )
-    refuse_inputs((output / file.path for file in files), workshop.inputs)
-    return write(files, output, force=force)
+    refuse_inputs((order.output / file.path for file in files), workshop.inputs)
+    return write(files, order.output, force=order.force), manifest_in(files[-1].content)
 
 
 def _list_targets(workshop: Workshop, json: bool) -> int:

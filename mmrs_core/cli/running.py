@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import typer
 
-from mmrs_core.cli.app import app_for, generate_app
+from mmrs_core.cli.app import app_of
 from mmrs_core.cli.failures import MODEL_INVALID, ended_by
 from mmrs_core.cli.interruption import INTERRUPTED, interrupted
 from mmrs_core.cli.output import tell
@@ -18,9 +18,10 @@ def run_command(arguments: Sequence[str], program: str) -> int:
     """Run ``mmrs`` or ``mmrs-gen``; return the exit code, whatever happens."""
     settings, rest = taken_from(arguments)
     try:
-        command = typer.main.get_command(generate_app() if program == "mmrs-gen" else app_for(rest, settings))
+        name, app, rest = app_of(program, rest, settings)
+        command = typer.main.get_command(app)
         line = spread(rest, frozenset(flags_of(command)))
-        result = command.main(line, prog_name=program, standalone_mode=False, obj=settings)
+        result = command.main(line, prog_name=name, standalone_mode=False, obj=settings)
         return result if isinstance(result, int) else 0
     except typer.Exit as ending:
         return ending.exit_code

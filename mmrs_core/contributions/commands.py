@@ -11,6 +11,7 @@ CORE_COMMANDS = frozenset(
         "plan",
         "check",
         "generate",
+        "explain",
         "simulate",
         "replay",
         "preview",

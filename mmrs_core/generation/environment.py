@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from traceback import extract_tb
 
 from jinja2 import (
     BaseLoader,
@@ -13,6 +14,8 @@ from jinja2 import (
     PrefixLoader,
     StrictUndefined,
     TemplateError,
+    TemplateNotFound,
+    TemplateSyntaxError,
     Undefined,
 )
 
@@ -35,6 +38,21 @@ SHIPPED = "shipped"
 """Before the name of a template: the target's own, also where another takes its place."""
 
 
+class _Rendered(Code):
+    """Text that was rendered already, such as a block of a shipped template: marks and all."""
+
+    __slots__ = ()
+
+
+class _Environment(Environment):
+    """An environment in which what blocks and macros return may be written as it is."""
+
+    @staticmethod
+    def concat(parts: Iterable[str]) -> str:
+        """Return what a block or a macro has rendered, as one text."""
+        return _Rendered("".join(parts))
+
+
 def environment_of(target: Target, overrides: Overrides | None = None) -> Environment:
     """Return the environment in which a target's templates are rendered, or those that take their place."""
     environment = environment_in(target.templates, target.filters)
@@ -54,7 +72,7 @@ def environment_in(folder: Path, more: Mapping[str, Callable[..., str]]) -> Envi
         folder: of the templates.
         more: filters beside the usual ones, by name.
     """
-    environment = Environment(
+    environment = _Environment(
         loader=FileSystemLoader(folder),
         undefined=StrictUndefined,
         autoescape=False,
@@ -95,18 +113,27 @@ def rendered_with_lines(
     try:
         return taken_out(environment.get_template(template).render(view))
     except (TemplateError, ValueError, TypeError, AttributeError) as error:
-        where = f"template {template}{_line_of(error)}: {error}"
+        where = f"template {_place_of(error, template)}: {_words_of(error)}"
         if overrides is not None and overrides.hashes:
             raise MmrsError(f"{overrides.folder}: {where}") from error
         raise InternalError(where) from error
 
 
-def _line_of(error: Exception) -> str:
-    line = getattr(error, "lineno", None)
-    return f", line {line}" if line else ""
+def _place_of(error: Exception, template: str) -> str:
+    """Return the template and the line in which an error arose, as far as they are known."""
+    if isinstance(error, TemplateSyntaxError):
+        return f"{error.name or template}, line {error.lineno}"
+    found = [frame for frame in extract_tb(error.__traceback__) if frame.filename.endswith(".jinja")]
+    return f"{Path(found[-1].filename).name}, line {found[-1].lineno}" if found else template
+
+
+def _words_of(error: Exception) -> str:
+    return f"there is no template {error.name!r}" if isinstance(error, TemplateNotFound) else str(error)
 
 
 def _encoded(value: object) -> object:
+    if isinstance(value, _Rendered):
+        return value
     if isinstance(value, Code):
         return unforged(value)
     raise ValueError(f"{value!r} is written without a filter that encodes it")

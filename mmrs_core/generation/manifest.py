@@ -129,19 +129,28 @@ def read_manifest(path: Path) -> Manifest | None:
     if not path.exists():
         return None
     try:
-        content = json.loads(path.read_bytes())
-        if content["format"] not in (FORMAT, FORMERLY):
-            raise ValueError(f"format {content['format']!r}, expected {FORMAT!r}")
-        return Manifest(
-            str(content.get("target", "")),
-            content.get("versions", {}),
-            tuple(map(str, content.get("losses", ()))),
-            content.get("overrides", {}),
-            tuple(Recorded(**each) for each in content["files"]),
-            tuple(_entry(each) for each in content.get("trace", ())),
-        )
+        return manifest_in(path.read_bytes())
     except (ValueError, KeyError, TypeError) as error:
         raise UnreadableError(f"{path}: is no manifest of generated files ({error})") from error
+
+
+def manifest_in(text: bytes) -> Manifest:
+    """Return the manifest that a file holds.
+
+    Raises:
+        ValueError, KeyError, TypeError: it holds none.
+    """
+    content = json.loads(text)
+    if content["format"] not in (FORMAT, FORMERLY):
+        raise ValueError(f"format {content['format']!r}, expected {FORMAT!r}")
+    return Manifest(
+        str(content.get("target", "")),
+        content.get("versions", {}),
+        tuple(map(str, content.get("losses", ()))),
+        content.get("overrides", {}),
+        tuple(Recorded(**each) for each in content["files"]),
+        tuple(_entry(each) for each in content.get("trace", ())),
+    )
 
 
 def _entry_json(entry: Entry) -> dict[str, object]:

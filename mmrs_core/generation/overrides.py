@@ -67,10 +67,15 @@ def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec])
         for path in target.templates.rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    known = templates | {spec.path for spec in specs if spec.source is not None}
+    copied = {spec.path for spec in specs if spec.source is not None}
     for name in overrides.hashes:
-        if name not in known and not name.rpartition("/")[2].startswith(PART):
+        if name not in templates | copied and not name.rpartition("/")[2].startswith(PART):
             raise MmrsError(
                 f"{overrides.folder / name}: target {target.name} has no such file;"
-                f" it has {', '.join(sorted(known))}, and files of your own begin with '{PART}'"
+                f" {_has(templates, copied)}; files of your own begin with '{PART}'"
             )
+
+
+def _has(templates: Collection[str], copied: Collection[str]) -> str:
+    folders = sorted({f"those in {path.partition('/')[0]}/" for path in copied})
+    return f"it has {', '.join([*sorted(templates), *folders])}"

@@ -43,10 +43,14 @@ class Serves(Extension):
         return nodes.CallBlock(self.call_method("_marked", [steps]), [], [], body).set_lineno(line)
 
     def _marked(self, steps: TracedStep | Sequence[TracedStep], caller: Callable[[], str]) -> str:
-        every = [steps] if isinstance(steps, TracedStep) else list(steps)
-        if not all(isinstance(step, TracedStep) for step in every):
-            raise ValueError("the tag 'serves' takes a TracedStep, or a sequence of them")
+        every: list[TracedStep] = [steps] if isinstance(steps, TracedStep) else list(_several(steps))
         return f"{MARK}{json.dumps([asdict(step) for step in every])};{caller()}{MARK};"
+
+
+def _several(steps: object) -> Sequence[TracedStep]:
+    if isinstance(steps, list | tuple):
+        return steps
+    raise ValueError(f"the tag 'serves' takes a TracedStep, or a sequence of them, not {steps!r}")
 
 
 def unforged(text: str) -> str:
