@@ -1,0 +1,287 @@
+"""The fault table: every fault of one vehicle, with at least two policies each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fault_table.project import POLICY
+from fault_table.trial import Row
+from mmrs_core.sitl import SimulatedVehicle
+
+PHOTO = 2000
+AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", "climbing"
+
+Strike = Callable[[SimulatedVehicle], object]
+
+
+def _link(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.cut_link()
+
+
+def _stick(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.take_stick("loiter")
+
+
+def _by_hand(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.take_stick("alt_hold")
+
+
+def _battery(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.set_battery(0.15)
+
+
+def _barely(vehicle: SimulatedVehicle) -> None:
+    """Leave a little more than the reserve, but not what the way back takes beside it."""
+    vehicle.faults.set_battery(0.215)
+
+
+def _mute_camera(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.silence(PHOTO)
+
+
+def _satellites(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.lose_position()
+
+
+def _obstacle(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.meet_obstacle(2.0)
+
+
+def _breach(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.breach_fence()
+
+
+def _reset(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.restart(armed=True)
+
+
+def _reboot(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.restart()
+
+
+def _vehicle_clock(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.jump_clock(3600.0)
+
+
+def _nothing(vehicle: SimulatedVehicle) -> None:
+    """Leave the vehicle alone: what goes wrong is elsewhere."""
+
+
+def _policy(event: str, response: str, after: float | None = None) -> POLICY:
+    return (event, response, after)
+
+
+def _link_rows() -> list[Row]:
+    lost = [
+        (LEG, "RETURN", "home"),
+        (AT, "LAND", "here"),
+        (AUTO, "HOLD", "holds"),
+        (AT, "EMERGENCY_AREA", "meadow"),
+        (UP, "RETURN", "home"),
+    ]
+    rows = [
+        Row(
+            "link lost for good",
+            during,
+            _policy("LINK_LOST", response, 3.0),
+            _link,
+            "LINK_LOST",
+            ends,
+            within=12.0,
+            fast=response == "RETURN" and during == LEG,
+        )
+        for during, response, ends in lost
+    ]
+    back = lambda vehicle: vehicle.faults.mend_link()  # noqa: E731
+    rows += [
+        Row(
+            "link lost and back",
+            during,
+            _policy("LINK_LOST", response, 20.0),
+            _link,
+            "",
+            "done",
+            within=None,
+            stay=15.0,
+            mends=(8.0, back),
+            fast=during == LEG,
+        )
+        for during, response in ((LEG, "RETURN"), (AUTO, "LAND"), (AT, "EMERGENCY_AREA"))
+    ]
+    return rows
+
+
+def _pilot_rows() -> list[Row]:
+    return [
+        Row(
+            "pilot's stick",
+            during,
+            _policy("OBSTACLE", response),
+            strike,
+            "TAKEN_OVER",
+            "holds",
+            within=None,
+            stay=5.0 if during == AUTO else 20.0,
+            hands_off=True,
+            fast=during in (LEG, AUTO),
+        )
+        for during, strike, response in (
+            (LEG, _stick, "RETURN"),
+            (AUTO, _stick, "LAND"),
+            (AT, _by_hand, "EMERGENCY_AREA"),
+            (UP, _stick, "HOLD"),
+        )
+    ]
+
+
+def _event_rows(
+    fault: str, event: str, strike: Strike, cases: list[tuple[str, str, str]], fast: str
+) -> list[Row]:
+    return [
+        Row(
+            fault,
+            during,
+            _policy(event, response),
+            strike,
+            event,
+            ends,
+            stay=5.0 if during == AUTO else 20.0,
+            fast=response == fast,
+        )
+        for during, response, ends in cases
+    ]
+
+
+def _device_rows() -> list[Row]:
+    cases = [("HOLD", "holds"), ("RETURN", "home"), ("EMERGENCY_AREA", "meadow")]
+    rows = [
+        Row(
+            "device does not answer",
+            LEG,
+            _policy("DEVICE_SILENT", response),
+            _mute_camera,
+            "DEVICE_SILENT",
+            ends,
+            within=60.0,
+            fast=response == "EMERGENCY_AREA",
+        )
+        for response, ends in cases
+    ]
+    return [
+        *rows,
+        Row(
+            "device does not answer",
+            LEG,
+            _policy("DEVICE_SILENT", "CONTINUE"),
+            _mute_camera,
+            "",
+            "done",
+            within=None,
+            stay=5.0,
+        ),
+    ]
+
+
+def _wait_rows() -> list[Row]:
+    rows = [
+        Row(
+            "wait too long",
+            AT,
+            _policy("WAIT_TOO_LONG", response, 10.0),
+            _nothing,
+            "WAIT_TOO_LONG",
+            ends,
+            within=16.0,
+            program="wait",
+            fast=response == "EMERGENCY_AREA",
+        )
+        for response, ends in (("RETURN", "home"), ("EMERGENCY_AREA", "meadow"), ("HOLD", "holds"))
+    ]
+    rows += [
+        Row(
+            "peer's program ends early",
+            AT,
+            _policy("PEER_LOST", response, 5.0),
+            _stick,
+            "PEER_LOST",
+            ends,
+            within=20.0,
+            program="wait",
+            strikes_peer=True,
+            fast=response == "LAND",
+        )
+        for response, ends in (("LAND", "here"), ("EMERGENCY_AREA", "meadow"))
+    ]
+    return rows
+
+
+ROWS: tuple[Row, ...] = (
+    *_link_rows(),
+    *_pilot_rows(),
+    *_event_rows(
+        "satellites lost",
+        "POSITION_LOST",
+        _satellites,
+        [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
+        "LAND",
+    ),
+    *_event_rows(
+        "obstacle reported",
+        "OBSTACLE",
+        _obstacle,
+        [
+            (AT, "HOLD", "holds"),
+            (LEG, "EMERGENCY_AREA", "meadow"),
+            (AUTO, "RETURN", "home"),
+            (AT, "LAND", "here"),
+        ],
+        "EMERGENCY_AREA",
+    ),
+    *_event_rows(
+        "fence breached",
+        "FENCE_BREACHED",
+        _breach,
+        [(AT, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
+        "RETURN",
+    ),
+    *_event_rows(
+        "autopilot reset, motors on",
+        "VEHICLE_RESTARTED",
+        _reset,
+        [(AT, "LAND", "here"), (LEG, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow")],
+        "RETURN",
+    ),
+    *_event_rows(
+        "autopilot reboot, motors off",
+        "VEHICLE_RESTARTED",
+        _reboot,
+        [(AT, "HOLD", "here"), (AUTO, "RETURN", "here")],
+        "HOLD",
+    ),
+    *_event_rows(
+        "battery low",
+        "BATTERY_LOW",
+        _battery,
+        [(AT, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
+        "EMERGENCY_AREA",
+    ),
+    *_event_rows(
+        "point of no return",
+        "BATTERY_LOW",
+        _barely,
+        [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
+        "",
+    ),
+    *_device_rows(),
+    *_wait_rows(),
+    Row(
+        "vehicle's clock jumps",
+        LEG,
+        _policy("VEHICLE_RESTARTED", "LAND"),
+        _vehicle_clock,
+        "",
+        "done",
+        within=None,
+        stay=5.0,
+    ),
+)
