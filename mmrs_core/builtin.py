@@ -64,10 +64,11 @@ def mmrs_targets() -> Iterable[Target]:
 
 @hookimpl
 def mmrs_backends() -> Iterable[BackendFactory]:
-    """Contribute the simulation."""
+    """Contribute the simulation, and vehicles at the ends of MAVLink links."""
+    from mmrs_core.mavlink.backend import MAVLINK
     from mmrs_core.runtime.simulation import SIMULATION
 
-    return (SIMULATION,)
+    return (SIMULATION, MAVLINK)
 
 
 @hookimpl

@@ -180,6 +180,15 @@ class Pausable(Protocol):
 
 
 @runtime_checkable
+class Noting(Protocol):
+    """What a backend may have beside the rest: a black box of the robot."""
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something that the interpreter decided, was ordered, or waited for; raises nothing."""
+        ...
+
+
+@runtime_checkable
 class Closing(Protocol):
     """What a backend may have beside the rest: links and threads that end with the run."""
 
@@ -213,7 +222,7 @@ class Live:
         say: tells people something about this robot, from any thread.
         run: identifier of the run.
         folder: of the logs; None where none are kept.
-        link: how the robot is reached, as in ``--connect``; empty where nothing was said.
+        links: how robots are reached, as in ``--connect``, by robot of this process.
         shared: what backends of the same run share, by names of their own; empty at first.
     """
 
@@ -222,7 +231,7 @@ class Live:
     say: Callable[[str], None]
     run: str
     folder: Path | None = None
-    link: str = ""
+    links: Mapping[str, str] = field(default_factory=dict)
     shared: dict[str, object] = field(default_factory=dict)
 
 

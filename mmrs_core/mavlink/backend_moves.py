@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import BATTERY_LOW, Fault
+from mmrs_core.flight.commands import Unanswered
+from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault
 from mmrs_core.flight.objects import Locator, look_at, place_of
 from mmrs_core.flight.places import at_height, ends_of
 from mmrs_core.flight.program import (
@@ -22,6 +23,7 @@ from mmrs_core.flight.program import (
     Recharge,
     Report,
     Robot,
+    Stop,
     TakeOff,
     Turn,
 )
@@ -52,6 +54,7 @@ class Moves:
         """Move that vehicle; `told` is called with what was reported or measured: kind, name, content."""
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
+        self._home = robot.home
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
 
     def movement(self, move: str, *, through: bool = False) -> Job:
@@ -69,29 +72,16 @@ class Moves:
             return self._recharge(movement.seconds)
         if isinstance(movement, Turn):
             return Job(lambda: self._turn(movement.look))
-        return Job()
+        return Job(self._vehicle.finish) if isinstance(movement, Stop) else Job()
 
     def run(self, flight: Flight, passed: Callable[[str], None]) -> Job:
         """Return the flying of an uploaded run; `passed` is told every move of it but the last."""
         return Job(_Flight(self, flight, passed))
 
-    def way(self, moves: tuple[str, ...]) -> Job:
-        """Return the flying of the ways of moves once more, without stops and without their actions."""
-        job = Job()
-        for move in moves:
-            movement = self._steps[move].movement
-            if isinstance(movement, TakeOff):
-                job.append(_TakeOff(self, move, movement.height))
-            elif isinstance(movement, GoTo):
-                job.append(self._go(move, movement, through=True).run)
-        return job
-
     def action(self, action: Action) -> Job:
         """Return the carrying out of an action."""
         if isinstance(action, Operate):
-            return Job(
-                lambda: self._vehicle.operate(action.command, action.params), self._rest(action.seconds)
-            )
+            return Job(lambda: self._operate(action), self._rest(action.seconds))
         if isinstance(action, Measure):
             return Job(lambda: self._measure(action), self._rest(action.seconds))
         if isinstance(action, Report):
@@ -103,6 +93,23 @@ class Moves:
     def kind(self, move: str) -> type[Movement]:
         """Return what sort of movement a move is."""
         return type(self._steps[move].movement)
+
+    def above_home(self, height: float) -> Place:
+        """Return the place at that height above home."""
+        return at_height(self._home, height)
+
+    def target_of(self, movement: GoTo) -> Place:
+        """Return where a movement leads to, without the distance that it keeps.
+
+        Raises:
+            Fault: it leads to an object, and nobody finds it.
+        """
+        return place_of(movement.at, self._locators, self._vehicle.state())
+
+    def speed_of(self, move: str) -> float | None:
+        """Return how fast a move is, metres per second; None: as the vehicle likes."""
+        movement = self._steps[move].movement
+        return movement.speed if isinstance(movement, GoTo) else None
 
     def climb(self, move: str, height: float) -> None:
         """Take off, or climb on where the vehicle is in the air already."""
@@ -145,7 +152,7 @@ class Moves:
             state = self._vehicle.state()
             if not self.track:
                 self.track.append((move, state.place))
-            target = place_of(movement.at, self._locators, state)
+            target = self.target_of(movement)
             look = look_at(movement.look, self._locators, state)
             ends = ends_of(state.place, target, movement.legs, movement.distance)
             job.then(*(self._leg(move, end, movement, look, through and end == ends[-1]) for end in ends))
@@ -161,6 +168,12 @@ class Moves:
             self.track.append((move, end))
 
         return go
+
+    def _operate(self, action: Operate) -> None:
+        try:
+            self._vehicle.operate(action.command, action.params)
+        except Unanswered as error:
+            raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
 
     def _turn(self, look: Look) -> None:
         found = look_at(look, self._locators, self._vehicle.state())

@@ -23,6 +23,10 @@ class Job:
         """Do these parts one after another; none is done at once."""
         self._parts = deque(parts)
 
+    def first(self, part: Callable[[], None]) -> None:
+        """Do this part before all others."""
+        self._parts.appendleft(part)
+
     def append(self, part: Callable[[], None]) -> None:
         """Do this part, too, after all others."""
         self._parts.append(part)
@@ -46,17 +50,20 @@ class Worker:
         fault: what went wrong, until something is begun afresh.
     """
 
-    def __init__(self, name: str, watch: Callable[[], None], halt: Callable[[], None]) -> None:
+    def __init__(
+        self, name: str, watch: Callable[[], None], idle: Callable[[], None], halt: Callable[[], None]
+    ) -> None:
         """Start the thread; it has nothing to do yet.
 
         Args:
             name: of the thread.
-            watch: looked at all the time; raises a Fault.
+            watch: looked at in every wait of a job; raises a Fault.
+            idle: looked at while there is no job; raises a Fault.
             halt: brings the vehicle to a halt and returns when it stands.
         """
         self.fault: Fault | None = None
         self.changed: Callable[[], None] = lambda: None
-        self._watch, self._halt = watch, halt
+        self._watch, self._idle, self._halt = watch, idle, halt
         self._news = threading.Condition()
         self._job: Job | None = None
         self._newest = 0
@@ -134,8 +141,8 @@ class Worker:
         if self.fault is not None or self._closing:
             return lambda: None
         if self._holds:
-            return self._watch if self._halted else self._come_to_a_halt
-        return self._watch if self._done or self._job is None else self._work
+            return self._idle if self._halted else self._come_to_a_halt
+        return self._idle if self._done or self._job is None else self._work
 
     def _attempt(self, task: Callable[[], None]) -> None:
         try:

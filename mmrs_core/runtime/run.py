@@ -74,24 +74,17 @@ def simulate(
     """
     if not backend.simulated:
         raise UnsupportedError(f"backend '{backend.name}': does not simulate, it drives robots")
-    chosen = {robot.id: _type_of(types, robot.id, robot.type_name) for robot in program.robots}
-    policies = {id: _policies(robot_type, robot_kinds) for id, robot_type in chosen.items()}
-    robots = {
-        robot.id: backend.connect(
-            BackendInput(
-                program,
-                robot,
-                chosen[robot.id],
-                robot_kinds,
-                move_kinds,
-                environment or {},
-                options or {},
-                policies[robot.id],
-                areas,
-            )
-        )
-        for robot in program.robots
-    }
+    given = inputs_of(
+        program,
+        types=types,
+        robot_kinds=robot_kinds,
+        move_kinds=move_kinds,
+        options=options or {},
+        environment=environment or {},
+        areas=areas,
+    )
+    robots = {id: backend.connect(each) for id, each in given.items()}
+    policies = {id: each.policies for id, each in given.items()}
     made: list[StepRecord] = []
     ending = _collected(
         interpret(
@@ -109,6 +102,39 @@ def simulate(
     tracks = {id: robot.track() for id, robot in told.items()}
     notes = tuple(f"robot '{id}', {note}" for id, robot in told.items() for note in robot.notes)
     return Run(tuple(made), ending, tracks, notes)
+
+
+def inputs_of(
+    program: Program,
+    *,
+    types: Mapping[str, RobotType],
+    robot_kinds: Mapping[Name, RobotKind],
+    move_kinds: Mapping[Name, MoveKind],
+    options: Mapping[str, str],
+    environment: Mapping[str, float],
+    areas: tuple[Area, ...],
+) -> dict[str, BackendInput]:
+    """Return what the backend of each robot may use; see `simulate` for the arguments.
+
+    Raises:
+        UnsupportedError: if a robot type is missing.
+    """
+    found: dict[str, BackendInput] = {}
+    for robot in program.robots:
+        robot_type = _type_of(types, robot.id, robot.type_name)
+        policies = _policies(robot_type, robot_kinds)
+        found[robot.id] = BackendInput(
+            program,
+            robot,
+            robot_type,
+            robot_kinds,
+            move_kinds,
+            environment,
+            options,
+            policies,
+            areas,
+        )
+    return found
 
 
 def assumed(answers: Mapping[str, bool]) -> dict[str, Condition]:

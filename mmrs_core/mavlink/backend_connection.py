@@ -1,0 +1,205 @@
+"""Opens what the backend mavlink works with: radios that robots share, links, vehicles, black boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import cast
+
+from mmrs_core.behaviour.log import log_name
+from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.execution import BackendInput, Live
+from mmrs_core.contributions.execution import Clock as RunClock
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.flight.ardupilot import MavlinkVehicle
+from mmrs_core.flight.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.injection import Rehearsal, injections
+from mmrs_core.flight.link import Link, Retries
+from mmrs_core.flight.objects import Locator, where_expected
+from mmrs_core.flight.ports import Port, address_of, split_system
+from mmrs_core.flight.program import Action, Geographic, Robot
+from mmrs_core.flight.radios import Radios
+from mmrs_core.flight.recording import Recording
+from mmrs_core.flight.signing import Signer, signer_for
+from mmrs_core.mavlink.actions import action_of
+from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend_options import LinkOptions, link_options
+from mmrs_core.mavlink.backend_robot import Equipment, MavlinkBackend
+from mmrs_core.mavlink.built import built, robot_of
+from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.controllers import refusals
+from mmrs_core.mavlink.program import objects_in
+
+FIRST_PORT, PORT_STEP = 14_550, 10
+SHARED = "mavlink"
+
+
+class FollowingClock(Clock):
+    """The clock of the flight runtime, showing the time of a run of the interpreter."""
+
+    def __init__(self, clock: RunClock) -> None:
+        """Follow that clock."""
+        super().__init__(float(getattr(clock, "speedup", 1.0)))
+        self._followed = clock
+
+    def now(self) -> float:
+        """Return the seconds since the run began."""
+        return self._followed.now()
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """What all robots of a run share."""
+
+    clock: Clock
+    radios: Radios
+    rehearsal: Rehearsal
+
+
+def connect(given: BackendInput, live: Live) -> MavlinkBackend:
+    """Return a robot at the end of its link.
+
+    Raises:
+        UnsupportedError: an option is unknown or makes no sense, or the robot's program holds what
+            vehicles cannot do; lists all of it.
+        LinkLostError: the port cannot be opened.
+    """
+    options = link_options(given.options)
+    input = TargetInput(given.program, {given.type.name: given.type}, given.robot_kinds, given.move_kinds)
+    input = replace(input, areas=given.areas)
+    _refuse(given, input, options)
+    program = robot_of(given.robot, input)
+    fleet = _fleet(live, options, given.program)
+    url, system = _url(given, live)
+    try:
+        link = fleet.radios.open(url, system)
+    except Fault as fault:
+        raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
+    return MavlinkBackend(program, _equipment(given, live, input, program, fleet, link), options)
+
+
+def _refuse(given: BackendInput, input: TargetInput, options: LinkOptions) -> None:
+    alone = replace(input, program=replace(given.program, robots=(given.robot,)))
+    found = list(refusals(alone))
+    if not options.objects:
+        found += [
+            f"robot '{given.robot.id}': object '{each}': nobody looks for it; say objects=expected to fly"
+            " where it is expected"
+            for each in objects_in(given.robot)
+        ]
+    if found:
+        raise UnsupportedError(f"robot '{given.robot.id}': its vehicle cannot do all of it", found)
+
+
+def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
+    found = live.shared.get(SHARED)
+    if isinstance(found, Fleet):
+        return found
+    clock = FollowingClock(live.clock)
+    urls = _urls(live, program)
+    try:
+        faults = injections([options.inject] if options.inject else [], urls)
+    except ValueError as error:
+        raise UnsupportedError(f"option 'inject': {error}") from error
+    rehearsal = Rehearsal(faults, clock, live.say)
+    retries = Retries(options.tries, options.answer_seconds, options.item_seconds)
+    sharers: dict[str, list[str]] = {}
+    for robot, url in urls.items():
+        sharers.setdefault(_split(url)[0], []).append(robot)
+
+    def wrap(port: Port, url: str) -> Port:
+        return rehearsal.wrap(port, sharers.get(url, []))
+
+    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal)
+    live.shared[SHARED] = fleet
+    return fleet
+
+
+def _signer(path: Path | None) -> Signer | None:
+    if path is None:
+        return None
+    try:
+        return signer_for(path)
+    except (OSError, ValueError) as error:
+        raise UnsupportedError(f"option 'signing-key': {error}") from error
+
+
+def _urls(live: Live, program: Program) -> Mapping[str, str]:
+    usual = {
+        robot.id: f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
+        for number, robot in enumerate(program.robots)
+    }
+    return {robot: live.links.get(robot, url) for robot, url in usual.items()}
+
+
+def _url(given: BackendInput, live: Live) -> tuple[str, int]:
+    return _split(_urls(live, given.program)[given.robot.id])
+
+
+def _split(text: str) -> tuple[str, int]:
+    try:
+        url, system = split_system(text)
+        address_of(url)
+    except ValueError as error:
+        raise UnsupportedError(f"link {error}") from error
+    return url, system
+
+
+def _equipment(
+    given: BackendInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
+) -> Equipment:
+    options = link_options(given.options)
+    vehicle = MavlinkVehicle(
+        link,
+        program.vehicle,
+        program.home,
+        acceptance=options.acceptance,
+        home_tolerance=options.home_tolerance,
+    )
+    context = context_of(given.robot, input, geographic=False)
+    home = given.robot.home or (0.0, 0.0, 0.0)
+    box = _box(given, live, fleet.clock)
+    if box is not None:
+        geographic = isinstance(program.home, Geographic)
+        link.observe(Recording(box, fleet.clock, vehicle.state, geographic=geographic))
+        fleet.rehearsal.record(
+            given.robot.id, lambda text, content: box.write("injected", name=text, **content)
+        )
+    fleet.rehearsal.attend(given.robot.id, link)
+    locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
+    joules = sum(battery.energy for battery in given.type.batteries) or None
+    return Equipment(
+        url=_url(given, live)[0],
+        link=link,
+        vehicle=vehicle,
+        radios=fleet.radios,
+        clock=fleet.clock,
+        ground=Ground(given.program.frame, home, context.zero),
+        joules=joules,
+        locators=locators,
+        box=box,
+        say=live.say,
+        wake=live.wake,
+        action=lambda action: cast(Action, built(action_of(action, context))),
+        start=_once(fleet.rehearsal.start, live.shared),
+    )
+
+
+def _once(begin: Callable[[], None], shared: dict[str, object]) -> Callable[[], None]:
+    def start() -> None:
+        if shared.setdefault(f"{SHARED} faults", begin) is begin:
+            shared[f"{SHARED} faults"] = "begun"
+            begin()
+
+    return start
+
+
+def _box(given: BackendInput, live: Live, clock: Clock) -> BlackBox | None:
+    if live.folder is None:
+        return None
+    path = black_box_path(live.folder / log_name(given.robot.id))
+    return BlackBox(path, live.run, given.robot.id, clock.now, say=live.say)

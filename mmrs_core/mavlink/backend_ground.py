@@ -1,0 +1,50 @@
+"""Where a robot is, from what its vehicle tells: degrees, or metres from home, to the local frame."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mmrs_core.flight.program import Geographic, Place
+from mmrs_core.geometry.frames import LocalFrame
+from mmrs_core.mavlink.earth import WGS84
+from mmrs_core.scene import Frame, Position
+
+if TYPE_CHECKING:
+    from pyproj import Transformer
+
+
+class Ground:
+    """The local frame of a behaviour, as one robot sees it."""
+
+    def __init__(self, frame: Frame, home: Position, zero: float) -> None:
+        """Lay it.
+
+        Args:
+            frame: of the behaviour.
+            home: of the robot: east, north, up.
+            zero: height above the origin from which the robot's heights count, metres.
+        """
+        self._frame, self._home, self._zero = frame, home, zero
+
+    def position(self, place: Place) -> Position:
+        """Return a place as metres east, north and up of the origin."""
+        if not isinstance(place, Geographic):
+            return (self._home[0] + place.east, self._home[1] + place.north, self._zero + place.height)
+        longitude, latitude = self._from_wgs84.transform(place.longitude, place.latitude)
+        east, north = self._plane.to_local([latitude], [longitude])[0]
+        return (float(east), float(north), self._zero + place.height)
+
+    @cached_property
+    def _plane(self) -> LocalFrame:
+        assert self._frame.latitude is not None
+        assert self._frame.longitude is not None
+        return LocalFrame(self._frame.crs, self._frame.latitude, self._frame.longitude)
+
+    @cached_property
+    def _from_wgs84(self) -> Transformer:
+        from pyproj import Transformer
+
+        own = self._frame.crs
+        known = WGS84 if own.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else own
+        return Transformer.from_crs(WGS84, known, always_xy=True)

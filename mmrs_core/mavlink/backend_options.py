@@ -1,0 +1,98 @@
+"""The options of the backend mavlink, as in ``--backend-option KEY=VALUE``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from math import inf
+from pathlib import Path
+
+from mmrs_core.errors import UnsupportedError
+
+_SWITCHES = {"yes": True, "no": False}
+
+
+@dataclass(frozen=True, slots=True)
+class LinkOptions:
+    """How vehicles are spoken to.
+
+    Attributes:
+        patience: real seconds to wait for a vehicle's first sign.
+        acceptance: metres from a place that count as there.
+        home_tolerance: metres that a vehicle may be from its home at first.
+        tries: how often to send at most what is not answered.
+        answer_seconds: how long to wait for an answer.
+        item_seconds: how long to wait for an item of a mission that is read back.
+        fence: whether forbidden areas are uploaded as a fence.
+        objects: ``expected`` takes objects to be where they are expected; nobody looks for them.
+        signing_key: file of 32 bytes to sign with; empty: nothing is signed.
+        inject: faults to be made on purpose.
+    """
+
+    patience: float = 30.0
+    acceptance: float = 0.5
+    home_tolerance: float = 20.0
+    tries: int = 5
+    answer_seconds: float = 1.5
+    item_seconds: float = 0.25
+    fence: bool = True
+    objects: str = ""
+    signing_key: Path | None = None
+    inject: str = ""
+
+
+def link_options(given: Mapping[str, str]) -> LinkOptions:
+    """Return the options by their keys, hyphens instead of underscores.
+
+    Raises:
+        UnsupportedError: if there is no such option, or its value makes no sense.
+    """
+    known = {field.name.replace("_", "-"): field.name for field in fields(LinkOptions)}
+    unknown = sorted(set(given) - set(known))
+    if unknown:
+        raise UnsupportedError(
+            f"option '{unknown[0]}': backend 'mavlink' has none of that name; it has {', '.join(known)}"
+        )
+    values = {known[key]: _value(key, text) for key, text in given.items()}
+    return LinkOptions(**values)  # type: ignore[arg-type]
+
+
+def _value(key: str, text: str) -> object:
+    try:
+        return _READ.get(key, _positive)(text)
+    except ValueError as error:
+        raise UnsupportedError(f"option '{key}': {error}") from error
+
+
+def _positive(text: str) -> float:
+    number = float(text)
+    if not 0.0 < number < inf:
+        raise ValueError(f"{text} is not a positive number")
+    return number
+
+
+def _count(text: str) -> int:
+    if int(text) < 1:
+        raise ValueError(f"{text} is not a number from 1 on")
+    return int(text)
+
+
+def _switch(text: str) -> bool:
+    if text not in _SWITCHES:
+        raise ValueError(f"{text} is neither yes nor no")
+    return _SWITCHES[text]
+
+
+def _objects(text: str) -> str:
+    if text != "expected":
+        raise ValueError(f"{text}: objects can only be taken to be where they are 'expected'")
+    return text
+
+
+_READ: Mapping[str, Callable[[str], object]] = {
+    "tries": _count,
+    "fence": _switch,
+    "objects": _objects,
+    "signing-key": Path,
+    "inject": str,
+}

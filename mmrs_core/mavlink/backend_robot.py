@@ -1,0 +1,268 @@
+"""One robot of a behaviour, driven over its link: what the interpreter asks of it, and the answers."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.flight.ardupilot import MavlinkVehicle
+from mmrs_core.flight.blackbox import BlackBox
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import LINK_LOST, TAKEN_OVER
+from mmrs_core.flight.faults import Fault as VehicleFault
+from mmrs_core.flight.link import Link
+from mmrs_core.flight.objects import Locator
+from mmrs_core.flight.program import Action as VehicleAction
+from mmrs_core.flight.program import Policy, Robot
+from mmrs_core.flight.radios import Radios
+from mmrs_core.flight.responses import policy_for, respond
+from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
+from mmrs_core.flight.watch import Watch
+from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend_options import LinkOptions
+from mmrs_core.mavlink.backend_recovery import way_back
+from mmrs_core.mavlink.backend_worker import Job, Worker
+
+HANDS_OFF = "NOTHING"
+
+
+@dataclass(frozen=True, slots=True)
+class Equipment:
+    """What a robot is driven with.
+
+    Attributes:
+        joules: that its batteries hold when full; None where nobody says.
+        locators: what finds objects, by description.
+        box: None where no logs are kept.
+        action: an action of the behaviour as one of the vehicle's program.
+        start: to be called once the robot gets ready, for faults that are made on purpose.
+    """
+
+    url: str
+    link: Link
+    vehicle: MavlinkVehicle
+    radios: Radios
+    clock: Clock
+    ground: Ground
+    joules: float | None
+    locators: Mapping[str, Locator]
+    box: BlackBox | None
+    say: Callable[[str], None]
+    wake: Callable[[], None]
+    action: Callable[[Action], VehicleAction]
+    start: Callable[[], None]
+
+
+class MavlinkBackend:
+    """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
+
+    def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
+        """Listen to the vehicle; it is told nothing before it is to get ready."""
+        self._robot, self._with, self._options = robot, equipment, options
+        self._policies: Sequence[Policy] = ()
+        self._watch = self._new_watch()
+        self._alone = self._wanted = policy_for(LINK_LOST, robot).response
+        self._worker = Worker(f"robot {robot.id!a}", self._look, self._idle, self._halt)
+        self._worker.changed = equipment.wake
+        equipment.link.guard = self._worker.guard
+        self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
+        mission, self._flights = mission_of(robot)
+        self._mission = mission
+        self._steps = {step.move: step for step in robot.steps}
+        self._move = ""
+        self._passed: set[str] = set()
+        self._under_way: tuple[str, ...] = ()
+        self._response = ""
+        self._watched = False
+        self._seen: VehicleFault | None = None
+        self._ready = False
+
+    def prepare(self, now: float) -> None:
+        """Begin to wait for the vehicle, and to set it up."""
+        self._with.start()
+        self._begin(Job(self._meet, self._set_up))
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement; those in the midst of an uploaded run have begun with its first."""
+        self._follow(())
+        self._move = move.id
+        if move.id in self._under_way[1:]:
+            return
+        self._passed.clear()
+        flight = self._flights.get(move.id)
+        if flight is not None:
+            self._under_way = flight.run.moves
+            self._begin(self._moves.run(flight, self._pass))
+            return
+        self._under_way = ()
+        self._begin(self._moves.movement(move.id, through=through))
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin the action that comes next in the robot's program."""
+        self._under_way = ()
+        self._begin(self._moves.action(self._with.action(action)))
+
+    def finished(self, now: float) -> bool:
+        """Return whether what was begun last has finished."""
+        if self._under_way and self._move != self._under_way[-1] and self._move in self._passed:
+            return True
+        return self._worker.done
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong."""
+        found = self._seen = self._worker.fault
+        return None if found is None else Fault(found.event, str(found))
+
+    def next_event(self, now: float) -> float | None:
+        """Return never: the worker wakes the interpreter."""
+        return inf
+
+    def wait(self, now: float) -> None:
+        """Hold the pose, with the policies of the wait."""
+        then = self._steps[self._move].then if self._move else None
+        self._follow(then.policies if then is not None else ())
+        if self._wanted != self._alone:
+            self._begin(Job())
+
+    def state(self, now: float) -> RobotState:
+        """Return what the vehicle has told last."""
+        known = self._with.vehicle.state()
+        energy = (
+            None if known.energy is None or self._with.joules is None else known.energy * self._with.joules
+        )
+        return RobotState(
+            now, self._with.ground.position(known.place), known.speed, known.heading, energy, known.energy
+        )
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Carry out a response, from any state."""
+        if response == self._response and (self._worker.fault is None or not self._worker.done):
+            return
+        found = self._worker.fault
+        self._response, self._watched, self._under_way = response, False, ()
+        self._watch.relax()
+        if found is not None and found.event == LINK_LOST:
+            return
+        if response == HANDS_OFF or (found is not None and found.event == TAKEN_OVER):
+            self._ready = False
+            self._worker.begin(Job(), afresh=True)
+            return
+        self._worker.begin(Job(lambda: self._respond(response)), afresh=True)
+        self._with.link.wake()
+
+    def watched(self, now: float) -> bool:
+        """Return whether the vehicle holds with its motors running."""
+        return self._watched and self._worker.fault is None
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Begin to go back to where the program was broken off."""
+        self._response = ""
+        self._watch = self._new_watch()
+        self._move = begun or (passed[-1] if passed else "")
+        self._begin(way_back(self._robot, self._moves, self._with.vehicle, passed, begun), afresh=True)
+
+    def pause(self, now: float) -> None:
+        """Begin to halt."""
+        self._worker.pause()
+        self._with.link.wake()
+
+    def resume(self, now: float) -> None:
+        """Go on."""
+        self._worker.resume()
+
+    def paused(self, now: float) -> bool:
+        """Return whether the vehicle stands."""
+        return self._worker.halted
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Write a line into the black box."""
+        if self._with.box is not None:
+            self._with.box.write(kind, **{"move": self._move, **content})
+
+    def close(self) -> None:
+        """End the worker and the link; the vehicle keeps whatever it does."""
+        self._worker.close()
+        self.note("counted", {"frames": dict(self._with.link.dropped)})
+        if self._with.link.garbled:
+            self._with.say(f"{self._with.link.garbled} frames from the link could not be read")
+        self._with.link.close()
+        if self._with.box is not None:
+            self._with.box.close()
+
+    def _begin(self, job: Job, *, afresh: bool = False) -> None:
+        if self._wanted != self._alone:
+            job.first(self._instruct)
+        fresh = afresh or (self._seen is not None and self._seen is self._worker.fault)
+        self._worker.begin(job, afresh=fresh)
+
+    def _new_watch(self) -> Watch:
+        watch = Watch(self._robot, self._with.clock, threading.Event())
+        watch.begin(self._with.link, self._with.vehicle)
+        watch.current = lambda: self._policies
+        return watch
+
+    def _look(self) -> None:
+        """Look after the vehicle, whatever it does."""
+        self._watch.check()
+
+    def _idle(self) -> None:
+        """Look after a vehicle that has nothing to do, and that somebody else may take over."""
+        if self._ready:
+            self._with.vehicle.rest(0.0)
+
+    def _halt(self) -> None:
+        self._with.vehicle.hold()
+
+    def _meet(self) -> None:
+        patience = self._options.patience * self._with.clock.speedup
+        self._with.say(f"waits for a vehicle at {self._with.url}")
+        self._with.radios.meet(self._with.link, self._with.url, patience)
+
+    def _set_up(self) -> None:
+        vehicle, robot = self._with.vehicle, self._robot
+        vehicle.answer_lost_link(self._alone)
+        vehicle.prepare(fence_of(robot) if self._options.fence else (), rally_of(robot), self._mission)
+        self._note_start()
+        self._ready = True
+        if vehicle.state().energy is None:
+            self._with.say("does not tell its battery: nobody will notice when it is low")
+
+    def _note_start(self) -> None:
+        beat = self._with.link.latest("HEARTBEAT")
+        firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
+        content = {
+            "link": self._with.url,
+            "vehicle": self._robot.vehicle,
+            "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
+            "home": self._robot.home,
+        }
+        self.note("start", content)
+
+    def _respond(self, response: str) -> None:
+        fault = VehicleFault("", "")
+        self._watched = respond(response, fault, self._robot, self._with.vehicle, self._moves.track)
+
+    def _pass(self, move: str) -> None:
+        self._passed.add(move)
+        self._with.wake()
+
+    def _follow(self, policies: Sequence[Policy]) -> None:
+        """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
+        self._policies = policies
+        self._wanted = policy_for(LINK_LOST, self._robot, policies).response
+
+    def _instruct(self) -> None:
+        if self._wanted != self._alone:
+            self._with.vehicle.answer_lost_link(self._wanted)
+            self._alone = self._wanted
+
+    def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
+        self.note(kind, {"name": name, "content": dict(content)})
+        self._with.say(f"{kind} {name!r}: {dict(content)}")

@@ -1,0 +1,154 @@
+"""Runs in real time: robots that are connected, got ready, driven, and let go of again."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Generator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.execution import (
+    Backend,
+    BackendFactory,
+    BackendInput,
+    Bus,
+    Closing,
+    Condition,
+    Live,
+    Preparing,
+)
+from mmrs_core.errors import LinkLostError, MmrsError
+from mmrs_core.runtime.attention import Attention
+from mmrs_core.runtime.clock import RealClock
+from mmrs_core.runtime.interpreter import PACE, Ending, Terms, interpret
+from mmrs_core.runtime.orders import ANSWER, Orders
+
+
+@dataclass(frozen=True, slots=True)
+class Venture:
+    """A run in real time, before it begins.
+
+    Attributes:
+        inputs: of the backends, by robot of this process.
+        bus: between all robots of the program.
+        clock: of the run.
+        orders: from people, who may give them as soon as this exists.
+        run: identifier of the run.
+        folder: of the logs; None where none are kept.
+        links: how robots are reached, by robot; backends know what is usual.
+        resumed: the steps made before the run was broken off.
+        suspends: whether a low battery only breaks a program off.
+        patience: seconds to wait for the order to resume once nobody else works.
+        observe: called with each step before it has an effect.
+        say: tells people what goes on.
+    """
+
+    program: Program
+    inputs: Mapping[str, BackendInput]
+    bus: Bus
+    conditions: Mapping[str, Condition]
+    clock: RealClock = field(default_factory=RealClock)
+    orders: Orders = field(default_factory=Orders)
+    run: str = "run-0"
+    folder: Path | None = None
+    links: Mapping[str, str] = field(default_factory=dict)
+    resumed: tuple[StepRecord, ...] = ()
+    suspends: bool = True
+    patience: float = 0.0
+    observe: Callable[[StepRecord], None] | None = None
+    say: Callable[[str], None] = print
+
+
+def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
+    """Yield the steps of the robots; return how the run ended.
+
+    No robot begins before all are ready. When the generator ends or is closed, every robot that has not
+    come to its end has been stopped, and all links are closed.
+
+    Raises:
+        LinkLostError: if a robot does not answer at first.
+        UnsupportedError: if a robot cannot do what its program holds, or options are wrong.
+        MmrsError: if a robot does not get ready.
+        KeyboardInterrupt: if robots are ordered to stop before they are ready.
+    """
+    attention = Attention(venture.clock)
+    with ExitStack() as stack:
+        robots = _connected(venture, backend, attention, stack)
+        _get_ready(robots, venture)
+        steps = interpret(
+            venture.program,
+            robots,
+            bus=venture.bus,
+            clock=venture.clock,
+            conditions=venture.conditions,
+            policies={id: each.policies for id, each in venture.inputs.items()},
+            terms=Terms(
+                run=venture.run,
+                incarnation=uuid.uuid4().hex,
+                observe=venture.observe,
+                resumed=venture.resumed,
+                suspends=venture.suspends,
+                patience=venture.patience,
+                attention=attention,
+                orders=venture.orders,
+                say=venture.say,
+            ),
+        )
+        stack.callback(steps.close)
+        return (yield from steps)
+
+
+def _connected(
+    venture: Venture, backend: BackendFactory, attention: Attention, stack: ExitStack
+) -> dict[str, Backend]:
+    shared: dict[str, object] = {}
+    robots: dict[str, Backend] = {}
+    for id, given in venture.inputs.items():
+        live = Live(
+            clock=venture.clock,
+            wake=attention.for_robot(id),
+            say=_named(venture.say, id),
+            run=venture.run,
+            folder=venture.folder,
+            links=venture.links,
+            shared=shared,
+        )
+        robots[id] = backend.connect(replace(given, live=live))
+        if isinstance(robots[id], Closing):
+            stack.callback(robots[id].close)  # type: ignore[attr-defined]
+    return robots
+
+
+def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
+    return lambda words: say(f"'{robot}': {words}")
+
+
+def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
+    clock = venture.clock
+    waiting: list[str] = []
+    for id, robot in robots.items():
+        if isinstance(robot, Preparing):
+            robot.prepare(clock.now())
+            waiting.append(id)
+    venture.orders.called = clock.wake
+    while waiting:
+        for id in waiting:
+            _refuse_fault(id, robots[id], clock.now())
+        waiting = [id for id in waiting if not robots[id].finished(clock.now())]
+        for order in venture.orders.taken():
+            for id in order.robots:
+                order.refuse(id, "is not ready yet")
+            if order.kind != ANSWER:
+                raise KeyboardInterrupt
+        if waiting:
+            clock.sleep_until(clock.now() + PACE)
+
+
+def _refuse_fault(id: str, robot: Backend, now: float) -> None:
+    found = robot.fault(now)
+    if found is not None:
+        message = f"robot '{id}': does not get ready: {found.reason or found.which}"
+        raise LinkLostError(message) if found.which == "LINK_LOST" else MmrsError(message)
