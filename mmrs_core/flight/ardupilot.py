@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from . import modes, preparation
+from . import modes, preparation, safeguards
 from .commands import command
 from .faults import NO_PROGRESS, Fault, Refused
 from .helm import MODE_SECONDS, Helm
 from .link import Link
 from .missions import Item
-from .places import offset
 from .program import Geographic, Look, Place
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
@@ -28,7 +26,14 @@ class MavlinkVehicle:
     """An ArduPilot vehicle, stepped in GUIDED and run in AUTO."""
 
     def __init__(
-        self, link: Link, kind: str, home: Place, *, acceptance: float = 0.5, home_tolerance: float = 20.0
+        self,
+        link: Link,
+        kind: str,
+        home: Place,
+        *,
+        acceptance: float = 0.5,
+        home_tolerance: float = 20.0,
+        tell: Callable[[str], None] = lambda line: None,
     ) -> None:
         """Drive the vehicle at the end of a link.
 
@@ -38,7 +43,9 @@ class MavlinkVehicle:
             home: of the robot, as its program says.
             acceptance: metres from a place at which it counts as reached.
             home_tolerance: metres that the vehicle may be from home at the beginning.
+            tell: is given what people should know, as what the vehicle does by itself.
         """
+        self._tell = tell
         self._link = link
         self._telemetry = Telemetry(link, home)
         self._helm = Helm(link, self._telemetry, kind)
@@ -55,13 +62,15 @@ class MavlinkVehicle:
             Refused: something is not accepted or read back differently, the vehicle is not where the
                 program begins, or it does not become ready.
         """
-        preparation.ask_for_messages(self._link)
-        if isinstance(self._home, Geographic):
+        geographic = isinstance(self._home, Geographic)
+        preparation.ask_for_messages(self._link, geographic=geographic)
+        preparation.await_position(self._link, self._telemetry)
+        preparation.check_identity(self._link, self._telemetry, self._kind, self._home, self._home_tolerance)
+        if geographic:
             preparation.replace_all(self._link, mission, fence, rally)
+        for line in safeguards.report(self._link, self._kind):
+            self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
-        away = hypot(*offset(self._home, self._telemetry.here())[:2])
-        if away > self._home_tolerance:
-            raise Refused(f"the vehicle is {away:.0f} m from the home of its program")
         if fence:
             command(self._link, mavlink.MAV_CMD_DO_FENCE_ENABLE, 1)
 
@@ -72,6 +81,19 @@ class MavlinkVehicle:
             Refused: it cannot respond so, or does not say that it will.
         """
         preparation.answer_lost_link(self._link, self._kind, response)
+
+    def answer_breach(self, response: str) -> None:
+        """Have the vehicle respond by itself when it breaks its fence.
+
+        Raises:
+            Refused: it cannot respond so, or does not say that it will.
+        """
+        preparation.answer_breach(self._link, self._kind, response)
+
+    @property
+    def telemetry(self) -> Telemetry:
+        """Return what the vehicle tells about itself."""
+        return self._telemetry
 
     def take_off(self, height: float) -> None:
         """Climb to a height above home.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -10,11 +10,15 @@ from . import modes
 from .commands import command
 from .faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
 from .link import Link
+from .readiness import REPEATED_SECONDS
 from .telemetry import Telemetry
 
 MODE_SECONDS = 5.0
 MODE_TRIES = 3
 TAKE_OFF_TRIES = 3
+WORDS_SECONDS = 0.5
+"""After which a vehicle that refuses has said why."""
+
 AFRESH_SECONDS = 3.0
 """After which at least one new heartbeat should have come, even over a poor link."""
 
@@ -31,18 +35,22 @@ class Helm:
         """Take the helm of a vehicle of a kind, ``copter``, ``sub`` or ``rover``; change nothing yet."""
         self._link = link
         self._telemetry = telemetry
-        self._numbers = modes.MODES[kind]
+        self._kind = kind
         self._mode: str | None = None
         self._speed: float | None = None
 
+    @property
+    def _modes(self) -> Mapping[str, modes.Mode]:
+        return modes.modes_of(self._link, self._kind)
+
     def has(self, mode: str) -> bool:
         """Return whether the vehicle has such a mode."""
-        return mode in self._numbers
+        return mode in self._modes
 
     def mode(self) -> str:
         """Return the vehicle's mode in the runtime's words, or its number where there is none."""
         number = self._telemetry.mode()
-        return next((name for name, each in self._numbers.items() if each == number), str(number))
+        return next((name for name, each in self._modes.items() if each.number == number), str(number))
 
     def enter(self, mode: str) -> None:
         """Change the mode; the vehicle forgets the speed it was told.
@@ -50,11 +58,11 @@ class Helm:
         Raises:
             Refused: the vehicle does not go into the mode.
         """
-        number = self._numbers[mode]
+        wanted = self._modes[mode]
         for _ in range(MODE_TRIES):
-            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, 1, number)
+            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
             if self._link.wait(
-                lambda: self._telemetry.mode() == number, self._link.clock.patience(MODE_SECONDS)
+                lambda: self._telemetry.mode() == wanted.number, self._link.clock.patience(MODE_SECONDS)
             ):
                 self._mode, self._speed = mode, None
                 return
@@ -70,7 +78,7 @@ class Helm:
         Raises:
             Fault: the vehicle has left the mode.
         """
-        if self._mode is None or self._telemetry.mode() == self._numbers[self._mode]:
+        if self._mode is None or self._telemetry.mode() == self._modes[self._mode].number:
             return
         if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
             raise Fault(TAKEN_OVER, f"the vehicle left mode {self._mode}: somebody else has taken over")
@@ -85,12 +93,31 @@ class Helm:
             raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
 
     def arm(self) -> None:
-        """Be in GUIDED and armed."""
+        """Be in GUIDED and armed.
+
+        Raises:
+            Refused: the vehicle does not arm; it says why, where the vehicle does.
+        """
         if self._mode != modes.GUIDED:
             self.enter(modes.GUIDED)
-        if not self._telemetry.armed():
+        self.start_motors()
+
+    def start_motors(self) -> None:
+        """Arm, if the vehicle is not armed.
+
+        Raises:
+            Refused: it does not arm; it says why, where the vehicle does.
+        """
+        if self._telemetry.armed():
+            return
+        try:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-            self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
+        except Refused as error:
+            self._link.wait(lambda: None, WORDS_SECONDS)
+            said = self._telemetry.texts.refusals(REPEATED_SECONDS)
+            why = "; ".join(said or self._telemetry.lacks())
+            raise Refused(f"{error}{': ' if why else ''}{why}") from error
+        self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
 
     def leave_ground(self, height: float) -> None:
         """Arm and take off, again where the vehicle has disarmed itself in between."""

@@ -231,8 +231,10 @@ class Link:
         system = heartbeat.get_srcSystem()
         if self._wanted not in (0, system) or (not self._wanted and self._radio.claimed(system)):
             return False
-        self.system = system
-        self.component = heartbeat.get_srcComponent()
+        with self._changed:
+            self.system, self.component = system, heartbeat.get_srcComponent()
+            self._latest["HEARTBEAT"] = (heartbeat, self.clock.now())
+            self._changed.notify_all()
         return True
 
     def hears(self, message: Message, sender: Address | None) -> None:

@@ -1,8 +1,17 @@
-"""Flight modes by kind of vehicle, as ArduPilot numbers them, and its answers to a lost link."""
+"""Flight modes by autopilot and kind of vehicle, and what each can do by itself."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from .link import Link
+
+Answers: TypeAlias = Mapping[str, Mapping[str, int]]
+"""By response of a policy, parameters and their values."""
 
 GUIDED = "guided"
 AUTO = "auto"
@@ -15,6 +24,39 @@ MODES: Mapping[str, Mapping[str, int]] = {
     "sub": {GUIDED: 4, AUTO: 3, HOLD: 16, SURFACE: 9},
     "rover": {GUIDED: 15, AUTO: 10, HOLD: 4},
 }
+"""ArduPilot's numbers, by kind of vehicle."""
+
+PX4_MODES: Mapping[str, tuple[int, int]] = {
+    GUIDED: (6, 0),
+    AUTO: (4, 4),
+    HOLD: (4, 3),
+    LAND: (4, 6),
+}
+"""PX4's main mode and sub-mode (``px4_custom_mode.h``): OFFBOARD, and of AUTO mission, loiter, land."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A mode: what heartbeats say of it, and the parameters of the command that asks for it."""
+
+    number: int
+    params: tuple[float, ...]
+
+
+def modes_of(link: Link, kind: str) -> Mapping[str, Mode]:
+    """Return the modes of the vehicle at a link, by the runtime's words."""
+    if is_px4(link):
+        return {
+            name: Mode(px4_number(main, sub), (1.0, float(main), float(sub)))
+            for name, (main, sub) in PX4_MODES.items()
+        }
+    return {name: Mode(number, (1.0, float(number))) for name, number in MODES[kind].items()}
+
+
+def px4_number(main: int, sub: int) -> int:
+    """Return what a PX4's heartbeat says of a mode: the sub-mode above the main mode above 16 bits."""
+    return sub << 24 | main << 16
+
 
 ON_LOST_LINK = "FS_GCS_ENABLE"
 ON_ANY_LOSS = "FS_ACTION"
@@ -50,3 +92,56 @@ By kind and by the policy's response, or by what comes nearest to it: a copter r
 came, and lands where it may not hold for ever; a sub comes up. A rover heeds its action only where
 the failsafe of the ground station is switched on, too, which it is not at first.
 """
+
+BREACH: Mapping[str, Answers] = {
+    "copter": {
+        "CONTINUE": {"FENCE_ACTION": 0},
+        "RETURN": {"FENCE_ACTION": 3},
+        "EMERGENCY_AREA": {"FENCE_ACTION": 3},
+        "LAND": {"FENCE_ACTION": 2},
+        "HOLD": {"FENCE_ACTION": 4},
+    },
+    "rover": {
+        "CONTINUE": {"FENCE_ACTION": 0},
+        "RETURN": {"FENCE_ACTION": 3},
+        "EMERGENCY_AREA": {"FENCE_ACTION": 3},
+        "HOLD": {"FENCE_ACTION": 2},
+        "LAND": {"FENCE_ACTION": 2},
+    },
+    "sub": {},
+}
+"""What an ArduPilot does by itself when it breaks its fence."""
+
+PX4_LINK_LOST: Answers = {
+    "CONTINUE": {"NAV_DLL_ACT": 0},
+    "HOLD": {"NAV_DLL_ACT": 1},
+    "RETURN": {"NAV_DLL_ACT": 2},
+    "EMERGENCY_AREA": {"NAV_DLL_ACT": 2},
+    "LAND": {"NAV_DLL_ACT": 3},
+    "STOP_THRUST": {"NAV_DLL_ACT": 6},
+}
+PX4_BREACH: Answers = {
+    "CONTINUE": {"GF_ACTION": 1},
+    "HOLD": {"GF_ACTION": 2},
+    "RETURN": {"GF_ACTION": 3},
+    "EMERGENCY_AREA": {"GF_ACTION": 3},
+    "LAND": {"GF_ACTION": 5},
+}
+PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION"), mavlink.MAV_PARAM_TYPE_INT32)
+"""Types of parameters that are not of single precision."""
+
+
+def is_px4(link: Link) -> bool:
+    """Return whether the autopilot is a PX4, as its heartbeat says."""
+    beat = link.latest("HEARTBEAT")
+    return beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_PX4
+
+
+def lost_link_answers(link: Link, kind: str) -> Answers:
+    """Return what the vehicle at a link can do by itself when it no longer hears the ground."""
+    return PX4_LINK_LOST if is_px4(link) else LINK_LOST[kind]
+
+
+def breach_answers(link: Link, kind: str) -> Answers:
+    """Return what the vehicle at a link can do by itself when it breaks its fence."""
+    return PX4_BREACH if is_px4(link) else BREACH[kind]

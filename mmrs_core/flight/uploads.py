@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import ceil
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -72,7 +73,8 @@ def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
         if movement.speed is not None and movement.speed != speed:
             speed = movement.speed
             yield move, Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)
-        yield move, _positional(mavlink.MAV_CMD_NAV_WAYPOINT, movement.at, hold)
+        # Vehicles keep whole seconds and cut off the rest: less than one would be no hold at all.
+        yield move, _positional(mavlink.MAV_CMD_NAV_WAYPOINT, movement.at, float(ceil(hold)))
 
 
 def _positional(command: int, place: Place, first: float = 0.0) -> Item:
