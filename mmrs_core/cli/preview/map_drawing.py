@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from shapely.geometry import Polygon
 
@@ -18,13 +19,15 @@ from mmrs_core.cli.preview.projection import Projection, projection_of
 from mmrs_core.scene import AreaUse
 
 
-def map_markup(picture: Picture, *, legend: bool = False) -> str:
+def map_markup(picture: Picture, *, legend: bool = False, only: int | None = None) -> str:
     """Return the map as one ``svg`` element with its own style, readable by itself.
 
     Args:
         legend: whether to explain robots and signs beneath the map.
+        only: index of the only robot to show; None: all of them.
     """
-    projection = projection_of(picture)
+    shown = picture if only is None else replace(picture, robots=picture.robots[only : only + 1])
+    projection = projection_of(shown)
     key = legend_markup(picture, projection) if legend else ""
     height = projection.height + (legend_height(picture, projection) if legend else 0.0)
     size = {"width": number(projection.width), "height": number(height)}
@@ -32,16 +35,19 @@ def map_markup(picture: Picture, *, legend: bool = False) -> str:
     view = {"viewBox": f"0 0 {size['width']} {size['height']}"}
     head = element("title", None, text(picture.title or "mission"))
     style = element("style", None, style_sheet("map.css"))
-    return element("svg", {**attributes, **view}, head, style, patterns(), _layers(picture, projection), key)
+    return element(
+        "svg", {**attributes, **view}, head, style, patterns(), _layers(shown, projection, only or 0), key
+    )
 
 
-def _layers(picture: Picture, projection: Projection) -> Iterator[str]:
-    robots = tuple(enumerate(picture.robots))
+def _layers(picture: Picture, projection: Projection, first: int) -> Iterator[str]:
+    """Yield the layers; `first` is the index of the first robot, for its style."""
+    robots = tuple(enumerate(picture.robots, start=first))
     yield element("rect", {"class": "ground", "width": projection.width, "height": projection.height})
     yield _layer("grid", grid(projection))
     yield _layer("emergency", (zone_shape(z, projection) for z in _with_use(picture, AreaUse.EMERGENCY)))
     yield _layer("tasks", task_shapes(picture.tasks, projection))
-    yield _layer("coverage", coverage(picture, projection))
+    yield _layer("coverage", coverage(picture, projection, first))
     yield _layer("clearance", (kept_shape(zone, projection) for zone in picture.zones))
     yield _layer("areas", _barriers(picture, projection))
     yield _layer("things", (thing_shape(thing, projection) for thing in picture.things))
@@ -52,7 +58,7 @@ def _layers(picture: Picture, projection: Projection) -> Iterator[str]:
         marks = (mark for i, robot in robots for mark in marks_of(i, robot, projection))
         yield _layer("marks", marks)
     yield _layer("homes", (home(i, robot, projection) for i, robot in robots))
-    yield _layer("labels", (words(picture, projection),))
+    yield _layer("labels", (words(picture, projection, first),))
     yield _layer("furniture", furniture(projection))
 
 

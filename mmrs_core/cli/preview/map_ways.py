@@ -33,9 +33,9 @@ STAY = 5.5
 """Radius of the mark of a stay, pixels."""
 
 
-def coverage(picture: Picture, projection: Projection) -> Iterator[str]:
-    """Yield the ground that each robot covers, each as one shape."""
-    for index, robot in enumerate(picture.robots):
+def coverage(picture: Picture, projection: Projection, first: int = 0) -> Iterator[str]:
+    """Yield the ground that each robot covers, each as one shape; styles begin with the first's index."""
+    for index, robot in enumerate(picture.robots, start=first):
         rings = [ring for leg in robot.legs for ring in leg.covered]
         look = {"class": "covered", "fill": style_of(index).colour, "data-robot": index}
         if rings:

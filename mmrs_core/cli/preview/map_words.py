@@ -24,8 +24,12 @@ _HOME = 9.0
 """Half the width of the mark of a home, pixels."""
 
 
-def words(picture: Picture, projection: Projection) -> str:
-    """Return the names of robots, tasks, areas and things, none over another where there is room."""
+def words(picture: Picture, projection: Projection, first: int = 0) -> str:
+    """Return the names of robots, tasks, areas and things, none over another where there is room.
+
+    Args:
+        first: index of the first robot, for its style.
+    """
     labels = Labels(projection.width, projection.height)
     for box in chain(furniture_places(projection), _marks(picture, projection)):
         labels.keep_off(box)
@@ -34,7 +38,7 @@ def words(picture: Picture, projection: Projection) -> str:
     kinds = (_of_tasks, _of_things, _of_zones)
     names = chain.from_iterable(of_kind(picture, projection) for of_kind in kinds)
     smallest_first = sorted(names, key=lambda name: _area(name.around))
-    for name in chain(_of_robots(picture, projection), smallest_first):
+    for name in chain(_of_robots(picture, projection, first), smallest_first):
         labels.put(name.words, name.around, name.kind, colour=name.colour, tip=name.tip, icon=name.icon)
     return labels.markup()
 
@@ -76,8 +80,8 @@ class _Name:
     icon: tuple[str, str] = ("", "")
 
 
-def _of_robots(picture: Picture, projection: Projection) -> Iterator[_Name]:
-    for index, robot in enumerate(picture.robots):
+def _of_robots(picture: Picture, projection: Projection, first: int) -> Iterator[_Name]:
+    for index, robot in enumerate(picture.robots, start=first):
         x, y = projection.place(robot.home)
         yield _Name(robot.name, (x - _HOME, y - _HOME, x + _HOME, y + _HOME), "name", style_of(index).colour)
 

@@ -6,6 +6,7 @@ import json
 from importlib.resources import files
 
 from mmrs_core.cli.figures import clock
+from mmrs_core.cli.preview.key import key_markup
 from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
@@ -13,7 +14,6 @@ from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, Thing
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.projection import projection_of
-from mmrs_core.cli.preview.signs import sign, symbols_in
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
 from mmrs_core.cli.preview.timeline import timeline_markup
 
@@ -31,13 +31,6 @@ _LAYERS = (
     ("grid", "grid"),
 )
 _FLOWN_LAYERS = (("planned", "ways as planned"), ("marks", "photos and faults"))
-_FLOWN_KEY = (
-    ("planned", "pale: as planned"),
-    ("response", "dotted: not in the plan"),
-    ("photo", "photo"),
-    ("missing", "photo not confirmed"),
-    ("fault", "fault"),
-)
 
 
 def page(picture: Picture) -> str:
@@ -48,7 +41,7 @@ def page(picture: Picture) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{text(_POLICY)}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         element("title", None, text(title)),
-        element("style", None, style_sheet("page.css")),
+        element("style", None, style_sheet("page.css") + style_sheet("dark.css")),
     )
     body = (
         element("header", None, element("h1", None, text(title)), element("p", None, text(_lead(picture)))),
@@ -105,7 +98,7 @@ def _controls(picture: Picture) -> str:
         element("h2", None, "Shown"),
         layers,
         element("h2", None, "Key"),
-        _key(picture),
+        key_markup(picture),
         '<p class="hint">Drag to move, wheel to zoom, double click to see all.</p>',
     )
 
@@ -131,25 +124,6 @@ def _sample(style: Style) -> str:
         "stroke-dasharray": style.dashes or None,
     }
     return element("svg", {"class": "sample", "width": 34, "height": 12}, element("path", line))
-
-
-def _key(picture: Picture) -> str:
-    rows = (
-        ("work", "thick line: doing a task"),
-        ("transit", "thin line: on the way"),
-        ("action", "dot: device action"),
-        ("stay", "ring: stays here"),
-        ("home", "home"),
-        ("forbidden", "forbidden area"),
-        ("obstacle", "obstacle"),
-        ("kept", "kept clear"),
-        ("emergency", "emergency area"),
-        *(_FLOWN_KEY if picture.flown else ()),
-    )
-    signs = (element("li", None, sign(symbol), text(symbol.label)) for symbol in symbols_in(picture))
-    return element(
-        "ul", {"class": "key"}, (f'<li><i class="{name}"></i>{words}</li>' for name, words in rows), signs
-    )
 
 
 def _player(picture: Picture) -> str:

@@ -1,0 +1,1 @@
+"""Makes the page that tells people how a flight went."""

@@ -1,0 +1,97 @@
+"""``mmrs report``: a page for people about a flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.settings import Json, settings_of
+
+if TYPE_CHECKING:
+    from mmrs_core.cli.behaviours import Loaded
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.preview.picture import Picture
+    from mmrs_core.cli.report.making import Given
+    from mmrs_core.cli.report.values import Report
+
+PAGE = "report.html"
+
+
+def report(
+    call: typer.Context,
+    behaviour: Behaviour,
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOGS...", help="Folders with logs and black boxes, or files.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="Where to write; else report.html beside the logs."
+        ),
+    ] = None,
+    context: Context = None,
+    robots: Robots = None,
+    assume: Assume = None,
+    json: Json = False,
+) -> int:
+    """Tell people how a flight went: what was asked, what was achieved, what happened.
+
+    Planned against flown, times, energy, photos, faults, orders and links, on one page that needs no
+    network. What is planned is the behaviour as simulated, with the answers that its conditions gave.
+    Example: mmrs report mission/ mission/logs -o report.html
+    """
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.flights.gathering import read_flight
+    from mmrs_core.cli.flights.planned import planned_for
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.protection import refuse_inputs
+    from mmrs_core.cli.report.making import Given, report_of
+    from mmrs_core.cli.simulation import answers
+
+    workshop, file = Workshop(settings_of(call)), behaviour_file(behaviour)
+    loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
+    flight = read_flight(logs, loaded.program, loaded.place.types)
+    planned = planned_for(workshop, loaded, flight, answers(assume))
+    given = Given(loaded.program, loaded.place, flight, planned, workshop.contributions.move_kinds)
+    made = report_of(given)
+    path = output if output is not None else _beside(logs[0])
+    refuse_inputs((path,), (*workshop.inputs, *read_files(logs)))
+    _write(path, made, given, _picture(workshop, loaded, given, made, file.parent))
+    if json:
+        say_json({"files": [path], "report": made})
+    else:
+        say(f"written: {path}")
+    return 0
+
+
+def read_files(logs: list[Path]) -> tuple[Path, ...]:
+    """Return every log and part of a black box that paths lead to."""
+    from mmrs_core.behaviour.blackbox import black_boxes
+    from mmrs_core.behaviour.salvage import logs_in
+
+    return (*logs_in(logs), *(part for box in black_boxes(logs) for part in box.parts))
+
+
+def _beside(logs: Path) -> Path:
+    return (logs if logs.is_dir() else logs.parent) / PAGE
+
+
+def _picture(workshop: Workshop, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
+    from mmrs_core.cli.preview.from_flight import picture_of_flight
+    from mmrs_core.cli.preview.from_run import Surroundings
+    from mmrs_core.cli.report.asked import with_tasks
+
+    around = Surroundings(given.place.areas or (), loaded.elements, given.place.types)
+    picture = picture_of_flight(given.program, given.flight, given.planned, workshop.contributions, around)
+    return with_tasks(picture, made, given.program, workshop, folder)
+
+
+def _write(path: Path, made: Report, given: Given, picture: Picture) -> None:
+    from mmrs_core.cli.report.page import page
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page(made, given, picture), encoding="utf-8")

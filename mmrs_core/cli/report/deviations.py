@@ -1,0 +1,92 @@
+"""How far robots were from where they should have been."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.cli.flights.planned import PlannedLeg
+from mmrs_core.cli.flights.values import Flown
+from mmrs_core.cli.report.nearest import nearest
+from mmrs_core.cli.report.values import Deviation, Place, Spread
+from mmrs_core.geometry.frames import Floats
+from mmrs_core.scene import Position
+
+AWAY = frozenset({"RETURN", "LAND", "EMERGENCY_AREA", "SURFACE", "STOP_THRUST"})
+"""Responses by which a robot leaves its way; it is on it again once it is near it again."""
+BACK = 2.0
+"""Metres from the planned way within which a robot that was away is back on it."""
+_ON_GROUND = tuple((BEHAVIOUR, name) for name in ("Start", "Stop", "Recharge"))
+
+
+def deviation_of(
+    flown: Flown, legs: Sequence[PlannedLeg], place_of: Callable[[Position], Place]
+) -> Deviation | None:
+    """Return how far a robot was from its planned ways, over all fixes on them.
+
+    What a robot does by a policy belongs to no planned way. None where there is no fix on one.
+    """
+    parts = list(_by_leg(flown, legs))
+    if not parts:
+        return None
+    times = np.concatenate([part[1] for part in parts])
+    off = np.concatenate([part[2] for part in parts])
+    moves = [part[0] for part in parts for _ in part[1]]
+    positions = np.concatenate([part[3] for part in parts])
+    sideways, upwards = np.hypot(off[:, 0], off[:, 1]), np.abs(off[:, 2])
+    farthest, highest = int(sideways.argmax()), int(upwards.argmax())
+    east, north, up = positions[farthest].tolist()
+    return Deviation(
+        flown.robot,
+        len(times),
+        _spread(sideways),
+        _spread(upwards),
+        place_of((east, north, up)),
+        float(times[farthest]),
+        moves[farthest],
+        float(times[highest]),
+        moves[highest],
+    )
+
+
+def deviations_over_time(flown: Flown, legs: Sequence[PlannedLeg]) -> list[tuple[Floats, Floats]]:
+    """Return (times, metres sideways) of each planned way, for a chart."""
+    return [(times, np.hypot(off[:, 0], off[:, 1])) for _, times, off, _ in _by_leg(flown, legs)]
+
+
+def _by_leg(flown: Flown, legs: Sequence[PlannedLeg]) -> Iterator[tuple[str, Floats, Floats, Floats]]:
+    """Yield (move, times, offsets, positions) of each leg that fixes are on."""
+    track = flown.track
+    left = [e.time for e in flown.of_kind("decision") if e.content.get("response") in AWAY]
+    for leg in legs:
+        if not leg.way or any(leg.move.is_a(kind) for kind in _ON_GROUND):
+            continue
+        inside = slice(*np.searchsorted(track.times, [leg.begin, leg.end], side="left"))
+        times, positions = track.times[inside], track.positions[inside]
+        if not len(times):
+            continue
+        off = positions - nearest(positions, np.array(leg.way))[0]
+        on = _on_way(times, off, [time for time in left if leg.begin <= time <= leg.end])
+        if on.any():
+            yield leg.move.id, times[on], off[on], positions[on]
+
+
+def _on_way(times: Floats, off: Floats, left: Sequence[float]) -> NDArray[np.bool_]:
+    on = np.ones(len(times), dtype=bool)
+    away = np.linalg.norm(off, axis=1) > BACK
+    for time in left:
+        after = np.flatnonzero((times >= time) & away)
+        if len(after):
+            back = np.flatnonzero(~away[after[0] :])
+            until = int(after[0] + back[0]) if len(back) else len(times)
+            on[after[0] : until] = False
+            on[(times >= time) & (times <= times[after[0]])] = False
+    return on
+
+
+def _spread(values: Floats) -> Spread:
+    median, most = np.quantile(values, [0.5, 0.95])
+    return Spread(float(median), float(most), float(values.max()))

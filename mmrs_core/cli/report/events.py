@@ -1,0 +1,78 @@
+"""What people must know of a flight: faults, decisions, orders, and what vehicles warned of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from mmrs_core.behaviour.blackbox import Entry, number_of
+from mmrs_core.cli.figures import quantity
+from mmrs_core.cli.flights.fixes import Zero
+from mmrs_core.cli.flights.values import Flown
+from mmrs_core.cli.report.privacy import without_secrets
+from mmrs_core.cli.report.values import Event, Place, Reading
+from mmrs_core.scene import Position
+
+MOST_TEXTS = 50
+"""How many warnings of one vehicle are told."""
+_WARNINGS = frozenset({"EMERGENCY", "ALERT", "CRITICAL", "ERROR", "WARNING"})
+
+
+def events_of(flown: Flown) -> tuple[Event, ...]:
+    """Return everything that people must know of one robot, by time."""
+    return tuple(sorted(_events(flown), key=lambda event: event.time))
+
+
+def readings_of(flown: Flown, zero: Zero, place_of: Callable[[Position], Place]) -> Iterator[Reading]:
+    """Yield what a robot has measured and reported, in order."""
+    for entry in flown.entries:
+        if entry.kind in ("measured", "reported"):
+            at = zero.position(entry.content.get("place"))
+            at = at if at is not None else flown.track.at(entry.time)
+            where = place_of(at) if at is not None else None
+            name, content = _words(entry, "name"), _content(entry.content.get("content"))
+            yield Reading(flown.robot, entry.time, entry.kind, name, content, where)
+
+
+def _events(flown: Flown) -> Iterator[Event]:
+    for record in flown.records:
+        if record.label == "fault":
+            yield Event(flown.robot, record.time, "fault", record.detail, f"at move {record.move}")
+    for entry in flown.of_kind("decision"):
+        yield Event(flown.robot, entry.time, "decision", _words(entry, "what"), _decided(entry))
+    for entry in flown.of_kind("order"):
+        yield Event(flown.robot, entry.time, "order", _words(entry, "order"), _confirmed(entry))
+    texts = [entry for entry in flown.of_kind("text") if str(entry.content.get("severity")) in _WARNINGS]
+    for entry in texts[:MOST_TEXTS]:
+        yield Event(flown.robot, entry.time, "text", _words(entry, "text"), _words(entry, "severity").lower())
+    if len(texts) > MOST_TEXTS:
+        more = f"{len(texts) - MOST_TEXTS} more warnings of the vehicle"
+        yield Event(flown.robot, texts[MOST_TEXTS].time, "text", more, "left out here")
+
+
+def _decided(entry: Entry) -> str:
+    why, response = _words(entry, "why"), _words(entry, "response")
+    return f"{why}; response: {response}" if why else f"response: {response}"
+
+
+def _confirmed(entry: Entry) -> str:
+    confirmed, seconds = entry.content.get("confirmed"), number_of(entry.content.get("seconds"))
+    after = f" after {quantity(seconds, 's')}" if seconds is not None else ""
+    if isinstance(confirmed, bool) or confirmed is None:
+        return f"confirmed{after}" if confirmed else "not confirmed"
+    return f"{without_secrets(str(confirmed))}{after}"
+
+
+def _words(entry: Entry, name: str) -> str:
+    value = entry.content.get(name)
+    return without_secrets(str(value)) if value is not None else ""
+
+
+def _content(content: object) -> str:
+    if isinstance(content, Mapping):
+        return without_secrets(", ".join(f"{name} {_told(value)}" for name, value in content.items()))
+    return without_secrets(_told(content))
+
+
+def _told(value: object) -> str:
+    number = number_of(value)
+    return "not known" if value is None else f"{number:g}" if number is not None else str(value)

@@ -1,0 +1,278 @@
+"""The tables of a report."""
+
+from __future__ import annotations
+
+from mmrs_core.cli.figures import clock, quantity
+from mmrs_core.cli.preview.markup import element, text
+from mmrs_core.cli.report.tables import Markup, badge, folded, section, table
+from mmrs_core.cli.report.values import Approach, Event, Report, Status, TaskReport
+from mmrs_core.cli.report.words import (
+    UNKNOWN,
+    level,
+    metres,
+    more_or_less,
+    percent,
+    place,
+    seconds,
+    span,
+)
+
+_KINDS = {
+    Status.DONE: "good",
+    Status.PART: "fair",
+    Status.NOT_DONE: "bad",
+    Status.NOT_CHOSEN: "none",
+}
+
+
+def tasks(report: Report) -> str:
+    """Return what was asked and what was achieved."""
+    rows = [
+        (task.name, _status(task), ", ".join(task.robots) or "none", span(task.planned), _flown(task))
+        for task in report.tasks
+    ]
+    head = ("task", "achieved", "robots", "planned", "flown")
+    note = "Parts are of the planned working time of the moves that serve a task."
+    return section("Tasks", table(head, rows) if rows else "", note=note)
+
+
+def _status(task: TaskReport) -> Markup:
+    words = f"{task.status.value}: {percent(task.part)}" if task.status is Status.PART else task.status.value
+    bar = element("i", {"style": f"width: {100 * task.part:.1f}%"}, "\u200b")
+    part = element("span", {"class": "part"}, bar) if task.status is Status.PART else ""
+    return Markup(badge(words, _KINDS[task.status]) + part)
+
+
+def _flown(task: TaskReport) -> str:
+    if task.flown is None:
+        return "never begun"
+    return span(task.flown)
+
+
+def robots(report: Report) -> str:
+    """Return each robot as a whole."""
+    rows = [
+        (
+            robot.robot,
+            robot.type_name,
+            badge(robot.ending, "good" if robot.ending == "to its end" else "bad"),
+            f"{robot.moves[0]} of {robot.moves[1]}",
+            f"{metres(robot.way)} of {metres(robot.planned_way)}",
+            f"{seconds(robot.time)} of {seconds(robot.planned_time)}",
+        )
+        for robot in report.robots
+    ]
+    head = ("robot", "type", "program", "moves ended", "way, of planned", "time, of planned")
+    return section("Robots", table(head, rows))
+
+
+def deviations(report: Report) -> str:
+    """Return how far robots were off their ways."""
+    rows = [
+        (
+            each.robot,
+            metres(each.sideways.median),
+            metres(each.sideways.most),
+            f"{metres(each.sideways.largest)} at {clock(each.time)}, move {each.move}",
+            place(each.where),
+            f"{metres(each.upwards.median)} / {metres(each.upwards.most)}",
+            f"{metres(each.upwards.largest)} at {clock(each.high_time)}, move {each.high_move}",
+            str(each.fixes),
+        )
+        for each in report.deviations
+    ]
+    head = (
+        "robot",
+        "sideways, half under",
+        "95 % under",
+        "largest",
+        "there",
+        "height, half / 95 % under",
+        "largest",
+        "fixes",
+    )
+    note = (
+        "From each fix to the nearest point of the way that its move should have gone; fixes outside of"
+        " moves, on the ground, and while a policy led the robot elsewhere do not count."
+        " Errors of the vehicle's own position are not in these figures."
+    )
+    return section("Planned against flown", table(head, rows) if rows else "", note=note)
+
+
+def approaches(report: Report) -> str:
+    """Return how near robots came to areas."""
+    ordered = sorted(report.approaches, key=lambda each: each.kept - (each.required or 0.0))
+    rows = [
+        (
+            each.robot,
+            f"{each.area} ({each.use})",
+            metres(each.kept) if each.kept > 0 else "inside",
+            metres(each.required),
+            _kept(each),
+            clock(each.time),
+            place(each.where),
+        )
+        for each in ordered
+    ]
+    head = ("robot", "area", "smallest distance", "required", "", "when", "where")
+    note = (
+        "Measured in all three dimensions to the shapes as drawn, straight between fixes."
+        " Required: the area's safety distance, half the robot's diagonal and the position error."
+    )
+    return section("Distances to forbidden areas and obstacles", table(head, rows) if rows else "", note=note)
+
+
+def _kept(approach: Approach) -> Markup:
+    if approach.required is None:
+        return badge(UNKNOWN, "none")
+    return badge("too near", "bad") if approach.too_near else badge("kept", "good")
+
+
+def energies(report: Report) -> str:
+    """Return what robots used of their batteries."""
+    rows = [
+        (
+            each.robot,
+            level(each.planned, each.capacity),
+            level(each.used, each.capacity),
+            f"{level(each.lowest)} at {clock(each.lowest_at)}" if each.lowest_at is not None else UNKNOWN,
+            level(each.planned_lowest),
+            level(each.end),
+            _reserve(each.lowest, each.reserve),
+        )
+        for each in report.energies
+    ]
+    head = ("robot", "planned use", "used", "lowest", "lowest as planned", "at the end", "reserve")
+    note = "Parts of a full battery; charges and changes of batteries count as new ones."
+    return section("Energy", table(head, rows), note=note)
+
+
+def _reserve(lowest: float | None, reserve: float) -> Markup:
+    words = f"{percent(reserve)} to be left"
+    if lowest is None:
+        return badge(words, "none")
+    return (
+        badge(f"{words}: kept", "good") if lowest >= reserve - 0.005 else badge(f"{words}: not kept", "bad")
+    )
+
+
+def waits(report: Report) -> str:
+    """Return who waited for whom."""
+    rows = [
+        (
+            each.robot,
+            each.move,
+            ", ".join(each.slots),
+            ", ".join(each.setters) or UNKNOWN,
+            f"{clock(each.since)} to {clock(each.until) if each.until is not None else 'the end'}",
+            seconds(each.seconds),
+            seconds(each.planned) if each.planned is not None else UNKNOWN,
+        )
+        for each in report.waits
+    ]
+    head = ("robot", "after move", "for slots", "set by", "when", "waited", "planned")
+    return section("Waits", table(head, rows) if rows else "")
+
+
+def events(report: Report) -> str:
+    """Return faults, decisions, orders and warnings."""
+    rows = [(clock(each.time), each.robot, _event(each), each.what, each.why) for each in report.events]
+    head = ("time", "robot", "", "what", "why, and what was done")
+    shown = table(head, rows) if rows else element("p", None, "None.")
+    return section("Faults, decisions, orders, warnings", shown)
+
+
+def _event(event: Event) -> Markup:
+    words = {"text": "vehicle warns"}.get(event.kind, event.kind)
+    return badge(words, {"fault": "bad", "decision": "fair", "text": "fair"}.get(event.kind, "none"))
+
+
+def photos(report: Report) -> str:
+    """Return photos, those first that nobody confirmed."""
+    missing = [photo for photo in report.photos if photo.state == "not confirmed"]
+    rest = [photo for photo in report.photos if photo.state != "not confirmed"]
+    rows = [
+        (
+            "" if each.index is None else str(each.index),
+            each.robot,
+            clock(each.time),
+            badge(each.state, {"taken": "good", "not confirmed": "bad"}.get(each.state, "none")),
+            each.task,
+            place(each.where),
+        )
+        for each in (*missing, *rest)
+    ]
+    if not rows:
+        return ""
+    words = f"{len(rest)} photos" if report.simulated else f"{len(rest)} photos were confirmed"
+    words += f"; {len(missing)} were ordered and not confirmed" if missing else ""
+    shown = table(("number", "robot", "time", "", "task", "place"), rows)
+    note = "Confirmed: the vehicle said that the camera took it. Nobody has looked at the pictures."
+    return section("Photos", element("p", None, text(words + ".")), folded("all photos", shown), note=note)
+
+
+def readings(report: Report) -> str:
+    """Return what was measured and reported."""
+    rows = [
+        (clock(each.time), each.robot, each.kind, each.name, each.content, place(each.where))
+        for each in report.readings
+    ]
+    head = ("time", "robot", "", "name", "content", "place")
+    return section("Measurements and reports", table(head, rows) if rows else "")
+
+
+def links(report: Report) -> str:
+    """Return how well robots could be heard."""
+    rows = [
+        (
+            each.robot,
+            ", ".join(part for part in (each.vehicle, each.by) if part) or UNKNOWN,
+            str(each.fixes),
+            f"{each.gaps}, {seconds(each.silent)} in all" if each.gaps else "none",
+            seconds(each.longest) if each.gaps else "",
+            ", ".join(f"{count} {name}" for name, count in sorted(each.dropped.items())) or "none counted",
+            f"{each.commands}, {each.repeated} repeated, {each.refused} not accepted",
+            quantity(each.slowest, "s") if each.slowest is not None else "",
+        )
+        for each in report.links
+    ]
+    head = (
+        "robot",
+        "vehicle, link",
+        "fixes",
+        "gaps",
+        "longest",
+        "frames dropped",
+        "commands",
+        "slowest answer",
+    )
+    return section("Links", table(head, rows) if rows else "")
+
+
+def moves(report: Report) -> str:
+    """Return every move, folded."""
+    rows = [
+        (
+            each.robot,
+            each.move,
+            each.kind,
+            each.task,
+            clock(each.entered),
+            seconds(each.flown),
+            seconds(each.planned),
+            more_or_less(each.flown, each.planned) if each.ended else "not ended",
+        )
+        for each in report.moves
+    ]
+    head = ("robot", "move", "kind", "task", "since", "took", "planned", "more")
+    return section("Moves", folded(f"all {len(rows)} moves", table(head, rows))) if rows else ""
+
+
+def unknown(report: Report) -> str:
+    """Return what is not known, or was taken for granted."""
+    notes = [
+        *(f"the logs are no run of this behaviour: {each}" for each in report.complaints),
+        *report.unknown,
+    ]
+    items = element("ul", None, (element("li", None, f"<bdi>{text(note)}</bdi>") for note in notes))
+    return section("What is not known, and what was taken for granted", items if notes else "")

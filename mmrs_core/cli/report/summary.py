@@ -1,0 +1,64 @@
+"""The first words of a report: how it went, at a glance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_core.cli.figures import clock
+from mmrs_core.cli.preview.markup import element, text
+from mmrs_core.cli.report.values import Report, Status
+from mmrs_core.cli.report.words import metres, percent
+
+
+def verdict(report: Report) -> str:
+    """Return one sentence on how it went, in its colour."""
+    words, kind = _verdict(report)
+    return element("p", {"class": f"verdict {kind}"}, text(words))
+
+
+def _verdict(report: Report) -> tuple[str, str]:
+    asked = [task for task in report.tasks if task.status is not Status.NOT_CHOSEN]
+    done = sum(task.status is Status.DONE for task in asked)
+    faults = sum(event.kind == "fault" for event in report.events)
+    near = any(approach.too_near for approach in report.approaches)
+    tasks = f"{done} of {len(asked)} tasks done" if asked else "the behaviour names no tasks"
+    early = f"{faults} robot{'s' * (faults != 1)} ended early" if faults else ""
+    close = "a required distance was not kept" if near else ""
+    strange = "the logs are no run of this behaviour" if report.complaints else ""
+    unfinished = "not all programs came to their end" if report.outcome != "success" and not faults else ""
+    words = "; ".join(each for each in (tasks, early, unfinished, close, strange) if each)
+    if near or strange or (asked and not done):
+        return words, "bad"
+    return words, "good" if done == len(asked) and report.outcome == "success" else "fair"
+
+
+def tiles(report: Report) -> str:
+    """Return the figures that people ask for first."""
+    return element("dl", {"class": "tiles"}, (_tile(name, value) for name, value in _figures(report)))
+
+
+def _tile(name: str, value: str) -> str:
+    return element("div", None, element("dt", None, text(name)), element("dd", None, text(value)))
+
+
+def _figures(report: Report) -> Iterator[tuple[str, str]]:
+    yield "time", clock(report.duration)
+    ways = [robot.way for robot in report.robots if robot.way is not None]
+    yield "way of all robots", metres(sum(ways)) if len(ways) == len(report.robots) else "not known"
+    if report.deviations:
+        worst = max(report.deviations, key=lambda each: each.sideways.largest)
+        yield "farthest off the way", f"{metres(worst.sideways.largest)} ({worst.robot})"
+    judged = [each for each in report.approaches if each.required is not None]
+    if judged:
+        nearest = min(judged, key=lambda each: each.kept - (each.required or 0.0))
+        kept = f"{metres(nearest.kept)} of {metres(nearest.required)} required"
+        yield "nearest to what to keep off", f"{kept} ({nearest.robot}, {nearest.area})"
+    lowest = [(each.lowest, each.robot) for each in report.energies if each.lowest is not None]
+    if lowest:
+        part, robot = min(lowest)
+        yield "emptiest battery", f"{percent(part)} ({robot})"
+    if report.photos and not report.simulated:
+        taken = sum(photo.state == "taken" for photo in report.photos)
+        yield "photos confirmed", f"{taken} of {len(report.photos)}"
+    faults = sum(event.kind == "fault" for event in report.events)
+    yield "faults", str(faults) if faults else "none"
