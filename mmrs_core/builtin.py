@@ -11,6 +11,7 @@ from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.hookspecs import hookimpl
 
 
@@ -52,6 +53,14 @@ def mmrs_checks() -> Iterable[Check]:
     from mmrs_core.analysis.checks import CHECKS
 
     return CHECKS
+
+
+@hookimpl
+def mmrs_device_actions() -> Iterable[DeviceWiring]:
+    """Contribute how cameras, servos, relays and other devices are wired."""
+    from mmrs_core.mavlink.wiring import WIRINGS
+
+    return tuple(WIRINGS.values())
 
 
 @hookimpl

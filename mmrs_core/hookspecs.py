@@ -21,6 +21,7 @@ from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.languages.evolution.migration import Migration
 from mmrs_core.languages.registry import MetamodelSource
 
@@ -69,6 +70,11 @@ def mmrs_move_kinds() -> Iterable[MoveKind]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_checks() -> Iterable[Check]:  # type: ignore[empty-body]
     """Contribute checks of behaviours; their names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_device_actions() -> Iterable[DeviceWiring]:  # type: ignore[empty-body]
+    """Contribute how actions of devices become MAVLink commands; one wiring for a device property."""
 
 
 @hookspec

@@ -5,7 +5,7 @@ Stages print nothing, read no clock and no environment; only `write` and `save` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -17,10 +17,13 @@ if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.behaviour.steps import StepRecord
     from mmrs_core.contributions.checks import Verdict
+    from mmrs_core.contributions.execution import BackendInput, Condition
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
+    from mmrs_core.runtime.interpreter import Ending
+    from mmrs_core.runtime.live import Venture
     from mmrs_core.runtime.run import Run
     from mmrs_core.scene import Area, Plan, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
@@ -198,8 +201,8 @@ def render(
         UnreadableError: if there is no such folder of templates.
         MmrsError: if that folder holds something unknown or broken.
     """
-    from mmrs_core.generation.overrides import overrides_in
     from mmrs_core.contributions.targets import TargetInput
+    from mmrs_core.generation.overrides import overrides_in
     from mmrs_core.generation.render import render as rendered
 
     chosen = _named("target", target, contributions.targets)
@@ -209,6 +212,7 @@ def render(
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
         areas=place.areas or (),
+        device_actions=contributions.device_actions,
     )
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
@@ -261,7 +265,6 @@ def simulate(
             behaviour holds what nobody contributed.
     """
     from mmrs_core.runtime.interpreter import Terms
-    from mmrs_core.runtime.run import assumed
     from mmrs_core.runtime.run import simulate as simulated
 
     return simulated(
@@ -271,11 +274,72 @@ def simulate(
         types=place.types,
         robot_kinds=contributions.robot_kinds,
         move_kinds=contributions.move_kinds,
-        conditions={**contributions.conditions, **assumed(assume or {})},
+        conditions=conditions_for(program, contributions, assume or {}, asks=False),
         environment=place.environment,
         areas=place.areas or (),
         terms=Terms(observe=observe),
     )
+
+
+def inputs_of(
+    program: Program,
+    place: Place,
+    contributions: Contributions,
+    *,
+    options: Mapping[str, str] | None = None,
+    robots: Collection[str] | None = None,
+) -> dict[str, BackendInput]:
+    """Return what the backends of a run may use, by robot.
+
+    Args:
+        options: of the backend.
+        robots: those that this process runs; None: all of the program's.
+
+    Raises:
+        UnsupportedError: if the type of a robot is not given.
+    """
+    from mmrs_core.runtime.run import inputs_of as found_inputs
+
+    found = found_inputs(
+        program,
+        types=place.types,
+        robot_kinds=contributions.robot_kinds,
+        move_kinds=contributions.move_kinds,
+        options=options or {},
+        environment=place.environment or {},
+        areas=place.areas or (),
+    )
+    return {id: each for id, each in found.items() if robots is None or id in robots}
+
+
+def conditions_for(
+    program: Program, contributions: Contributions, assume: Mapping[str, bool], *, asks: bool
+) -> dict[str, Condition]:
+    """Return what decides the Choices of a program: what is assumed, then what is contributed or standard.
+
+    Args:
+        assume: fixed answers, by condition identifier.
+        asks: whether there is an operator who answers questions.
+    """
+    from mmrs_core.runtime.conditions import asked_by, question_of, standard_conditions
+    from mmrs_core.runtime.run import assumed
+
+    asked = (each for each in asked_by(program) if asks or question_of(each) is None)
+    standard = standard_conditions(asked)
+    return {**standard, **contributions.conditions, **assumed(assume)}
+
+
+def run_live(
+    venture: Venture, backend: str, contributions: Contributions
+) -> Generator[StepRecord, None, Ending]:
+    """Yield the steps of a run in real time; see `mmrs_core.runtime.live.run_live`.
+
+    Raises:
+        UnsupportedError: if there is no such backend.
+    """
+    from mmrs_core.runtime.live import run_live as run
+
+    return run(venture, _named("backend", backend, contributions.backends))
 
 
 def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Contributed:

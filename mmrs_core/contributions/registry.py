@@ -16,6 +16,7 @@ from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.languages.evolution.migration import Migration, chains
 from mmrs_core.languages.registry import MetamodelSource, Registry, registry_with
@@ -37,6 +38,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "robot_kinds": lambda kind: kind.name,
     "move_kinds": lambda kind: "#//".join(kind.metaclass),
     "checks": lambda check: check.name,
+    "device_actions": lambda wiring: wiring.property,
     "targets": lambda target: target.name,
     "backends": lambda backend: backend.name,
     "conditions": lambda condition: condition.identifier,
@@ -123,6 +125,11 @@ class Contributions:
     def checks(self) -> tuple[Check, ...]:
         """Return the checks of behaviours."""
         return tuple(self._by("checks", lambda check: check.name).values())
+
+    @cached_property
+    def device_actions(self) -> Mapping[str, DeviceWiring]:
+        """Return how devices are wired, by the property that says so."""
+        return self._by("device_actions", lambda wiring: wiring.property)
 
     @cached_property
     def targets(self) -> Mapping[str, Target]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.scene import Area, Name, RobotType
 
 
@@ -33,6 +34,7 @@ class TargetInput:
     Attributes:
         types: robot types by name.
         areas: of the context as drawn, empty where no context was given.
+        device_actions: how devices are wired, by property; a target for MAVLink knows the core's anyway.
     """
 
     program: Program
@@ -40,6 +42,7 @@ class TargetInput:
     robot_kinds: Mapping[Name, RobotKind]
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] = ()
+    device_actions: Wirings = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

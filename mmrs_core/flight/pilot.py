@@ -181,7 +181,8 @@ class Pilot:
 
     def _do(self, action: Action) -> None:
         if isinstance(action, Operate):
-            self._vehicle.operate(action.command, action.params)
+            for command, params in ((action.command, action.params), *action.more):
+                self._vehicle.operate(command, params)
             self._vehicle.rest(action.seconds)
         elif isinstance(action, Measure):
             found = self._vehicle.measure(action.value)

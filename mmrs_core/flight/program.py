@@ -54,12 +54,14 @@ class Look:
         angle: at 90 the target is on the device's right side, degrees.
         mount: where the device points when the robot looks north, degrees clockwise.
         gimbal: whether the device turns by itself, so that the robot need not.
+        device: number of the gimbal; 0: the first, or all.
     """
 
     at: Place | Object
     angle: float = 0.0
     mount: float = 0.0
     gimbal: bool = False
+    device: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,13 +153,21 @@ class Report:
 
 @dataclass(frozen=True, slots=True)
 class Operate:
-    """Have a device do something: a MAVLink command with its seven parameters, and how long it takes."""
+    """Have a device do something: a MAVLink command with its parameters, and how long it takes.
+
+    Attributes:
+        more: further commands with their parameters, which follow at once.
+        confirmed: whether the vehicle promises to tell each image that it takes (CAMERA_IMAGE_CAPTURED
+            or CAMERA_FEEDBACK), so that silence is a fault.
+    """
 
     device: str
     action: str
     command: int
     params: tuple[float, ...]
     seconds: float = 0.0
+    more: tuple[tuple[int, tuple[float, ...]], ...] = ()
+    confirmed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,11 +81,11 @@ class Steering:
     def _point(self, look: Look | None) -> None:
         if look is not None and look.gimbal and isinstance(look.at, Geographic):
             at = (look.at.latitude, look.at.longitude, look.at.height)
-            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, 0, 0, 0, 0, *at)
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, look.device, 0, 0, 0, *at)
 
     def _unpoint(self, look: Look | None) -> None:
         if look is not None and look.gimbal:
-            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE)
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE, look.device)
 
     def _steer(self, place: Place, look: Look | None) -> None:
         here = self._telemetry.here()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.contributions.wiring import Sampled, Unwired, Wired
 from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.mavlink.wiring import Sampled, Unwired, Wired, wiring_of
 
 DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
 FEEDBACK = (BEHAVIOUR, "Feedback")
@@ -20,13 +20,23 @@ def action_of(action: Action, context: RobotContext) -> Call:
         return Call("Report", (action.name, action.parameters))
     if not action.is_a(DEVICE_ACTION):
         return Call("NoEffect", (action.name, f"{action.metaclasses[0][1]} is not known to this target"))
-    wiring = wiring_of(action, context.type)
+    wiring = context.wiring(action)
     if isinstance(wiring, Wired):
-        params = tuple(map(float, wiring.params))
-        return Call("Operate", (action.device, action.name, wiring.command, params, wiring.seconds))
+        return _operate(action, wiring)
     if isinstance(wiring, Sampled):
         return Call("Measure", (action.device, action.name, wiring.value, wiring.seconds))
     return Call("NoEffect", (action.name, wiring.reason))
+
+
+def _operate(action: Action, wiring: Wired) -> Call:
+    named: list[tuple[str, object]] = []
+    if wiring.more:
+        more = tuple((number, tuple(map(float, params))) for number, params in wiring.more)
+        named.append(("more", more))
+    if wiring.confirmed:
+        named.append(("confirmed", True))
+    params = tuple(map(float, wiring.params))
+    return Call("Operate", (action.device, action.name, wiring.command, params, wiring.seconds), tuple(named))
 
 
 def action_losses(move: Move, context: RobotContext) -> tuple[str, ...]:
@@ -34,7 +44,7 @@ def action_losses(move: Move, context: RobotContext) -> tuple[str, ...]:
     losses = []
     for action in (*move.before, *move.after):
         if action.is_a(DEVICE_ACTION):
-            wiring = wiring_of(action, context.type)
+            wiring = context.wiring(action)
             if isinstance(wiring, Unwired):
                 losses.append(f"{context.label(move)}: action '{action.name}': {wiring.reason}")
         elif not (action.is_a(NOTIFY) or action.is_a(FEEDBACK)):

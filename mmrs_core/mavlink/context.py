@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from mmrs_core.behaviour.program import Move, RobotProgram
+from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.wiring import Wiring, Wirings
 from mmrs_core.mavlink.earth import degrees_of, metres
 from mmrs_core.mavlink.vehicles import VehicleClass, speed_of, vehicle_class
+from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Frame, Point, Position, RobotType
 
 
@@ -20,6 +22,7 @@ class RobotContext:
         type: None where it was not given.
         zero: height of the robot's own zero above the origin, metres: its home, or the water surface.
         degrees: latitude and longitude by (east, north); empty for local behaviours.
+        wirings: those of plug-ins.
     """
 
     robot: RobotProgram
@@ -28,6 +31,11 @@ class RobotContext:
     frame: Frame
     zero: float
     degrees: Mapping[Point, tuple[float, float]]
+    wirings: Wirings
+
+    def wiring(self, action: Action) -> Wiring:
+        """Return how a device action of the robot is carried out."""
+        return wiring_of(action, self.type, self.wirings)
 
     def height(self, position: Position) -> float:
         """Return a position's height above the robot's own zero, metres."""
@@ -64,7 +72,7 @@ def context_of(
     home = robot.home[2] if robot.home is not None else 0.0
     zero = frame.surface if vehicle.dives else home
     degrees = dict(zip(points, degrees_of(points, frame), strict=True)) if geographic else {}
-    return RobotContext(robot, type, vehicle, frame, zero, degrees)
+    return RobotContext(robot, type, vehicle, frame, zero, degrees, input.device_actions)
 
 
 def _points(robot: RobotProgram) -> list[Point]:

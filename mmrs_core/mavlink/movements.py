@@ -126,7 +126,15 @@ def _look(heading: Heading | None, context: RobotContext) -> Call | None:
         named.append(("mount", float(properties["mount.yaw"])))
     if "mavlink.gimbal" in properties:
         named.append(("gimbal", True))
+        if device := gimbal_of(heading, context):
+            named.append(("device", device))
     return Call("Look", (_target(heading.target, context),), tuple(named))
+
+
+def gimbal_of(heading: Heading, context: RobotContext) -> int:
+    """Return the number of the gimbal that a heading is of; 0 where the property gives none."""
+    number = _properties(heading, context).get("mavlink.gimbal", "")
+    return int(number) if number.isdecimal() else 0
 
 
 def _properties(heading: Heading, context: RobotContext) -> Mapping[str, str]:

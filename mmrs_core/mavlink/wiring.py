@@ -3,148 +3,149 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import isfinite
 
 from mmrs_core.behaviour.program import Action
+from mmrs_core.contributions.wiring import DeviceWiring, Sampled, Unwired, Wired, Wiring, Wirings
+from mmrs_core.mavlink import payloads
+from mmrs_core.mavlink.words import number_in, said, unsaid
 from mmrs_core.scene import Device, RobotType
+
+__all__ = ["Sampled", "Unwired", "Wired", "wiring_of"]
 
 IMAGE_START_CAPTURE, DIGICAM_CONTROL, SET_SERVO, SET_RELAY, GRIPPER = 2000, 203, 183, 181, 211
 REPEAT_RELAY = 182
 LONGEST_VALUE_NAME = 10
+MOST_PARAMETERS = 7
 
 
-@dataclass(frozen=True, slots=True)
-class Wired:
-    """A MAVLink command with its parameters, at most seven, and the seconds that it takes."""
+def wiring_of(action: Action, type: RobotType | None, wirings: Wirings | None = None) -> Wiring:
+    """Return how a device action of a robot of that type is carried out.
 
-    command: int
-    params: tuple[float, ...]
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Sampled:
-    """A value that the vehicle publishes by name, and the seconds that measuring takes."""
-
-    value: str
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Unwired:
-    """Why there is no way to have a device do something."""
-
-    reason: str
-
-
-def wiring_of(action: Action, type: RobotType | None) -> Wired | Sampled | Unwired:
-    """Return how a device action of a robot of that type is carried out."""
+    Args:
+        action: of a device.
+        type: None where it was not given.
+        wirings: those of plug-ins, beside the core's own.
+    """
     if type is None:
         return Unwired("the robot's type is not given")
     device = type.devices.get(action.device)
     if device is None:
         return Unwired(f"type {type.name!r} has no device {action.device!r}")
-    known = device.actions.get(action.name)
-    seconds = known.duration if known else 0.0
-    if f"mavlink.command.{action.name}" in device.properties:
-        return _explicit(device, action, seconds)
-    if "mavlink.value" in device.properties:
-        return _sampled(device, seconds)
-    for key, wire in _WIRES.items():
-        if key in device.properties:
-            return wire(device, action, seconds)
+    return _finished(_chosen(action, device, {**WIRINGS, **(wirings or {})}), action, device)
+
+
+def _chosen(action: Action, device: Device, wirings: Wirings) -> Wiring:
+    """Return the only wiring that fits: one for this action alone goes before one for the device."""
+    present = [each for name, each in sorted(wirings.items()) if name in device.properties]
+    special = [each for name, each in sorted(wirings.items()) if f"{name}.{action.name}" in device.properties]
+    for some in (special, present):
+        found = [(each, wiring) for each in some if (wiring := each.wire(action, device)) is not None]
+        if len(found) > 1:
+            names = " and ".join(each.property for each, _ in found)
+            return Unwired(f"device {device.id!r}: {action.name!r} is wired by {names}, which is ambiguous")
+        if found:
+            return found[0][1]
+    if present:
+        names = " and ".join(each.property for each in present)
+        return Unwired(f"device {device.id!r}: {names} does not say what {action.name!r} is")
     return Unwired(f"device {device.id!r} has no property that says how it is wired, such as mavlink.camera")
 
 
-def _explicit(device: Device, action: Action, seconds: float) -> Wired | Unwired:
+def _finished(wiring: Wiring, action: Action, device: Device) -> Wiring:
+    """Return a wiring with its seconds, if its numbers are such as vehicles take."""
+    if isinstance(wiring, Unwired):
+        return wiring
+    for _, params in _commands(wiring):
+        if len(params) > MOST_PARAMETERS:
+            return Unwired(f"device {device.id!r}: {action.name!r} has more than seven parameters")
+        if not all(map(isfinite, params)):
+            return Unwired(f"device {device.id!r}: {action.name!r} has a parameter that is not finite")
+    if wiring.seconds is not None:
+        return wiring
+    known = device.actions.get(action.name)
+    return replace(wiring, seconds=known.duration if known else 0.0)
+
+
+def _commands(wiring: Wired | Sampled) -> Iterator[tuple[int, tuple[float, ...]]]:
+    if isinstance(wiring, Wired):
+        yield wiring.command, wiring.params
+        yield from wiring.more
+
+
+def _explicit(action: Action, device: Device) -> Wiring | None:
     key = f"mavlink.command.{action.name}"
+    if key not in device.properties:
+        return None
     numbers = re.split(r"[\s,]+", device.properties[key].strip())
     try:
-        command, params = int(numbers[0]), tuple(float(each) for each in numbers[1:])
+        return Wired(int(numbers[0]), tuple(float(each) for each in numbers[1:]))
     except ValueError:
         return Unwired(f"device {device.id!r}: {key} is no command number with its parameters")
-    if not all(map(isfinite, params)):
-        return Unwired(f"device {device.id!r}: {key} holds a parameter that is not finite")
-    if len(params) > 7:
-        return Unwired(f"device {device.id!r}: {key} has more than seven parameters")
-    return Wired(command, params, seconds)
 
 
-def _sampled(device: Device, seconds: float) -> Sampled | Unwired:
-    name = device.properties["mavlink.value"]
+def _sampled(action: Action, device: Device) -> Wiring | None:
+    name = device.properties.get("mavlink.value", "")
     if not (name.isascii() and name.isprintable() and 0 < len(name) <= LONGEST_VALUE_NAME):
         return Unwired(f"device {device.id!r}: mavlink.value is not one to ten ASCII characters")
-    return Sampled(name, seconds)
+    return Sampled(name)
 
 
-def _camera(device: Device, action: Action, seconds: float) -> Wired | Unwired:
-    number = _number(device, "mavlink.camera")
-    if isinstance(number, Unwired):
-        return number
+def _camera(action: Action, device: Device) -> Wiring | None:
+    if (number := number_in(device, "mavlink.camera")) is None:
+        return unsaid(device, "mavlink.camera")
+    confirmed = device.properties.get("mavlink.camera.confirms", "no") == "yes"
     if device.properties.get("mavlink.camera.command", "image") == "digicam":
-        return Wired(DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0), seconds)
-    return Wired(IMAGE_START_CAPTURE, (number, 0.0, 1.0), seconds)
+        return Wired(DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0), confirmed=confirmed)
+    return Wired(IMAGE_START_CAPTURE, (number, 0.0, 1.0), confirmed=confirmed)
 
 
-def _servo(device: Device, action: Action, seconds: float) -> Wired | Unwired:
-    return _switched(device, action, seconds, "mavlink.servo", SET_SERVO, "pwm", {})
+def _servo(action: Action, device: Device) -> Wiring | None:
+    return _switched(action, device, "mavlink.servo", SET_SERVO, "pwm", {})
 
 
-def _relay(device: Device, action: Action, seconds: float) -> Wired | Unwired:
-    words = {"on": 1.0, "off": 0.0}
-    found = _switched(device, action, seconds, "mavlink.relay", SET_RELAY, "state", words)
-    number = _number(device, "mavlink.relay")
-    if isinstance(found, Wired) or isinstance(number, Unwired) or _says_what(device, action, "mavlink.relay"):
+def _relay(action: Action, device: Device) -> Wiring | None:
+    key, words = "mavlink.relay", {"on": 1.0, "off": 0.0}
+    found = _switched(action, device, key, SET_RELAY, "state", words)
+    number = number_in(device, key)
+    if isinstance(found, Wired) or number is None or said(action, device, key, "state") != action.name:
         return found
-    return Wired(REPEAT_RELAY, (number, 1.0, 2.0 * seconds), seconds)
+    known = device.actions.get(action.name)
+    return Wired(REPEAT_RELAY, (number, 1.0, 2.0 * (known.duration if known else 0.0)))
 
 
-def _says_what(device: Device, action: Action, key: str) -> bool:
-    return "state" in dict(action.parameters) or f"{key}.{action.name}" in device.properties
-
-
-def _gripper(device: Device, action: Action, seconds: float) -> Wired | Unwired:
-    words = {"grab": 1.0, "release": 0.0}
-    return _switched(device, action, seconds, "mavlink.gripper", GRIPPER, "state", words)
+def _gripper(action: Action, device: Device) -> Wiring | None:
+    return _switched(action, device, "mavlink.gripper", GRIPPER, "state", {"grab": 1.0, "release": 0.0})
 
 
 def _switched(
-    device: Device,
-    action: Action,
-    seconds: float,
-    key: str,
-    command: int,
-    parameter: str,
-    words: Mapping[str, float],
+    action: Action, device: Device, key: str, command: int, parameter: str, words: Mapping[str, float]
 ) -> Wired | Unwired:
-    number = _number(device, key)
-    if isinstance(number, Unwired):
-        return number
-    given = dict(action.parameters).get(parameter, device.properties.get(f"{key}.{action.name}", action.name))
-    value = words.get(given)
-    if value is None:
-        try:
-            value = float(given)
-        except ValueError:
-            return Unwired(
-                f"device {device.id!r}: neither parameter {parameter} nor property {key}.{action.name} says"
-                f" what {action.name!r} sets"
-            )
-    return Wired(command, (number, value), seconds)
-
-
-def _number(device: Device, key: str) -> float | Unwired:
+    if (number := number_in(device, key)) is None:
+        return unsaid(device, key)
+    given = said(action, device, key, parameter)
     try:
-        return float(int(device.properties[key]))
+        return Wired(command, (number, words[given] if given in words else float(given)))
     except ValueError:
-        return Unwired(f"device {device.id!r}: {key} is no whole number")
+        return Unwired(
+            f"device {device.id!r}: neither parameter {parameter} nor property {key}.{action.name} says"
+            f" what {action.name!r} sets"
+        )
 
 
-_WIRES: Mapping[str, Callable[[Device, Action, float], Wired | Unwired]] = {
-    "mavlink.camera": _camera,
-    "mavlink.servo": _servo,
-    "mavlink.relay": _relay,
-    "mavlink.gripper": _gripper,
-}
+_CORE = (
+    DeviceWiring("mavlink.command", "the command that mavlink.command.ACTION holds", _explicit),
+    DeviceWiring("mavlink.value", "records the next value that the vehicle publishes by name", _sampled),
+    DeviceWiring("mavlink.camera", "takes one image", _camera),
+    DeviceWiring("mavlink.servo", "sets a servo output", _servo),
+    DeviceWiring("mavlink.relay", "switches a relay", _relay),
+    DeviceWiring("mavlink.gripper", "moves a gripper", _gripper),
+    DeviceWiring("mavlink.video", "begins or ends a video", payloads.video),
+    DeviceWiring("mavlink.trigger", "triggers a camera every so many metres", payloads.trigger),
+    DeviceWiring("mavlink.winch", "lets out or winds up a line", payloads.winch),
+    DeviceWiring("mavlink.gimbal", "points a gimbal", payloads.gimbal),
+)
+WIRINGS: Wirings = {wiring.property: wiring for wiring in _CORE}
+"""The core's own, by their property."""

@@ -64,6 +64,7 @@ def test_every_field_of_what_is_declared_is_told():
         rules,
         symbols,
         targets,
+        wiring,
     )
     from mmrs_core.languages.evolution.migration import Migration
 
@@ -75,6 +76,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_robot_kinds": rules.RobotKind,
         "mmrs_move_kinds": rules.MoveKind,
         "mmrs_checks": checks.Check,
+        "mmrs_device_actions": wiring.DeviceWiring,
         "mmrs_targets": targets.Target,
         "mmrs_backends": execution.BackendFactory,
         "mmrs_conditions": execution.Condition,

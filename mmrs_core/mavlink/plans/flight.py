@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping
 from math import atan2, degrees, dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.contributions.wiring import Wired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.mavlink.movements import turns_to
+from mmrs_core.mavlink.movements import gimbal_of, turns_to
 from mmrs_core.mavlink.plans import items as cmd
 from mmrs_core.mavlink.plans.items import Item
 from mmrs_core.mavlink.runs import CORNER_SECONDS
 from mmrs_core.mavlink.vehicles import ROVER
-from mmrs_core.mavlink.wiring import Wired, wiring_of
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
@@ -55,7 +55,7 @@ class Flight:
         self._context = context
         self._position: Position = context.robot.home or ORIGIN
         self._speed: float | None = None
-        self._looking = False
+        self._looking, self._gimbal = False, 0
         self._items: list[Item] = []
 
     def perform(self, move: Move, *, fluid: bool) -> None:
@@ -80,9 +80,10 @@ class Flight:
         self._items, self._speed, self._looking = [], None, False
 
     def _act(self, action: Action, move: Move) -> None:
-        wiring = wiring_of(action, self._context.type) if action.is_a(DEVICE_ACTION) else None
+        wiring = self._context.wiring(action) if action.is_a(DEVICE_ACTION) else None
         if isinstance(wiring, Wired):
-            self._add(wiring.command, move, *wiring.params)
+            for command, params in ((wiring.command, wiring.params), *wiring.more):
+                self._add(command, move, *params)
             if wiring.seconds and self._items:
                 self._add(cmd.LOITER_TIME, move, wiring.seconds, here=True)
 
@@ -134,9 +135,10 @@ class Flight:
         heading = move.heading if move.heading and turns_to(move.heading, self._context) else None
         position = heading.target.position if heading else None
         if position is not None:
-            self._items.append(Item(cmd.ROI_LOCATION, move, (), position))
+            self._gimbal = gimbal_of(heading, self._context) if heading else 0
+            self._items.append(Item(cmd.ROI_LOCATION, move, (float(self._gimbal),), position))
         elif self._looking:
-            self._add(cmd.ROI_NONE, move)
+            self._add(cmd.ROI_NONE, move, float(self._gimbal))
         self._looking = position is not None
 
     def _add(self, command: int, move: Move, *params: float, here: bool = False) -> None:

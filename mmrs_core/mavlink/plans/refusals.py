@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.wiring import Sampled, Unwired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.earth import sea_level_of
 from mmrs_core.mavlink.movements import losses_of, objects_of
 from mmrs_core.mavlink.safety import explicit, policies_of
-from mmrs_core.mavlink.wiring import Sampled, Unwired, wiring_of
 from mmrs_core.scene import Policy
 
 
@@ -66,7 +66,7 @@ def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[st
     if not action.is_a(DEVICE_ACTION):
         yield f"{context.label(move)}: action {action.metaclasses[0][1]} has no form in a plan"
         return
-    wiring = wiring_of(action, context.type)
+    wiring = context.wiring(action)
     if isinstance(wiring, Unwired):
         yield f"{context.label(move)}: action '{action.name}': {wiring.reason}"
     elif isinstance(wiring, Sampled):

@@ -11,10 +11,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
+from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
+from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,
@@ -318,3 +320,24 @@ def test_a_local_behaviour_has_local_places_relative_to_home():
     files = generated(program(robot, frame=Frame("EPSG:4326", None, None)))
     assert b"GoTo(Local(4.0, 3.0, 5.0), speed=5.0)" in files["robot_a.py"]
     assert b"fence=" not in files["robot_a.py"]
+
+
+def test_a_wiring_of_a_plugin_reaches_controllers_and_missions():
+    wiring = DeviceWiring("kites.reel", "reels", lambda action, device: Wired(183, (9.0,), more=((184, ()),)))
+    reel = Device("reel", {"pull": DeviceAction("pull", 2.0)}, {"kites.reel": "9"})
+    pulls = replace(go_to("a", (0.0, 9.0, 5.0)), after=(photo("reel", "pull"),))
+    made = program(robot_program("alpha", [take_off("up", 5.0), pulls, LAND]))
+    given = target_input(made, [replace(quad(), devices={"reel": reel})])
+    given = replace(given, device_actions={"kites.reel": wiring})
+    source = render(MAVLINK_PYTHON, given)[0].content.decode()
+    assert 'Operate("reel", "pull", 183, (9.0,), 2.0, more=((184, ()),))' in source
+    plan = json.loads(render(QGC_PLAN, given)[0].content)
+    assert [item["command"] for item in plan["mission"]["items"]] == [22, 178, 16, 183, 184, 19, 21]
+
+
+def test_the_number_of_a_gimbal_is_passed_on():
+    made = program(robot_program("alpha", [DRIVE]))
+    given = target_input(made, [crawler(**{"mavlink.gimbal": "3"})])
+    assert b"gimbal=True, device=3" in render(MAVLINK_PYTHON, given)[0].content
+    plan = json.loads(render(QGC_PLAN, given)[0].content)
+    assert [item["params"][0] for item in plan["mission"]["items"] if item["command"] == 195] == [3.0]

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.mavlink.wiring import Sampled, Unwired, Wired, wiring_of
+from mmrs_core.contributions.wiring import DeviceWiring, Sampled, Unwired, Wired
+from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import photo, quad
 
@@ -83,3 +84,107 @@ def test_without_a_robot_type_nothing_is_wired():
 
 def test_a_device_that_the_type_does_not_have_is_not_wired():
     assert wiring_of(photo("nose"), quad()) == Unwired("type 'Quad' has no device 'nose'")
+
+
+@pytest.mark.parametrize("name", ["startVideo", "start", "stopRecording"])
+def test_a_video_is_begun_and_ended_by_the_actions_name(name):
+    found = wired(name, **{"mavlink.video": "0"})
+    assert found == (Wired(2501, (0.0,), 2.0) if name.startswith("stop") else Wired(2500, (0.0, 0.0), 2.0))
+
+
+def test_a_video_is_begun_by_an_action_of_any_name_where_the_property_says_so():
+    assert wired("film", **{"mavlink.video": "1", "mavlink.video.film": "start"}) == Wired(
+        2500, (1.0, 0.0), 2.0
+    )
+
+
+def test_a_video_that_is_neither_begun_nor_ended_is_not_wired():
+    assert "start or stop" in wired("film", **{"mavlink.video": "0"}).reason
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "metres"),
+    [("start", {}, 12.0), ("survey", {"mavlink.trigger.survey": "7.5"}, 7.5), ("stop", {}, 0.0)],
+)
+def test_a_camera_is_triggered_by_distance(name, more, metres):
+    found = wired(name, **{"mavlink.trigger": "12", **more})
+    assert (found.command, found.params[0]) == (206, metres)
+
+
+@pytest.mark.parametrize("metres", ["-3", "0", "nan", "wide"])
+def test_a_trigger_by_no_distance_is_not_wired(metres):
+    assert isinstance(wired("on", **{"mavlink.trigger": "2", "mavlink.trigger.on": metres}), Unwired)
+
+
+@pytest.mark.parametrize(
+    ("words", "params"),
+    [
+        ("relax", (1.0, 0.0)),
+        ("length 5", (1.0, 1.0, 5.0, 0.0)),
+        ("length -5 rate 0.5", (1.0, 1.0, -5.0, 0.5)),
+        ("rate 0.3", (1.0, 2.0, 0.0, 0.3)),
+    ],
+)
+def test_a_winch_lets_out_line_or_winds_it_up(words, params):
+    found = wired("move", **{"mavlink.winch": "1", "mavlink.winch.move": words})
+    assert found == Wired(42600, params, 2.0)
+
+
+def test_a_winch_takes_its_length_from_the_actions_parameters():
+    device = Device("d", {}, {"mavlink.winch": "1"})
+    action = replace(photo("d", "lower"), parameters=(("length", "4"), ("rate", "0.2")))
+    assert wiring_of(action, replace(quad(), devices={"d": device})).params == (1.0, 1.0, 4.0, 0.2)
+
+
+@pytest.mark.parametrize("words", ["", "length", "length far", "speed 3", "length 3 rate"])
+def test_a_winch_that_is_told_nothing_sensible_is_not_wired(words):
+    assert isinstance(wired("move", **{"mavlink.winch": "1", "mavlink.winch.move": words}), Unwired)
+
+
+@pytest.mark.parametrize(("words", "lock"), [("-90 0", 0.0), ("-45 180 north", 16.0)])
+def test_a_gimbal_is_pointed(words, lock):
+    found = wired("lookDown", **{"mavlink.gimbal": "2", "mavlink.gimbal.lookDown": words})
+    pitch, yaw = map(float, words.split()[:2])
+    assert found == Wired(1000, (pitch, yaw, 0.0, 0.0, lock, 0.0, 2.0), 2.0)
+
+
+def test_a_camera_on_a_gimbal_still_takes_photos():
+    found = wired("takePhoto", **{"mavlink.gimbal": "1", "mavlink.camera": "0"})
+    assert found.command == 2000
+
+
+def test_a_camera_may_promise_to_tell_each_image():
+    assert wired(**{"mavlink.camera": "1", "mavlink.camera.confirms": "yes"}).confirmed
+
+
+def test_a_device_that_is_wired_twice_is_ambiguous():
+    found = wired(**{"mavlink.camera": "1", "mavlink.relay": "0", "mavlink.relay.takePhoto": "on"})
+    assert found == Wired(181, (0.0, 1.0), 2.0)
+    reason = wired(**{"mavlink.camera": "1", "mavlink.value": "CO2"}).reason
+    assert "wired by mavlink.camera and mavlink.value, which is ambiguous" in reason
+
+
+def reel(action, device):
+    return Wired(183, (9.0, 1900.0), more=((183, (10.0, 1500.0)),)) if action.name == "pull" else None
+
+
+REEL = {"kites.reel": DeviceWiring("kites.reel", "reels", reel)}
+
+
+def test_a_plugin_wires_devices_of_its_own():
+    device = Device("d", {"pull": DeviceAction("pull", 3.0)}, {"kites.reel": "9"})
+    found = wiring_of(photo("d", "pull"), replace(quad(), devices={"d": device}), REEL)
+    assert found == Wired(183, (9.0, 1900.0), 3.0, ((183, (10.0, 1500.0)),))
+
+
+def test_an_action_that_no_wiring_of_the_device_knows_is_not_wired():
+    device = Device("d", {}, {"kites.reel": "9"})
+    found = wiring_of(photo("d", "push"), replace(quad(), devices={"d": device}), REEL)
+    assert found == Unwired("device 'd': kites.reel does not say what 'push' is")
+
+
+@pytest.mark.parametrize("params", [(float("nan"),), (float("inf"),), (0.0,) * 8])
+def test_a_plugins_wiring_with_parameters_that_no_vehicle_takes_is_not_wired(params):
+    wirings = {"k": DeviceWiring("k", "wrong", lambda action, device: Wired(183, params))}
+    device = Device("d", {}, {"k": ""})
+    assert isinstance(wiring_of(photo("d"), replace(quad(), devices={"d": device}), wirings), Unwired)

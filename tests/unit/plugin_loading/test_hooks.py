@@ -16,6 +16,7 @@ from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.wiring import DeviceWiring
 from mmrs_core.errors import PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.evolution.migration import Migration
@@ -97,6 +98,11 @@ def test_hook_mmrs_move_kinds():
 def test_hook_mmrs_checks():
     check = Check("string", "the string holds", unused)
     assert check in contributions_with("mmrs_checks", check).checks
+
+
+def test_hook_mmrs_device_actions():
+    wiring = DeviceWiring("kite.reel", "reels in", unused)
+    assert contributions_with("mmrs_device_actions", wiring).device_actions["kite.reel"] == wiring
 
 
 def test_hook_mmrs_targets(tmp_path):
