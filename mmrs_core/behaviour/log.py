@@ -45,14 +45,15 @@ def to_line(record: StepRecord) -> str:
 class LogWriter:
     """Appends steps to one log a robot in a folder; the first step of a robot replaces an older log.
 
-    Every step is flushed; a notify or a fault is on the disk when `write` returns, so that a notify
-    written before it is delivered survives whatever happens next.
+    A run that is resumed goes on with its logs instead, after their last whole lines. Every step is
+    flushed; a notify or a fault is on the disk when `write` returns, so that a notify written before it is
+    delivered survives whatever happens next.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, resumed: bool = False) -> None:
         """Open no file yet; make the folder where it is missing."""
         folder.mkdir(parents=True, exist_ok=True)
-        self._folder = folder
+        self._folder, self._resumed = folder, resumed
         self._files: dict[str, TextIO] = {}
 
     def write(self, record: StepRecord) -> None:
@@ -60,7 +61,10 @@ class LogWriter:
         file = self._files.get(record.robot)
         if file is None:
             path = self._folder / log_name(record.robot)
-            file = self._files[record.robot] = path.open("w", encoding="utf-8", newline="\n")
+            if self._resumed:
+                _cut_last_line(path)
+            mode = "a" if self._resumed else "w"
+            file = self._files[record.robot] = path.open(mode, encoding="utf-8", newline="\n")
         file.write(to_line(record) + "\n")
         file.flush()
         if record.label in ("ntf", "fault"):
@@ -80,6 +84,16 @@ class LogWriter:
     ) -> None:
         """Close all files."""
         self.close()
+
+
+def _cut_last_line(path: Path) -> None:
+    """Take away a last line that was cut off while it was written."""
+    if not path.exists():
+        return
+    whole = path.read_bytes().rpartition(b"\n")
+    if whole[2]:
+        with path.open("r+b") as file:
+            file.truncate(len(whole[0]) + len(whole[1]))
 
 
 def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:

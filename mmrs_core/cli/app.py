@@ -16,6 +16,7 @@ from mmrs_core.cli import (
     diff,
     explain,
     generate,
+    live,
     metamodel,
     migrate,
     plan,
@@ -27,6 +28,7 @@ from mmrs_core.cli import (
 )
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.preview import command as preview
+from mmrs_core.cli.report import command as report
 from mmrs_core.cli.settings import DEBUG, NO_PLUGINS, Settings
 from mmrs_core.errors import MmrsError, PluginError
 
@@ -46,8 +48,10 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("generate", generate.generate),
     ("explain", explain.explain),
     ("simulate", simulate.simulate),
+    ("run", live.run),
     ("control", control.control),
     ("replay", replay.replay),
+    ("report", report.report),
     ("preview", preview.preview),
     ("show", show.show),
     ("convert", convert.convert),

@@ -155,7 +155,11 @@ class Recovering(Protocol):
 
 @runtime_checkable
 class Watched(Protocol):
-    """What a backend may have beside the rest: whether a robot that stopped must still be watched."""
+    """What a backend may have beside the rest: how far a robot is that was told to stop."""
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the robot has confirmed that it now does what it was told by `stop`."""
+        ...
 
     def watched(self, now: float) -> bool:
         """Return whether the robot has stopped, and would do something else if nobody watched it."""

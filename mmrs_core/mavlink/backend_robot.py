@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.flight import modes
 from mmrs_core.flight.ardupilot import MavlinkVehicle
 from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
@@ -31,6 +32,14 @@ from mmrs_core.mavlink.backend_recovery import way_back
 from mmrs_core.mavlink.backend_worker import Job, Worker
 
 HANDS_OFF = "NOTHING"
+_MODES = {
+    "RETURN": (modes.GUIDED,),
+    "EMERGENCY_AREA": (modes.GUIDED,),
+    "LAND": (modes.LAND,),
+    "HOLD": (modes.HOLD,),
+    "SURFACE": (modes.SURFACE,),
+}
+"""Modes that show that a vehicle obeys."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,6 +165,12 @@ class MavlinkBackend:
             return
         self._worker.begin(Job(lambda: self._respond(response)), afresh=True)
         self._with.link.wake()
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the vehicle is in the mode of the response, or has carried it out."""
+        if self._worker.fault is not None or not self._worker.started:
+            return False
+        return self._worker.done or self._with.vehicle.state().mode in _MODES.get(self._response, ())
 
     def watched(self, now: float) -> bool:
         """Return whether the vehicle holds with its motors running."""

@@ -88,6 +88,11 @@ class Worker:
         return self._done
 
     @property
+    def started(self) -> bool:
+        """Return whether nothing else is being done any more than what was ordered last."""
+        return self._newest == self._running
+
+    @property
     def halted(self) -> bool:
         """Return whether the vehicle was told to pause, and stands."""
         return self._holds and self._halted

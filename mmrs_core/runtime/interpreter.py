@@ -24,14 +24,15 @@ from mmrs_core.contributions.execution import (
     CommandId,
     Condition,
     Fault,
+    Noting,
     Watched,
 )
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.attention import BUS, Attention
-from mmrs_core.runtime.obedience import Obedience
+from mmrs_core.runtime.obedience import ORDERED, STOPPED, Obedience
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.peers import Peers
-from mmrs_core.runtime.robot import Rules, RunningRobot
+from mmrs_core.runtime.robot import HANDS_OFF, Rules, RunningRobot
 from mmrs_core.scene import Policy
 
 PACE = 0.05
@@ -128,14 +129,13 @@ def interpret(
         UnsupportedError: if a condition is unknown; lists all of them.
     """
     _refuse_unknown(program, backends, conditions)
-    answers: dict[str, bool] = {}
     robots = []
     for robot in program.robots:
         if robot.id in backends:
-            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, answers)
+            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends)
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
-    return _Run(program, robots, bus, clock, terms, answers).go()
+    return _Run(program, robots, bus, clock, terms).go()
 
 
 def _refuse_unknown(
@@ -158,19 +158,13 @@ def _refuse_unknown(
 
 class _Run:
     def __init__(
-        self,
-        program: Program,
-        robots: list[RunningRobot],
-        bus: Bus,
-        clock: Clock,
-        terms: Terms,
-        answers: dict[str, bool],
+        self, program: Program, robots: list[RunningRobot], bus: Bus, clock: Clock, terms: Terms
     ) -> None:
         self._robots, self._bus, self._clock, self._terms = robots, bus, clock, terms
         self._by_id = {robot.id: order for order, robot in enumerate(robots)}
         self._whole = len(robots) == len(program.robots)
         self._peers = Peers(program, self._by_id, bus)
-        self._obedience = Obedience(robots, terms.orders, answers, clock)
+        self._obedience = Obedience(robots, terms.orders, clock)
         self._made = 0
         self._ready = list(range(len(robots)))
         self._wakes: list[tuple[float, int]] = []
@@ -230,7 +224,7 @@ class _Run:
             was_suspended = robot.suspended
             step = robot.due(self._clock.now(), self._peers)
             if robot.suspended and not was_suspended:
-                self._terms.say(f"'{robot.id}': {robot.fault}; comes down for its battery ({robot.response})")
+                self._tell_decision(robot)
                 self._stop(robot, robot.response)
             if step is None or not self._order(robot, step):
                 return
@@ -263,7 +257,7 @@ class _Run:
             self._lose_log(robot, error)
             return
         yield record
-        robot.follow(step)
+        robot.follow(step, self._clock.now())
         self._made += 1
         if step.sets:
             self._deliver(robot, step)
@@ -302,10 +296,18 @@ class _Run:
         self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
         self._bus.leave(robot.id)
         if robot.point.phase is Phase.FAILED:
+            self._tell_decision(robot)
             self._stop(robot, robot.response)
         for order, other in enumerate(self._robots):
             if other.point.phase is Phase.OUT:
                 heappush(self._ready, order)
+
+    def _tell_decision(self, robot: RunningRobot) -> None:
+        found = robot.fault or Fault("")
+        self._terms.say(f"'{robot.id}': {found}; response: {robot.response}")
+        if isinstance(robot.backend, Noting):
+            content = {"what": found.which, "why": found.reason, "response": robot.response}
+            robot.backend.note("decision", content)
 
     def _look_after_stopping(self) -> None:
         """Note which robots have confirmed that they stopped, or cannot."""
@@ -324,7 +326,8 @@ class _Run:
             self._terms.say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed.append(robot.id)
         elif not robot.stopping:
-            self._terms.say(f"'{robot.id}': has stopped ({robot.response})")
+            done = "is left alone" if robot.response == HANDS_OFF else f"has done {robot.response}"
+            self._terms.say(f"'{robot.id}': {done}")
         self._obedience.stopped(robot.id, robot.stopping, trouble)
 
     def _wake_time(self, robot: RunningRobot) -> float:
@@ -373,8 +376,9 @@ class _Run:
         return False
 
     def _is_watched(self, robot: RunningRobot) -> bool:
-        watched = robot.fault is not None and isinstance(robot.backend, Watched)
-        return watched and robot.backend.watched(self._clock.now())  # type: ignore[attr-defined]
+        if robot.fault is None or robot.fault.which in (STOPPED, ORDERED):
+            return False
+        return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
 
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""

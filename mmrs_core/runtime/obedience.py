@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.execution import Clock, Fault, Pausable
+from mmrs_core.contributions.execution import Clock, Fault, Noting, Pausable, Watched
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
@@ -16,12 +16,10 @@ ORDERED, STOPPED = "ORDERED", "STOPPED"
 class Obedience:
     """Passes orders on to robots."""
 
-    def __init__(
-        self, robots: Sequence[RunningRobot], orders: Orders, answers: dict[str, bool], clock: Clock
-    ) -> None:
-        """Obey these orders; what the operator answers is added to the answers."""
+    def __init__(self, robots: Sequence[RunningRobot], orders: Orders, clock: Clock) -> None:
+        """Obey these orders."""
         self._robots = {robot.id: robot for robot in robots}
-        self._orders, self._answers, self._clock = orders, answers, clock
+        self._orders, self._clock = orders, clock
         self._open: list[Order] = []
 
     def obey(self) -> tuple[str, ...]:
@@ -34,6 +32,7 @@ class Obedience:
                 self._begin(order, id)
         for order in self._open:
             self._look(order)
+            self._note(order)
         self._open = [order for order in self._open if not order.settled.is_set()]
         return tuple(concerned)
 
@@ -45,6 +44,7 @@ class Obedience:
                     order.confirm(id)
                 else:
                     order.refuse(id, str(trouble))
+                self._note(order)
 
     def give_up(self) -> None:
         """Tell all orders that are still open that the run has ended."""
@@ -52,12 +52,21 @@ class Obedience:
             for id in order.open:
                 order.refuse(id, "the run has ended")
 
+    def _note(self, order: Order) -> None:
+        for id in {*order.confirmed, *order.refused} - order.noted:
+            order.noted.add(id)
+            backend = self._robots[id].backend if id in self._robots else None
+            if isinstance(backend, Noting):
+                seconds, why = order.confirmed.get(id), order.refused.get(id, "")
+                content = {"order": order.kind, "confirmed": not why, "seconds": seconds, "why": why}
+                backend.note("order", content)
+
     def _begin(self, order: Order, id: str) -> None:
         robot = self._robots.get(id)
         if robot is None:
             order.refuse(id, "no such robot here")
         elif order.kind == ANSWER:
-            self._answers[order.question] = order.answer
+            robot.answers[order.question] = order.answer
             order.confirm(id)
         elif order.kind == HOLD:
             self._hold(order, robot)
@@ -67,7 +76,7 @@ class Obedience:
             self._stop_again(order, robot)
         else:
             which = STOPPED if order.kind == STOP else ORDERED
-            robot.end_by(Fault(which, f"order to {order.kind}"), ENDINGS[order.kind])
+            robot.end_by(Fault(which, f"order to {order.kind}"), self._orders.response(order.kind))
 
     def _hold(self, order: Order, robot: RunningRobot) -> None:
         if robot.point.is_final or robot.suspended:
@@ -95,16 +104,22 @@ class Obedience:
             order.refuse(robot.id, "its program has ended")
             return
         try:
-            robot.backend.stop(self._clock.now(), ENDINGS[order.kind])
+            robot.response = self._orders.response(order.kind)
+            robot.backend.stop(self._clock.now(), robot.response)
         except LinkLostError as error:
             order.refuse(robot.id, str(error))
         else:
-            robot.response, robot.stopping = ENDINGS[order.kind], self._clock.passes_by_itself
+            robot.fault = Fault(STOPPED if order.kind == STOP else ORDERED, f"order to {order.kind}")
+            robot.stopping = self._clock.passes_by_itself
 
     def _look(self, order: Order) -> None:
-        for id in order.open if order.kind == HOLD else ():
-            backend = self._robots[id].backend
-            if isinstance(backend, Pausable) and backend.paused(self._clock.now()):
+        now = self._clock.now()
+        for id in order.open:
+            robot = self._robots[id]
+            if order.kind == HOLD:
+                if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
+                    order.confirm(id)
+                elif robot.point.is_final:
+                    order.refuse(id, "its program has ended")
+            elif robot.stopping and isinstance(robot.backend, Watched) and robot.backend.obeys(now):
                 order.confirm(id)
-            elif self._robots[id].point.is_final:
-                order.refuse(id, "its program has ended")

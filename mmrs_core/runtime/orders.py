@@ -25,16 +25,20 @@ class Order:
         confirmed: by robot, real seconds until its vehicle had obeyed.
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
+        told: called with a robot, and why it refuses, or None: it has obeyed.
+        noted: robots whose black boxes know of it.
     """
 
     kind: str
     robots: tuple[str, ...]
     question: str = ""
     answer: bool = False
+    told: Callable[[str, str | None], None] = lambda robot, why: None
     confirmed: dict[str, float] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
     settled: threading.Event = field(default_factory=threading.Event)
     given: float = field(default_factory=time.monotonic)
+    noted: set[str] = field(default_factory=set)
 
     @property
     def open(self) -> tuple[str, ...]:
@@ -43,27 +47,44 @@ class Order:
 
     def confirm(self, robot: str) -> None:
         """Note that the vehicle of a robot has obeyed."""
-        self.confirmed[robot] = round(time.monotonic() - self.given, 4)
-        self._settle()
+        if robot in self.open:
+            self.confirmed[robot] = round(time.monotonic() - self.given, 4)
+            self._settle(robot, None)
 
     def refuse(self, robot: str, why: str) -> None:
         """Note that a robot does not obey."""
-        self.refused[robot] = why
-        self._settle()
+        if robot in self.open:
+            self.refused[robot] = why
+            self._settle(robot, why)
 
-    def _settle(self) -> None:
+    def _settle(self, robot: str, why: str | None) -> None:
+        self.told(robot, why)
         if not self.open:
             self.settled.set()
 
 
 class Orders:
-    """The orders of a run that have been given and not been looked at."""
+    """The orders of a run that have been given and not been looked at.
 
-    def __init__(self) -> None:
+    Attributes:
+        on_stop: the response of robots that are ordered to stop, a literal of PolicyResponse.
+        called: called, from any thread, when there is a new one.
+    """
+
+    def __init__(self, on_stop: str = "HOLD") -> None:
+        self.on_stop = on_stop
         self.called: Callable[[], None] = lambda: None
         self._waiting: deque[Order] = deque()
 
-    def give(self, kind: str, robots: Iterable[str], *, question: str = "", answer: bool = False) -> Order:
+    def give(
+        self,
+        kind: str,
+        robots: Iterable[str],
+        *,
+        question: str = "",
+        answer: bool = False,
+        told: Callable[[str, str | None], None] = lambda robot, why: None,
+    ) -> Order:
         """Have robots obey; return the order, which tells who has; from any thread or signal handler.
 
         Raises:
@@ -71,10 +92,14 @@ class Orders:
         """
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
-        order = Order(kind, tuple(robots), question, answer)
+        order = Order(kind, tuple(robots), question, answer, told)
         self._waiting.append(order)
         self.called()
         return order
+
+    def response(self, kind: str) -> str:
+        """Return what a robot does when its program is ended by such an order."""
+        return self.on_stop if kind == STOP else ENDINGS[kind]
 
     def taken(self) -> tuple[Order, ...]:
         """Return the orders that were given since this was asked last."""

@@ -10,7 +10,7 @@ from mmrs_core.behaviour.policies import patience, response_to
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Point, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Recovering
+from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Noting, Recovering
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.scene import Policy
@@ -31,13 +31,11 @@ class Rules:
         conditions: by identifier.
         policies: of its type and kind, which go after the program's.
         suspends: whether a low battery only breaks the program off, to go on with a full one.
-        answers: of the operator, by question; others add to it.
     """
 
     conditions: Mapping[str, Condition]
     policies: tuple[Policy, ...]
     suspends: bool
-    answers: Mapping[str, bool]
 
 
 class RunningRobot:
@@ -59,6 +57,7 @@ class RunningRobot:
         stopping: whether it has still to confirm that it has stopped.
         recovering: whether it is on its way back to where its program was broken off.
         question: identifier of the condition that it waits to be decided; empty: of none.
+        answers: of the operator, by question.
     """
 
     def __init__(self, program: RobotProgram, backend: Backend, bus: Bus, rules: Rules) -> None:
@@ -76,6 +75,7 @@ class RunningRobot:
         self.ordered: tuple[Fault, str] | None = None
         self.held = self.suspended = self.stopping = self.recovering = False
         self.question = ""
+        self.answers: dict[str, bool] = {}
         self._program, self._bus, self._rules = program, bus, rules
         self._policies = (*program.policies, *rules.policies)
         self._passed: list[str] = []
@@ -106,10 +106,13 @@ class RunningRobot:
             return ()
         return tuple((self.id, name) for name in self._program.transitions[self.point.move].waits)
 
-    def follow(self, step: Step) -> None:
+    def follow(self, step: Step, now: float) -> None:
         """Go where a step leads."""
         if step.label == "end":
             self._passed.append(step.move)
+        if self._waits_since is not None and isinstance(self.backend, Noting):
+            waited = {"slots": [name for _, name in self.awaited()], "seconds": now - self._waits_since}
+            self.backend.note("wait", waited)
         self.point = step.leads_to
         self._forget()
 
@@ -120,7 +123,7 @@ class RunningRobot:
             ValueError: if they are not.
         """
         for record in records:
-            self.follow(_followed(self._program, self.point, record))
+            self.follow(_followed(self._program, self.point, record), record.time)
             self.lamport, self.number = record.lamport, record.seq + 1
 
     def recover(self, now: float) -> None:
@@ -300,7 +303,7 @@ class RunningRobot:
         identifier = self._program.transitions[self.point.move].condition or ""
         condition = self._rules.conditions[identifier]
         try:
-            state = replace(self.backend.state(now), answers=dict(self._rules.answers))
+            state = replace(self.backend.state(now), answers=dict(self.answers))
             if not condition.known(state):
                 self.question = identifier
                 return None

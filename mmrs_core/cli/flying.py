@@ -1,0 +1,237 @@
+"""Runs a behaviour in real time: logs, orders, interrupts, and what became of it."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import FrameType
+
+import typer
+
+from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_logs
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.behaviours import Loaded
+from mmrs_core.cli.figures import clock
+from mmrs_core.cli.interruption import INTERRUPTED
+from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.orders_heard import hear_orders
+from mmrs_core.cli.output import counted, say, tell
+from mmrs_core.errors import InvalidModelError, LinkLostError
+from mmrs_core.pipeline import conditions_for, inputs_of, run_live
+from mmrs_core.runtime.clock import RealClock
+from mmrs_core.runtime.interpreter import Ending
+from mmrs_core.runtime.live import Venture
+from mmrs_core.runtime.obedience import STOPPED
+from mmrs_core.runtime.orders import STOP, Orders
+from mmrs_core.runtime.resuming import restore
+from mmrs_core.runtime.slots import InProcessBus
+
+ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
+FAILED = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What the command line asks for.
+
+    Attributes:
+        folder: of the logs.
+        options: of the backend.
+        links: as in ``--connect``.
+        robots: those that this process runs; none: all.
+        patience: seconds to wait for the order to resume once nobody else works.
+        assume: fixed answers, by condition.
+    """
+
+    folder: Path
+    backend: str = "mavlink"
+    options: Mapping[str, str] = field(default_factory=dict)
+    links: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    resume: bool = False
+    run: str = "run-0"
+    speedup: float = 1.0
+    on_stop: str = "hold"
+    patience: float = 0.0
+    assume: Mapping[str, bool] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What became of a run."""
+
+    ending: Ending
+    logs: tuple[Path, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """Return what the shell gets."""
+        faults = {fault.which for fault in self.ending.faults.values()}
+        if "LINK_LOST" in faults or self.ending.unconfirmed:
+            return LinkLostError.exit_code
+        if STOPPED in faults:
+            return INTERRUPTED
+        return 0 if self.ending.outcome is Outcome.SUCCESS else FAILED
+
+    def as_json(self) -> Mapping[str, object]:
+        """Return all of it as JSON has it."""
+        return {"ending": self.ending, "logs": self.logs}
+
+    def say(self) -> None:
+        """Print it for people."""
+        ending = self.ending
+        say(f"{ending.outcome.value} after {clock(ending.time)}, {ending.steps} steps")
+        for robot, fault in ending.faults.items():
+            word = "broken off" if robot in ending.suspended else "fault"
+            say(f"  {word} of '{robot}': {fault}")
+        for robot in ending.suspended:
+            say(f"  '{robot}' came home for its battery; --resume goes on where it stopped")
+        for waiting in ending.waiting:
+            say(f"  {waiting}")
+        for robot in ending.unconfirmed:
+            say(f"  '{robot}' has not confirmed that it stopped")
+        for log in self.logs:
+            say(f"written: {log}")
+
+
+def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
+    """Carry a behaviour out; return what became of it.
+
+    Raises:
+        typer.BadParameter: if an option makes no sense.
+        LinkLostError: if a robot does not answer at first.
+        UnsupportedError: if the backend cannot do what the behaviour holds.
+    """
+    program = loaded.program
+    here = _robots(program, wishes.robots)
+    bus = InProcessBus(program)
+    resumed = _resumed(program, wishes, bus)
+    run = resumed[0].run if resumed else wishes.run
+    orders = Orders(_on_stop(wishes.on_stop))
+    with ExitStack() as stack:
+        writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
+        observer = _Observer(workshop, writer)
+        venture = Venture(
+            program,
+            inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
+            bus,
+            conditions_for(program, workshop.contributions, wishes.assume, asks=True),
+            clock=RealClock(wishes.speedup, max((record.time for record in resumed), default=0.0)),
+            orders=orders,
+            run=run,
+            folder=wishes.folder,
+            links=_links(wishes.links, here),
+            resumed=resumed,
+            patience=wishes.patience,
+            observe=observer.observe,
+            say=tell,
+        )
+        stack.enter_context(hear_orders(wishes.folder, run, here, orders, observer.status))
+        stack.enter_context(_stopping(orders, here))
+        ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)
+    names = [wishes.folder / log_name(robot) for robot in here]
+    return Result(ending, tuple(path for path in names if path.exists()))
+
+
+class _Observer:
+    """Writes logs, tells plug-ins, and remembers what each robot does."""
+
+    def __init__(self, workshop: Workshop, writer: LogWriter) -> None:
+        self._workshop, self._writer = workshop, writer
+        self._last: dict[str, StepRecord] = {}
+
+    def observe(self, record: StepRecord) -> None:
+        """Write a step down."""
+        self._writer.write(record)
+        self._last[record.robot] = record
+        self._workshop.plugins.observe_step(record)
+
+    def status(self, robot: str) -> Mapping[str, object]:
+        """Return what a robot did last."""
+        last = self._last.get(robot)
+        if last is None:
+            return {"state": "gets ready"}
+        return {"move": last.move, "step": last.label, "time": last.time}
+
+
+def _collected(steps: Generator[StepRecord, None, Ending], program: Program) -> Ending:
+    kinds = {(robot.id, move.id): move for robot in program.robots for move in robot.moves}
+    while True:
+        try:
+            record = next(steps)
+        except StopIteration as stop:
+            ending: Ending = stop.value
+            return ending
+        if record.label == "begin":
+            move = kinds[record.robot, record.move]
+            serves = f" for task '{move.task}'" if move.task else ""
+            tell(f"{clock(record.time)} '{record.robot}': {move.kind} '{move.id}'{serves}")
+
+
+def _robots(program: Program, wanted: tuple[str, ...]) -> tuple[str, ...]:
+    known = tuple(robot.id for robot in program.robots)
+    for robot in wanted:
+        if robot not in known:
+            raise typer.BadParameter(f"--robot {robot}: not in the behaviour, which has {', '.join(known)}")
+    return tuple(robot for robot in known if not wanted or robot in wanted)
+
+
+def _on_stop(word: str) -> str:
+    if word not in ON_STOP:
+        raise typer.BadParameter(f"--on-stop {word}: is none of {', '.join(ON_STOP)}")
+    return ON_STOP[word]
+
+
+def _links(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
+    links: dict[str, str] = {}
+    for text in given:
+        robot, separator, url = text.partition("=")
+        if not separator and len(robots) > 1:
+            raise typer.BadParameter(f"--connect {text}: which robot? say ROBOT={text}")
+        if separator and robot not in robots:
+            raise typer.BadParameter(f"--connect {text}: there is no robot '{robot}' here")
+        links[robot if separator else robots[0]] = url if separator else text
+    return links
+
+
+def _resumed(program: Program, wishes: Wishes, bus: InProcessBus) -> tuple[StepRecord, ...]:
+    """Return the steps that were made before, and have the bus know of them."""
+    found = sorted(wishes.folder.glob(f"*{SUFFIX}")) if wishes.folder.is_dir() else []
+    if not wishes.resume:
+        if found:
+            raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
+        return ()
+    if not found:
+        raise typer.BadParameter(f"--resume: no logs in {wishes.folder}")
+    records = read_logs(found, partial=True)
+    result = replay(program, records, partial=True)
+    if not result.accepted:
+        raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
+    restore(bus, program, records)
+    tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
+    return records
+
+
+@contextmanager
+def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
+    """Have interrupts stop the robots; the second one ends the waiting for them."""
+    seen: list[int] = []
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        seen.append(number)
+        if len(seen) > 1:
+            raise KeyboardInterrupt
+        tell("stopping; interrupt again to end without waiting for the robots")
+        orders.give(STOP, robots)
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,110 @@
+"""``mmrs run``: carries a behaviour out with real robots, in real time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mmrs_core.cli.output import say_json
+from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
+from mmrs_core.cli.settings import Json, settings_of
+
+_Texts = list[str] | None
+
+
+def run(
+    call: typer.Context,
+    behaviour: Behaviour,
+    log: Annotated[
+        Path, typer.Option("--log", metavar="DIR", help="Where to write logs and black boxes.")
+    ] = Path("logs"),
+    backend: Annotated[
+        str, typer.Option("--backend", metavar="NAME", help="What drives the robots.")
+    ] = "mavlink",
+    connect: Annotated[
+        _Texts,
+        typer.Option(
+            "--connect",
+            metavar="[ROBOT=]URL[@SYSTEM]",
+            help="How a robot is reached, such as udpin:127.0.0.1:14550 or /dev/ttyUSB0,57600@3; may be"
+            " repeated, and robots may share one.",
+        ),
+    ] = None,
+    only: Annotated[
+        _Texts, typer.Option("--robot", metavar="ROBOT", help="Run this robot only; may be repeated.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the run whose logs are in that folder.")
+    ] = False,
+    name: Annotated[str, typer.Option("--run", metavar="NAME", help="Of the run, in its logs.")] = "run-0",
+    speedup: Annotated[
+        float,
+        typer.Option("--speedup", min=0.01, max=1000.0, help="Of robots that are simulated themselves."),
+    ] = 1.0,
+    on_stop: Annotated[
+        str, typer.Option("--on-stop", metavar="hold|return|land", help="What robots do when interrupted.")
+    ] = "hold",
+    battery_patience: Annotated[
+        float,
+        typer.Option(
+            "--battery-patience",
+            min=0.0,
+            metavar="SECONDS",
+            help="To wait for 'mmrs control resume' with a new battery once no other robot works.",
+        ),
+    ] = 0.0,
+    signing_key: Annotated[
+        Path | None, typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink frames with it.")
+    ] = None,
+    inject: Annotated[
+        _Texts,
+        typer.Option("--inject", metavar="FAULTS", help="Faults to rehearse, such as Drone1:cut@60+20."),
+    ] = None,
+    assume: Assume = None,
+    context: Context = None,
+    robots: Robots = None,
+    backend_option: Annotated[
+        _Texts, typer.Option("--backend-option", metavar="KEY=VALUE", help="Of the backend; may be repeated.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Carry out a behaviour with real robots, or with vehicles that are simulated elsewhere.
+
+    Every robot gets ready first; then all begin. Interrupt once to stop every robot, from any state: the
+    command ends when each has confirmed that it has stopped. 'mmrs control' gives other orders.
+
+    Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
+    """
+    from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.flying import Wishes, carry_out
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.cli.simulation import answers, options_of
+
+    workshop = Workshop(settings_of(call))
+    given = dict(options_of(backend_option))
+    if signing_key is not None:
+        given["signing-key"] = str(signing_key)
+    if inject:
+        given["inject"] = ",".join(inject)
+    wishes = Wishes(
+        folder=log,
+        backend=backend,
+        options=given,
+        links=tuple(connect or ()),
+        robots=tuple(only or ()),
+        resume=resume,
+        run=name,
+        speedup=speedup,
+        on_stop=on_stop,
+        patience=battery_patience,
+        assume=answers(assume),
+    )
+    loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
+    result = carry_out(workshop, loaded, wishes)
+    if json:
+        say_json(result.as_json())
+    else:
+        result.say()
+    return result.exit_code

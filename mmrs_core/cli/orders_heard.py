@@ -1,0 +1,64 @@
+"""Has a run hear the orders of ``mmrs control``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmrs_core.cli.output import tell
+from mmrs_core.runtime.orders import ANSWER, Orders
+
+if TYPE_CHECKING:
+    from mmrs_core.flight.orders import Inbox, Receipt
+
+Status = Callable[[str], Mapping[str, object]]
+
+
+@contextmanager
+def hear_orders(
+    folder: Path, run: str, robots: Sequence[str], orders: Orders, status: Status
+) -> Iterator[None]:
+    """Listen for orders as long as the context lasts; say so where that cannot be."""
+    if find_spec("pymavlink") is None:
+        tell("no orders are heard: that needs pymavlink; pip install 'mmrs-core[mavlink]'")
+        yield
+        return
+    from mmrs_core.flight.control import Control
+
+    inboxes = {robot: _inbox(robot, orders) for robot in robots}
+    control = Control(folder, run, inboxes, status)
+    try:
+        yield
+    finally:
+        for inbox in inboxes.values():
+            inbox.close("the run has ended")
+        control.close()
+
+
+def _inbox(robot: str, orders: Orders) -> Inbox:
+    from mmrs_core.flight.orders import Inbox
+
+    told: dict[str, bool] = {}
+
+    def arrived() -> None:
+        for question, answer in inbox.answers.items():
+            if told.get(question) is not answer:
+                told[question] = answer
+                orders.give(ANSWER, (robot,), question=question, answer=answer)
+        while (receipt := inbox.take()) is not None:
+            _pass_on(receipt)
+
+    def _pass_on(receipt: Receipt) -> None:
+        def answered(robot: str, why: str | None) -> None:
+            if why is None:
+                receipt.confirm()
+            else:
+                receipt.refuse(why)
+
+        orders.give(receipt.order.name, (robot,), told=answered)
+
+    inbox = Inbox(robot, arrived=arrived)
+    return inbox
