@@ -1,31 +1,35 @@
-"""Robots in the air: simulated vehicles, and the process that flies them one way or the other."""
+"""Robots in the air: simulated vehicles, and the processes that fly them one way or the other."""
 
 from __future__ import annotations
 
 import json
-import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
+from fault_table.process import Process
 from fault_table.project import Pad, home_of, write_project
+from mmrs_core import pipeline
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.languages.reading import read_model
+from mmrs_core.plugins import load_plugins
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 EXECUTIONS = ("generated", "interpreted")
-STARTED_SECONDS = 60.0
 
 
 class Fleet:
-    """One process with all robots of a project, and a vehicle for each.
+    """All robots of a project, each with a vehicle, and the processes that fly them.
 
     Attributes:
         vehicles: by robot.
-        said: what the process has said so far.
         logs: folder of the logs.
+        process: the one that was started last.
     """
 
     def __init__(
@@ -36,9 +40,8 @@ class Fleet:
         *,
         speedup: float = 10.0,
         settings: Mapping[str, Mapping[str, object]] | None = None,
-        arguments: Sequence[str] = (),
     ) -> None:
-        """Write a project, and switch its vehicles on.
+        """Write a project, and make what flies it.
 
         Args:
             folder: for all files.
@@ -46,84 +49,52 @@ class Fleet:
             execution: one of `EXECUTIONS`.
             speedup: seconds of the run in a second.
             settings: of the vehicles, by robot.
-            arguments: of the process, beside those that it needs.
         """
-        self.folder, self.pads, self.execution, self.speedup = folder, pads, execution, speedup
-        self.behaviour = write_project(folder, pads)
+        self.folder, self.execution, self.speedup = folder, execution, speedup
         self.logs = folder / "logs"
+        self.behaviour = write_project(folder, pads)
         self.vehicles: dict[str, SimulatedVehicle] = {}
-        self.said: list[str] = []
-        self.process: subprocess.Popen[str] | None = None
-        self._arguments = list(arguments)
-        self._links: list[str] = []
+        self._links: dict[str, str] = {}
+        self._processes: list[Process] = []
         for index, pad in enumerate(pads):
             port = free_port()
             given = Settings("copter", *home_of(index), **(settings or {}).get(pad.robot, {}))
             self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup)
-            self._links += ["--link", f"{pad.robot}=udpin:127.0.0.1:{port}"]
+            self._links[pad.robot] = f"{pad.robot}=udpin:127.0.0.1:{port}"
         if execution == "generated":
             mmrs("generate", str(self.behaviour), "--target", "mavlink-python", "-o", str(folder / "made"))
 
     def __enter__(self) -> Fleet:
         for vehicle in self.vehicles.values():
             vehicle.start()
-        self.start()
         return self
 
     def __exit__(self, *error: object) -> None:
-        if self.process is not None and self.process.poll() is None:
-            self.process.send_signal(signal.SIGCONT)
-            self.process.kill()
-        if self.process is not None:
-            self.process.wait()
-            self._reader.join()
+        for process in self._processes:
+            process.close()
         for vehicle in self.vehicles.values():
             vehicle.stop()
 
-    def start(self, *arguments: str) -> None:
-        """Start the process; again, with further arguments, after it has ended."""
-        command = [sys.executable, "-W", "error", *self._program(), *self._links]
-        command += ["--log", str(self.logs), "--speedup", str(self.speedup), *self._arguments, *arguments]
-        self.process = subprocess.Popen(
-            command,
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        self._reader = threading.Thread(target=self._listen, args=(self.process,), daemon=True)
-        self._reader.start()
+    @property
+    def process(self) -> Process:
+        """Return the process that was started last."""
+        return self._processes[-1]
 
-    def _program(self) -> list[str]:
+    def start(self, *arguments: str, robot: str = "") -> Process:
+        """Start a process for all robots, or for one of them; give it these arguments beside the usual."""
+        links = [
+            word for name, link in self._links.items() if robot in ("", name) for word in (CONNECT, link)
+        ]
+        usual = ["--log", str(self.logs), "--speedup", str(self.speedup)]
+        process = Process([*self._program(robot), *links, *usual, *arguments], self.folder)
+        self._processes.append(process)
+        return process
+
+    def _program(self, robot: str) -> list[str]:
         if self.execution == "generated":
-            return [str(self.folder / "made" / "fleet.py")]
-        return ["-m", "mmrs_core", "run", str(self.behaviour), "--backend", "mavlink"]
-
-    def _listen(self, process: subprocess.Popen[str]) -> None:
-        assert process.stderr is not None
-        with process.stderr:
-            for line in process.stderr:
-                self.said.append(line.rstrip("\n"))
-
-    def signal(self, number: int) -> None:
-        """Send the process a signal."""
-        assert self.process is not None
-        self.process.send_signal(number)
-
-    def end(self, seconds: float = 60.0) -> int | None:
-        """Wait for the end of the process; return its exit code, None if it has not ended in that time."""
-        assert self.process is not None
-        try:
-            code = self.process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return None
-        self._reader.join()
-        return code
-
-    def running(self) -> bool:
-        """Return whether the process has not ended."""
-        return self.process is not None and self.process.poll() is None
+            return [str(self.folder / "made" / (f"robot_{robot}.py" if robot else "fleet.py"))]
+        chosen = ["--robot", robot] if robot else []
+        return ["-m", "mmrs_core", "run", str(self.behaviour), "--backend", "mavlink", *chosen]
 
     def steps(self, robot: str) -> list[dict[str, object]]:
         """Return the steps in a robot's log; a line cut off at the end is left out."""
@@ -132,6 +103,21 @@ class Fleet:
     def box(self, robot: str) -> list[dict[str, object]]:
         """Return the lines of a robot's black box."""
         return _lines(self.logs / f"{robot}.blackbox.ndjson")
+
+    def replayed(self) -> ReplayResult:
+        """Return what a replay of all logs finds; they may end before the run does."""
+        contributions = _contributions()
+        (behaviour,) = read_model(self.behaviour, contributions.languages).roots
+        program = pipeline.program_of(behaviour, contributions)
+        return replay(program, read_logs([self.logs], partial=True), partial=True)
+
+
+CONNECT = {"generated": "--link", "interpreted": "--connect"}
+
+
+@cache
+def _contributions():
+    return load_plugins().contributions
 
 
 def _lines(path: Path) -> list[dict[str, object]]:
@@ -143,25 +129,20 @@ def _lines(path: Path) -> list[dict[str, object]]:
 
 def mmrs(*arguments: str) -> str:
     """Run a command of ours that must succeed; return what it printed."""
-    done = subprocess.run(
-        [sys.executable, "-m", "mmrs_core", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+    command = [sys.executable, "-m", "mmrs_core", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{arguments}: {done.stdout}{done.stderr}"
     return done.stdout
 
 
 def free_port() -> int:
-    """Return a UDP port that nobody uses."""
+    """Return a port that nobody uses."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
-def wait_for(test, seconds: float) -> bool:
+def wait_for(test: Callable[[], bool], seconds: float) -> bool:
     """Return whether a test has come true in that many real seconds."""
     until = time.monotonic() + seconds
     while not test():

@@ -41,6 +41,7 @@ MOMENTS: Mapping[str, Moment] = {
         pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0
     ),
     "at its place": _near(OUT),
+    "waiting": _near(OUT),
     "on a mission (AUTO)": lambda pilot: pilot.mode == 3 and pilot.body.distance_to(TOUR[1]) < 6.0,
     "charging": lambda pilot: (
         not pilot.armed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fault_table.project import POLICY
-from fault_table.trial import Row
+from fault_table.row import Row, leave_alone
 from mmrs_core.sitl import SimulatedVehicle
 
 PHOTO = 2000
@@ -61,10 +61,6 @@ def _reboot(vehicle: SimulatedVehicle) -> None:
 
 def _vehicle_clock(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.jump_clock(3600.0)
-
-
-def _nothing(vehicle: SimulatedVehicle) -> None:
-    """Leave the vehicle alone: what goes wrong is elsewhere."""
 
 
 def _policy(event: str, response: str, after: float | None = None) -> POLICY:
@@ -188,7 +184,7 @@ def _wait_rows() -> list[Row]:
             "wait too long",
             AT,
             _policy("WAIT_TOO_LONG", response, 10.0),
-            _nothing,
+            leave_alone,
             "WAIT_TOO_LONG",
             ends,
             within=16.0,

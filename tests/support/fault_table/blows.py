@@ -1,0 +1,149 @@
+"""The part of the fault table about what happens to the process, and so to all of its robots at once."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from fault_table.fleet import Fleet, wait_for
+from fault_table.process import Process
+from fault_table.row import Row, leave_alone
+from fault_table.trial import Blow
+
+AT = "at its place"
+INJECTED_AT = 40
+"""Second of the run at which faults are made on purpose: by then, robots are at their places."""
+
+STAY = 60.0
+FROZEN_SECONDS = 30.0
+"""Longer than a vehicle bears silence before it acts by itself, seconds of the run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drill:
+    """Something that happens to a process.
+
+    Attributes:
+        rows: its robots.
+        blow: what happens to it.
+        until: when, after all robots are at their places; None: at once.
+        arguments: of the process.
+    """
+
+    name: str
+    rows: tuple[Row, ...]
+    blow: Blow
+    until: Blow | None = None
+    arguments: tuple[str, ...] = ()
+    fast: bool = False
+
+
+def _kill(fleet: Fleet, process: Process) -> None:
+    process.signal(signal.SIGKILL)
+
+
+def _freeze(fleet: Fleet, process: Process) -> None:
+    process.signal(signal.SIGSTOP)
+    threading.Timer(FROZEN_SECONDS / fleet.speedup, process.signal, (signal.SIGCONT,)).start()
+
+
+def _interrupt(fleet: Fleet, process: Process) -> None:
+    process.signal(signal.SIGINT)
+
+
+def _nothing(fleet: Fleet, process: Process) -> None:
+    """Leave it to --inject."""
+
+
+def _injected(fleet: Fleet, process: Process) -> None:
+    """Wait until what was asked for with --inject begins."""
+    wait_for(lambda: any("begins" in line for line in process.said) or not process.running(), 20.0)
+
+
+def _injection(name: str, rows: tuple[Row, ...], faults: str, *more: str, fast: bool = False) -> Drill:
+    return Drill(name, rows, _nothing, _injected, ("--inject", faults, *more), fast)
+
+
+def _link_lost(
+    fault: str,
+    cases: Sequence[tuple[str, str]],
+    after: float,
+    event: str = "",
+    within: float | None = None,
+) -> tuple[Row, ...]:
+    return tuple(
+        Row(fault, AT, ("LINK_LOST", response, after), leave_alone, event, ends, within=within, stay=STAY)
+        for response, ends in cases
+    )
+
+
+def _full_disk() -> tuple[Row, ...]:
+    cases = (("RETURN", "home"), ("EMERGENCY_AREA", "meadow"), ("LAND", "here"))
+    return tuple(
+        Row(
+            "disk full",
+            AT,
+            ("LOG_FAILED", response, None),
+            leave_alone,
+            "",
+            ends,
+            within=60.0,
+            stay=STAY / 2,
+            says="LOG_FAILED",
+        )
+        for response, ends in cases
+    )
+
+
+def _interruption(how: str, ends: str) -> Drill:
+    within = None if how == "hold" else 5.0
+    row = Row(f"Ctrl-C, --on-stop {how}", AT, None, leave_alone, "STOPPED", ends, within=within, stay=STAY)
+    return Drill(
+        f"interrupted, --on-stop {how}", (row, row), _interrupt, None, ("--on-stop", how), how == "return"
+    )
+
+
+BY_ITSELF = [("RETURN", "home"), ("LAND", "here"), ("HOLD", "holds"), ("EMERGENCY_AREA", "meadow")]
+UNHARMED = [("RETURN", "done"), ("LAND", "done")]
+POOR = f"loss=0.1,delay=0.3~0.3,duplicate=0.1,corrupt=0.05,seed=7,cut@{INJECTED_AT}+2"
+
+DRILLS: tuple[Drill, ...] = (
+    Drill(
+        "ground station killed",
+        _link_lost("ground station killed", BY_ITSELF, 5.0, within=10.0),
+        _kill,
+        fast=True,
+    ),
+    Drill(
+        "ground station frozen",
+        _link_lost("ground station frozen for 30 s", BY_ITSELF[:2], 5.0, "LINK_LOST|TAKEN_OVER", 10.0),
+        _freeze,
+    ),
+    _injection("disk full", _full_disk(), f"disk-full@{INJECTED_AT}", fast=True),
+    _injection(
+        "wall clock jumps forward",
+        _link_lost("wall clock jumps by an hour", UNHARMED, 10.0),
+        f"clock-jump@{INJECTED_AT}+3600",
+        fast=True,
+    ),
+    _injection(
+        "wall clock jumps back",
+        _link_lost("wall clock jumps back by an hour", UNHARMED, 10.0),
+        f"clock-jump@{INJECTED_AT}-3600",
+    ),
+    _injection(
+        "process frozen for a moment",
+        _link_lost("process frozen for 4 s", UNHARMED, 30.0),
+        f"freeze@{INJECTED_AT}+4",
+    ),
+    _injection(
+        "poor link",
+        _link_lost("a tenth of all lost, doubled, late or damaged", UNHARMED, 30.0),
+        POOR,
+        "--tries",
+        "12",
+    ),
+    *(_interruption(how, ends) for how, ends in (("hold", "holds"), ("return", "home"), ("land", "here"))),
+)

@@ -1,0 +1,101 @@
+"""A row of the fault table: what is declared and what goes wrong; and what became of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from fault_table.project import POLICY
+from mmrs_core.sitl import SimulatedVehicle
+
+Act = Callable[[SimulatedVehicle], object]
+
+
+def leave_alone(vehicle: SimulatedVehicle) -> None:
+    """Do nothing to the vehicle: what goes wrong is elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Something that goes wrong with one robot, or an order that it gets.
+
+    Attributes:
+        fault: in words.
+        during: when it happens, one of `record.MOMENTS`.
+        policy: what the model declares for it; None: nothing.
+        strike: makes it happen.
+        event: that ends the step log; empty: none may; several are separated by ``|``.
+        ends: where the vehicle comes to rest, as `record.ending` says; ``done``: as if nothing had been.
+        within: seconds of the run until the vehicle must answer; None: it need not do anything new.
+        mends: undoes the fault after so many seconds of the run.
+        order: is given instead of a fault; resumes: seconds of the run after which ``resume`` follows.
+        fast: whether it is among those that are always tested.
+        hands_off: whether nothing but heartbeats may be sent once the controller has noticed.
+        strikes_peer: whether the fault is that of the robot which this one waits for.
+        says: what the process must say, where logs cannot.
+    """
+
+    fault: str
+    during: str
+    policy: POLICY | None
+    strike: Act
+    event: str
+    ends: str
+    within: float | None = 5.0
+    program: str = "tour"
+    stay: float = 20.0
+    settings: Mapping[str, object] = field(default_factory=dict)
+    mends: tuple[float, Act] | None = None
+    order: str = ""
+    resumes: float | None = None
+    fast: bool = False
+    hands_off: bool = False
+    strikes_peer: bool = False
+    says: str = ""
+
+    @property
+    def declared(self) -> str:
+        """Return the policy in words."""
+        if self.policy is None:
+            return "nothing"
+        event, response, after = self.policy
+        return f"{event} → {response}" + (f" after {after:g} s" if after is not None else "")
+
+    @property
+    def title(self) -> str:
+        """Return what tells this row from others."""
+        return f"{self.fault}, {self.during}, {self.declared}"
+
+    @property
+    def rest(self) -> str:
+        """Return where the vehicle must come to rest."""
+        return "home" if self.ends == "done" else self.ends
+
+    @property
+    def response(self) -> str:
+        """Return what the black box must have as the response; empty where it need not have any."""
+        if not self.event or self.order:
+            return ""
+        return "NOTHING" if self.hands_off else self.policy[1] if self.policy is not None else ""
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of a row: in words, in seconds of the run, by the logs; no `problems` if all is right.
+
+    Attributes:
+        answered: seconds until the vehicle did something else; rested: until it had come to rest.
+        confirmed: real seconds until the robot confirmed its order.
+        line: of the step log; decision: of the black box.
+    """
+
+    title: str
+    execution: str
+    declared: str
+    happened: str = ""
+    answered: float | None = None
+    rested: float | None = None
+    confirmed: float | None = None
+    line: str = ""
+    decision: str = ""
+    problems: list[str] = field(default_factory=list)

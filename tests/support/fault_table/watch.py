@@ -1,0 +1,165 @@
+"""Follows one vehicle: strikes when it is time, sees where it comes to rest, and judges it."""
+
+from __future__ import annotations
+
+import json
+import threading
+from math import dist
+
+from fault_table.fleet import Fleet
+from fault_table.record import MOMENTS, Struck, answered, ending, story, struck, talked
+from fault_table.row import Outcome, Row
+from mmrs_core.flight.ordering import give
+
+HANDS_OFF_SECONDS = 3.0
+"""Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a
+heartbeat shows the mode once a second."""
+
+STAYS_SECONDS = 5.0
+"""Seconds of the run for which a vehicle must stay where it has come to rest."""
+
+ORDER_SECONDS = 1.0
+"""Real seconds in which an order must be confirmed."""
+
+GUIDED = 4
+
+
+class Watch:
+    """Follows one robot of a fleet, and keeps what became of it.
+
+    Attributes:
+        outcome: so far.
+    """
+
+    def __init__(self, row: Row, robot: str, fleet: Fleet) -> None:
+        """Follow a robot of this name."""
+        self.outcome = Outcome(row.title, fleet.execution, row.declared)
+        self._row, self._robot, self._fleet = row, robot, fleet
+        self._vehicle = fleet.vehicles[robot]
+        self._victim = fleet.vehicles[f"g{robot[1:]}"] if row.strikes_peer else self._vehicle
+        self._struck: Struck | None = None
+        self._mended = row.mends is None
+        self._resumed = row.resumes is None
+        self._rest: tuple[str, float] | None = None
+        self._target: tuple[float, float, float] | None = None
+        self._turned: float | None = None
+        self._threads: list[threading.Thread] = []
+
+    def ready(self) -> bool:
+        """Return whether the vehicle is where the row wants it to be struck."""
+        return MOMENTS[self._row.during](self._vehicle.autopilot)
+
+    def strike(self) -> None:
+        """Make it happen."""
+        self._target = self._vehicle.autopilot.body.target
+        self._row.strike(self._victim)
+        self._struck = struck(self._vehicle)
+        if self._row.order:
+            self._give(self._row.order)
+
+    def settled(self, itself: bool = True) -> bool:
+        """Go on with it; return whether nothing more is to come.
+
+        Args:
+            itself: whether to strike when the vehicle is where it is wanted; else somebody else does.
+        """
+        if self._struck is None:
+            if itself and self.ready():
+                self.strike()
+            return False
+        self._notice_turn()
+        self._follow_up(self._vehicle.autopilot.time - self._struck.time)
+        found, now = ending(self._vehicle, self._struck), self._vehicle.autopilot.time
+        if not found or self._rest is None or self._rest[0] != found:
+            self._rest = (found, now) if found else None
+            return False
+        stays = found == self._row.rest and now - self._rest[1] > STAYS_SECONDS
+        return stays and self._mended and self._resumed and self._logged()
+
+    def observe(self) -> None:
+        """Keep what the vehicle has done and what the logs say, before anybody interrupts the process."""
+        for thread in self._threads:
+            thread.join(10.0)
+        self._observe_logs()
+        problems = self.outcome.problems
+        if self._struck is None:
+            problems.append(f"never {self._row.during}: {self._vehicle.autopilot.modes}")
+            return
+        self.outcome.happened = story(self._vehicle, self._struck)
+        times = [self._turned, answered(self._vehicle, self._struck)]
+        self.outcome.answered = min((time for time in times if time is not None), default=None)
+        self.outcome.rested = self._rest[1] - self._struck.time if self._rest else None
+        if (self._rest[0] if self._rest else "") != self._row.rest:
+            problems.append(f"does not end as wanted: {self._row.rest}")
+        if self._row.hands_off:
+            self._check_hands_off(self._struck.time)
+        within = self._row.within
+        if within is not None and (self.outcome.answered is None or self.outcome.answered > within):
+            problems.append(f"answered after {self.outcome.answered}, not {within} s")
+
+    def heard(self, said: list[str]) -> None:
+        """Keep what the process has said, where that is all there is."""
+        if self._row.says:
+            found = [line for line in said if self._row.says in line and self._robot in line]
+            self.outcome.line = found[0] if found else ""
+            if not found:
+                self.outcome.problems.append(f"nobody says {self._row.says}")
+
+    def _follow_up(self, since: float) -> None:
+        if not self._mended and self._row.mends is not None and since > self._row.mends[0]:
+            self._mended = True
+            self._row.mends[1](self._victim)
+        if not self._resumed and self._row.resumes is not None and since > self._row.resumes:
+            self._resumed = True
+            self._give("resume")
+
+    def _give(self, order: str) -> None:
+        self._threads.append(threading.Thread(target=self._ask, args=(order,), daemon=True))
+        self._threads[-1].start()
+
+    def _ask(self, order: str) -> None:
+        (reply,) = give(self._fleet.logs, order, [self._robot])
+        if not reply.get("confirmed"):
+            self.outcome.problems.append(f"{order} is not confirmed: {reply}")
+        elif reply["seconds"] > ORDER_SECONDS:
+            self.outcome.problems.append(f"{order} is confirmed after {reply['seconds']} s")
+        if order == self._row.order:
+            self.outcome.confirmed = reply.get("seconds")
+
+    def _notice_turn(self) -> None:
+        """Keep when the vehicle first went for another place than before, in GUIDED."""
+        pilot = self._vehicle.autopilot
+        new = pilot.body.target
+        if self._turned is not None or self._struck is None or pilot.mode != GUIDED or new is None:
+            return
+        if self._target is None or dist(new, self._target) > 1.0:
+            self._turned = pilot.time - self._struck.time
+
+    def _logged(self) -> bool:
+        if not self._row.event or not self._fleet.process.running():
+            return True
+        steps = self._fleet.steps(self._robot)
+        return bool(steps) and steps[-1]["label"] == "fault"
+
+    def _check_hands_off(self, since: float) -> None:
+        sent = talked(self._vehicle, since + HANDS_OFF_SECONDS)
+        self.outcome.happened += f"; heard nothing but heartbeats after {HANDS_OFF_SECONDS:g} s"
+        if sent:
+            self.outcome.problems.append(f"the pilot is disturbed: {sent[:5]}")
+
+    def _observe_logs(self) -> None:
+        steps, row, problems = self._fleet.steps(self._robot), self._row, self.outcome.problems
+        faults = [step["detail"] for step in steps if step["label"] == "fault"]
+        self.outcome.line = json.dumps(steps[-1], ensure_ascii=False) if steps else ""
+        if len(faults) > 1 or "".join(faults) not in row.event.split("|"):
+            problems.append(f"the step log has faults {faults}, not {row.event or 'none'}")
+        elif faults and steps[-1]["label"] != "fault":
+            problems.append(f"a step follows the fault: {steps[-1]}")
+        box = self._fleet.box(self._robot)
+        lines = [line for line in box if line["kind"] == ("order" if row.order else "decision")]
+        fitting = [line for line in lines if row.response and line.get("response") == row.response]
+        self.outcome.decision = json.dumps((fitting or lines or [""])[-1], ensure_ascii=False)
+        if row.response and not fitting and "|" not in row.event:
+            problems.append(f"the black box has no decision to {row.response}: {lines}")
+        if row.order and not any(line["order"] == row.order and line["confirmed"] for line in lines):
+            problems.append(f"the black box has no order {row.order}: {lines}")
