@@ -12,9 +12,10 @@ from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, Trace
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.fencing import fence_faults
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
-from mmrs_core.mavlink.safety import policies_of
+from mmrs_core.mavlink.safety import areas_of, policies_of
 from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
 
@@ -70,6 +71,8 @@ def refusals(input: TargetInput) -> Iterator[str]:
 def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
         yield f"robot '{robot.id}': its home is not known, and heights count from there"
+    if not input.program.frame.is_local:
+        yield from fence_faults(robot, areas_of(robot, input))
     context = context_of(robot, input, geographic=False)
     for policy in policies_of(robot, input):
         yield from _left_alone(policy, f"robot '{robot.id}'", context)

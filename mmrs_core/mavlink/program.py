@@ -12,6 +12,7 @@ from mmrs_core.contributions.targets import TargetInput, TracedStep
 from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
 from mmrs_core.mavlink.safety import (
@@ -19,7 +20,6 @@ from mmrs_core.mavlink.safety import (
     clearance_of,
     escape_from,
     explicit,
-    fence_of,
     policies_of,
     refuges,
 )
@@ -58,7 +58,7 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     areas, program = areas_of(robot, input), input.program
     clearance = clearance_of(input.types.get(robot.type_name), program.position_error)
     geographic = not program.frame.is_local
-    fence, points = (fence_of(areas), refuges(areas, clearance)) if geographic else ((), ())
+    fence, points = (fence_of(robot, areas, clearance), refuges(areas, clearance)) if geographic else ((), ())
     vertices: list[Point] = [vertex for ring in fence for vertex in ring]
     context = context_of(robot, input, [*vertices, *points], geographic=geographic)
     traced = zip(_ordered(robot), trace_of(robot), strict=True)

@@ -20,7 +20,6 @@ from mmrs_core.scene import (
     Point,
     Policy,
     Position,
-    Ring,
     RobotType,
 )
 
@@ -28,19 +27,6 @@ from mmrs_core.scene import (
 def areas_of(robot: RobotProgram, input: TargetInput) -> tuple[Area, ...]:
     """Return the areas that concern a robot."""
     return tuple(area for area in input.areas if area.concerns(robot.type_name))
-
-
-def fence_of(areas: Iterable[Area]) -> tuple[Ring, ...]:
-    """Return the shells that no vehicle may enter at any height, as drawn.
-
-    Areas with an upper or lower side are left out: fences know no heights, and a route may lead
-    over or under them.
-    """
-    return tuple(
-        area.shell
-        for area in areas
-        if area.use is not AreaUse.EMERGENCY and area.low == -inf and area.high == inf
-    )
 
 
 def refuges(areas: Iterable[Area], clearance: float) -> tuple[Point, ...]:

@@ -12,9 +12,10 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.plans.flight import sorties_of
 from mmrs_core.mavlink.plans.items import Item, Row, rows_of
-from mmrs_core.mavlink.safety import areas_of, clearance_of, fence_of, refuges
+from mmrs_core.mavlink.safety import areas_of, clearance_of, refuges
 from mmrs_core.scene import Point
 
 Vertex: TypeAlias = tuple[float, float]
@@ -66,7 +67,7 @@ def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Seque
         stem,
         _home(robot, context),
         rows_of(context, sortie),
-        tuple(degrees_of(ring, context.frame) for ring in fence_of(areas)),
+        tuple(degrees_of(ring, context.frame) for ring in fence_of(robot, areas, clearance)),
         _rally(context, refuges(areas, clearance), sortie),
     )
 

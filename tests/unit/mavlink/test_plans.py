@@ -140,13 +140,15 @@ def test_a_second_sortie_is_a_second_plan():
     assert [c for c, _ in items(files["alpha.sortie-2.plan"])] == [22, 21]
 
 
-def test_forbidden_areas_are_exclusion_polygons_as_drawn():
+def test_forbidden_areas_are_exclusion_polygons_and_enlarged():
     plan = plans(take_off("up", 20.0), LAND)["alpha.plan"]
     (polygon,) = plan["geoFence"]["polygons"]
     assert polygon["inclusion"] is False
-    corner = LocalFrame("EPSG:4326", 42.37, 13.35).to_geographic([(100.0, 0.0)])[0]
-    assert polygon["polygon"][0] == [round(corner[0], 7), round(corner[1], 7)]
-    assert len(polygon["polygon"]) == 4
+    latitudes, longitudes = zip(*polygon["polygon"], strict=True)
+    corners = LocalFrame("EPSG:4326", 42.37, 13.35).to_local(latitudes, longitudes)
+    easts, norths = [corner[0] for corner in corners], [corner[1] for corner in corners]
+    assert (min(easts), max(easts)) == pytest.approx((99.55, 140.45), abs=0.02)
+    assert (min(norths), max(norths)) == pytest.approx((-0.45, 40.45), abs=0.02)
 
 
 def test_rally_points_keep_their_clearance_inside_emergency_areas():

@@ -5,15 +5,11 @@ from math import inf
 
 import pytest
 
-from mmrs_core.mavlink.safety import clearance_of, escape_from, fence_of, policies_of, refuges
+from mmrs_core.mavlink.safety import clearance_of, escape_from, policies_of, refuges
 from mmrs_core.scene import Area, AreaUse, Policy
-from mmrs_core.testing.programs import areas, program, quad, robot_program, target_input
+from mmrs_core.testing.programs import program, quad, robot_program, target_input
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
-
-
-def test_only_what_is_forbidden_at_every_height_is_fenced():
-    assert [ring[0] for ring in fence_of(areas())] == [(100.0, 0.0)]
 
 
 def test_an_emergency_area_that_is_too_small_has_no_refuge():
