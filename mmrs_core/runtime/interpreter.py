@@ -29,7 +29,7 @@ from mmrs_core.contributions.execution import (
 )
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.attention import BUS, Attention
-from mmrs_core.runtime.obedience import ORDERED, STOPPED, Obedience
+from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.robot import HANDS_OFF, Rules, RunningRobot
@@ -132,7 +132,8 @@ def interpret(
     robots = []
     for robot in program.robots:
         if robot.id in backends:
-            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends)
+            live = terms.attention is not None
+            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, terse=live)
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
     return _Run(program, robots, bus, clock, terms).go()
@@ -376,7 +377,7 @@ class _Run:
         return False
 
     def _is_watched(self, robot: RunningRobot) -> bool:
-        if robot.fault is None or robot.fault.which in (STOPPED, ORDERED):
+        if robot.fault is None or robot.released:
             return False
         return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mmrs_core.contributions.execution import Clock, Fault, Noting, Pausable, Watched
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
-from mmrs_core.runtime.robot import RunningRobot
+from mmrs_core.runtime.robot import HANDS_OFF, RunningRobot
 
 ORDERED, STOPPED = "ORDERED", "STOPPED"
 """Faults that end the program of a robot because somebody wants that."""
@@ -102,15 +102,27 @@ class Obedience:
         """Have a robot whose program has ended by a fault stop in another way."""
         if robot.fault is None:
             order.refuse(robot.id, "its program has ended")
-            return
+        elif robot.response == HANDS_OFF:
+            order.refuse(robot.id, "a pilot has taken over")
+        elif robot.fault.which == "LINK_LOST":
+            order.refuse(robot.id, "its link is lost")
+        elif order.kind == STOP and not (robot.stopping or self._is_watched(robot)):
+            order.confirm(robot.id)
+        else:
+            self._stop(order, robot)
+
+    def _is_watched(self, robot: RunningRobot) -> bool:
+        return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
+
+    def _stop(self, order: Order, robot: RunningRobot) -> None:
+        robot.response = self._orders.response(order.kind)
         try:
-            robot.response = self._orders.response(order.kind)
             robot.backend.stop(self._clock.now(), robot.response)
         except LinkLostError as error:
             order.refuse(robot.id, str(error))
-        else:
-            robot.fault = Fault(STOPPED if order.kind == STOP else ORDERED, f"order to {order.kind}")
-            robot.stopping = self._clock.passes_by_itself
+            return
+        robot.released = True
+        robot.stopping = self._clock.passes_by_itself
 
     def _look(self, order: Order) -> None:
         now = self._clock.now()

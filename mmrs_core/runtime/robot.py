@@ -31,11 +31,13 @@ class Rules:
         conditions: by identifier.
         policies: of its type and kind, which go after the program's.
         suspends: whether a low battery only breaks the program off, to go on with a full one.
+        terse: whether steps tell only which fault it is; the black box then has the reason.
     """
 
     conditions: Mapping[str, Condition]
     policies: tuple[Policy, ...]
     suspends: bool
+    terse: bool = False
 
 
 class RunningRobot:
@@ -52,6 +54,7 @@ class RunningRobot:
         number: of its next step.
         response: how it was told to stop.
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
+        released: whether somebody ordered it to stop, so that it need not be watched.
         held: whether somebody ordered it to hold.
         suspended: whether its program is broken off until its battery was changed.
         stopping: whether it has still to confirm that it has stopped.
@@ -73,7 +76,7 @@ class RunningRobot:
         self.number = 0
         self.response = ""
         self.ordered: tuple[Fault, str] | None = None
-        self.held = self.suspended = self.stopping = self.recovering = False
+        self.released = self.held = self.suspended = self.stopping = self.recovering = False
         self.question = ""
         self.answers: dict[str, bool] = {}
         self._program, self._bus, self._rules = program, bus, rules
@@ -137,7 +140,7 @@ class RunningRobot:
 
     def end_by(self, found: Fault, response: str) -> None:
         """Have the program end because somebody ordered that."""
-        self.ordered, self.held = (found, response), False
+        self.ordered, self.held, self.released = (found, response), False, True
 
     def due(self, now: float, peers: Peers) -> Step | None:
         """Return the step to be made now, beginning what has to be begun; None: not yet.
@@ -183,7 +186,7 @@ class RunningRobot:
         self._give_up()
         self.fault, self.response = found, response
         self.ordered, self.suspended, self.recovering = None, False, False
-        return fault(self._program, self.point, str(found))
+        return fault(self._program, self.point, found.which if self._rules.terse else str(found))
 
     def _response_to(self, found: Fault) -> str:
         if found.which == TAKEN_OVER:
