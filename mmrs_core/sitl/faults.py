@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 
 from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.failsafes import breach
 
 
 class Faults:
@@ -64,15 +65,17 @@ class Faults:
     def breach_fence(self) -> None:
         """Have it report that it has left its fence, and do what FENCE_ACTION says."""
         with self._lock:
-            self._autopilot.breach()
+            self._autopilot.failed["forced"] = 1.0
+            breach(self._autopilot)
 
     def mend_fence(self) -> None:
         """Have it be inside its fence again."""
         with self._lock:
+            self._autopilot.failed.pop("forced", None)
             self._autopilot.breached = False
 
     def set_battery(self, level: float) -> None:
-        """Leave a part of the battery, 0 to 1."""
+        """Have a battery of which so much is left, 0 to 1: an old one, or a fresh one after a change."""
         with self._lock:
             self._autopilot.energy = level
 
@@ -106,12 +109,12 @@ class Faults:
     def break_camera(self) -> None:
         """Have its camera take no more photos, and tell none."""
         with self._lock:
-            self._autopilot.camera_works = False
+            self._autopilot.camera.works = False
 
     def mend_camera(self) -> None:
         """Have its camera work again."""
         with self._lock:
-            self._autopilot.camera_works = True
+            self._autopilot.camera.works = True
 
     def begin(self, name: str, *values: str) -> None:
         """Begin a fault by its name in `FAULTS`, with its values as texts.

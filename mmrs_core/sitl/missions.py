@@ -1,173 +1,135 @@
-"""The vehicle's side of the mission protocol: receiving and giving back missions, fences, rally points."""
+"""Flies a mission, item by item, with ArduPilot's habits."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
-
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-Message = Any
+from mmrs_core.sitl.autopilot import Autopilot, bearing
+from mmrs_core.sitl.items import MISSION, MOVING, Item
 
-POSITIONAL_FRAMES = {0, 3, 5, 6, 10, 11}
-_POSITIONAL = {16, 17, 18, 19, 21, 22, 5001, 5002, 5003, 5004, 5100}
-_KNOWN = _POSITIONAL | {
-    20,
-    93,
-    112,
-    115,
-    177,
-    178,
-    181,
-    182,
-    183,
-    195,
-    197,
-    203,
-    206,
-    207,
-    211,
-    1000,
-    2000,
-    2001,
-    2500,
-    2501,
-}
+CLOSE = 0.2
+TURN_SECONDS = 10.0
+"""A circle of LOITER_TURNS takes so long: it is flown on the spot."""
+
+UNTOLD = frozenset({203, 206, 2000, 2001, 2500, 2501})
+"""Items for cameras, which are carried out in their order and never told as reached."""
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
-    """An item as received."""
-
-    frame: int
-    command: int
-    params: tuple[float, float, float, float]
-    x: int
-    y: int
-    z: float
-
-
-def fault_of(item: Item) -> int:
-    """Return why an item is refused, as a MAV_MISSION_RESULT; 0 if it is not."""
-    if item.command not in _KNOWN:
-        return int(mavlink.MAV_MISSION_UNSUPPORTED)
-    if item.command in _POSITIONAL and item.frame not in POSITIONAL_FRAMES:
-        return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
-    if any(value != value for value in item.params[:3]):
-        return int(mavlink.MAV_MISSION_INVALID_PARAM1)
-    return 0
+def fly_mission(pilot: Autopilot, seconds: float) -> str:
+    """Work on the mission for a while; return ``land`` or ``return`` where an item asks for that."""
+    items = pilot.stores[MISSION]
+    pilot.item = max(pilot.first_item, pilot.item)
+    while not pilot.finished and pilot.item < len(items):
+        item = items[pilot.item]
+        if item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
+            return "return"
+        if item.command == mavlink.MAV_CMD_NAV_LAND and _arrives_to_land(pilot, item):
+            return "land"
+        if not _perform(pilot, item, seconds):
+            return ""
+        if not _leave(pilot, item):
+            return ""
+    return ""
 
 
-class MissionProtocol:
-    """Answers the messages of the mission protocol, one transfer at a time.
-
-    Attributes:
-        busy: whether uploads are refused for want of space, as just after a boot.
-    """
-
-    def __init__(self, stores: dict[int, list[Item]], send: Callable[[Message], None]) -> None:
-        """Keep what is uploaded in `stores`, by mission type, and answer by `send`."""
-        self.busy = False
-        self._stores = stores
-        self._send = send
-        self._incoming: list[Item] = []
-        self._expected = 0
-        self._kind = 0
-        self._peer = (0, 0)
-
-    def take(self, message: Message) -> None:
-        """Answer a message, if it is one of the protocol."""
-        handler = _HANDLERS.get(message.get_type())
-        if handler is not None:
-            self._peer = (message.get_srcSystem(), message.get_srcComponent())
-            handler(self, message)
-
-    def _count(self, message: Message) -> None:
-        if self.busy:
-            self._acknowledge(mavlink.MAV_MISSION_NO_SPACE, message.mission_type)
-            return
-        self._incoming, self._expected, self._kind = [], message.count, message.mission_type
-        if message.count == 0:
-            self._finish()
-        else:
-            self._request(0)
-
-    def _item(self, message: Message) -> None:
-        if message.mission_type != self._kind:
-            return
-        if message.seq != len(self._incoming) or not self._expected:
-            self._repeat(message.seq)
-            return
-        params = (message.param1, message.param2, message.param3, message.param4)
-        item = Item(message.frame, message.command, params, message.x, message.y, message.z)
-        fault = fault_of(item)
-        if fault:
-            self._expected = 0
-            self._acknowledge(fault, self._kind)
-            return
-        self._incoming.append(item)
-        if len(self._incoming) == self._expected:
-            self._finish()
-        else:
-            self._request(len(self._incoming))
-
-    def _repeat(self, seq: int) -> None:
-        """Answer again what the ground station has missed, when it sends an item for the second time."""
-        if seq == len(self._incoming) - 1 and self._expected:
-            self._request(len(self._incoming))
-        elif seq == len(self._incoming) - 1:
-            self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, self._kind)
-
-    def _finish(self) -> None:
-        self._stores[self._kind] = self._incoming
-        self._expected = 0
-        self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, self._kind)
-
-    def _clear(self, message: Message) -> None:
-        if self.busy:
-            self._acknowledge(mavlink.MAV_MISSION_NO_SPACE, message.mission_type)
-            return
-        self._stores[message.mission_type] = []
-        self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, message.mission_type)
-
-    def _list(self, message: Message) -> None:
-        count = len(self._stores[message.mission_type])
-        self._send(mavlink.MAVLink_mission_count_message(*self._peer, count, message.mission_type))
-
-    def _wanted(self, message: Message) -> None:
-        items = self._stores[message.mission_type]
-        if not 0 <= message.seq < len(items):
-            self._acknowledge(mavlink.MAV_MISSION_INVALID_SEQUENCE, message.mission_type)
-            return
-        item = items[message.seq]
-        self._send(
-            mavlink.MAVLink_mission_item_int_message(
-                *self._peer,
-                message.seq,
-                item.frame,
-                item.command,
-                0,
-                1,
-                *item.params,
-                item.x,
-                item.y,
-                item.z,
-                message.mission_type,
-            )
-        )
-
-    def _request(self, seq: int) -> None:
-        self._send(mavlink.MAVLink_mission_request_int_message(*self._peer, seq, self._kind))
-
-    def _acknowledge(self, result: int, kind: int) -> None:
-        self._send(mavlink.MAVLink_mission_ack_message(*self._peer, result, kind))
+def jump(pilot: Autopilot, number: int) -> None:
+    """Go on with another item."""
+    pilot.item, pilot.held, pilot.finished = number, 0.0, False
+    pilot.returning = []
 
 
-_HANDLERS: dict[str, Callable[[MissionProtocol, Message], None]] = {
-    "MISSION_COUNT": MissionProtocol._count,
-    "MISSION_ITEM_INT": MissionProtocol._item,
-    "MISSION_CLEAR_ALL": MissionProtocol._clear,
-    "MISSION_REQUEST_LIST": MissionProtocol._list,
-    "MISSION_REQUEST_INT": MissionProtocol._wanted,
-}
+def _leave(pilot: Autopilot, item: Item) -> bool:
+    """Go on to the next item; return whether there is one."""
+    pilot.visited.append((pilot.time, pilot.item))
+    if item.command not in UNTOLD:
+        pilot.pending = pilot.item
+    if item.command == mavlink.MAV_CMD_DO_JUMP and _jumps(pilot, item):
+        return True
+    if pilot.item + 1 >= len(pilot.stores[MISSION]):
+        pilot.finished = True
+        pilot.body.target = pilot.body.onward = None
+        return False
+    jump(pilot, pilot.item + 1)
+    return True
+
+
+def _jumps(pilot: Autopilot, item: Item) -> bool:
+    times = pilot.loops.get(pilot.item, 0)
+    if 0 <= item.params[1] <= times:
+        return False
+    pilot.loops[pilot.item] = times + 1
+    jump(pilot, int(item.params[0]))
+    return True
+
+
+def _perform(pilot: Autopilot, item: Item, seconds: float) -> bool:
+    """Work on an item for a while; return whether it is done."""
+    if item.command in MOVING:
+        return _go(pilot, item, seconds)
+    if item.command in (mavlink.MAV_CMD_NAV_DELAY, mavlink.MAV_CMD_CONDITION_DELAY):
+        pilot.held += seconds
+        return pilot.held >= item.params[0]
+    if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+        pilot.body.speed = item.params[1]
+    elif item.command == mavlink.MAV_CMD_CONDITION_YAW:
+        pilot.body.wanted_heading = item.params[0]
+    elif item.command in (mavlink.MAV_CMD_DO_SET_ROI, mavlink.MAV_CMD_DO_SET_ROI_LOCATION):
+        pilot.roi = pilot.place_of(item)
+    elif item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
+        pilot.roi = None
+    elif item.command == mavlink.MAV_CMD_DO_FENCE_ENABLE:
+        pilot.parameters["FENCE_ENABLE"] = item.params[0]
+    pilot.note(item.command, (*item.params, item.x, item.y, item.z))
+    return True
+
+
+def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
+    body, takes_off = pilot.body, item.command == mavlink.MAV_CMD_NAV_TAKEOFF
+    if pilot.flies and not pilot.airborne and not takes_off:
+        return False
+    place = pilot.place_of(item)
+    if takes_off:
+        place = (*body.position[:2], place[2])
+    body.target = place
+    body.onward = _onward(pilot, item)
+    wanted = bearing(body.position, pilot.roi or place)
+    if wanted is not None:
+        body.wanted_heading = wanted
+    if body.onward is not None:
+        return body.goes_by()
+    if body.distance_to(place) > CLOSE and not pilot.held:
+        return False
+    pilot.held += seconds
+    return pilot.held >= _hold_of(item)
+
+
+def _onward(pilot: Autopilot, item: Item) -> tuple[float, float, float] | None:
+    """Return where it goes after an item at which it does not stop; None where it stops."""
+    if item.command not in (mavlink.MAV_CMD_NAV_WAYPOINT, 82) or item.params[0] >= 1.0:
+        return None
+    for following in pilot.stores[MISSION][pilot.item + 1 :]:
+        if following.command in (mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_TAKEOFF):
+            return None
+        if following.command in MOVING and (following.x or following.y):
+            return pilot.place_of(following)
+        if following.command in (20, 93, 112, 177):
+            return None
+    return None
+
+
+def _hold_of(item: Item) -> float:
+    if item.command == mavlink.MAV_CMD_NAV_LOITER_UNLIM:
+        return float("inf")
+    turns = item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS
+    return item.params[0] * TURN_SECONDS if turns else item.params[0]
+
+
+def _arrives_to_land(pilot: Autopilot, item: Item) -> bool:
+    """Fly above the place of a landing; return whether it is there."""
+    if not (item.x or item.y) or pilot.held:
+        return True
+    place = pilot.place_of(item)
+    above = (place[0], place[1], pilot.body.position[2])
+    pilot.body.target, pilot.body.onward = above, None
+    pilot.held = 1.0 if pilot.body.distance_to(above) <= CLOSE else 0.0
+    return bool(pilot.held)

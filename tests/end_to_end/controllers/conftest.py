@@ -92,6 +92,7 @@ def _open_hangar():
 
     def switch_on(program, speedup: float = 20.0, loss: float = 0.0, types=MappingProxyType({}), **settings):
         links, found = ["--speedup", str(speedup)], {}
+        settings.setdefault("recharge", 60.0)
         for robot in program.robots:
             latitude, longitude = (42.37, 13.35)
             if not program.frame.is_local:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mmrs_core.scene import Policy
-from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
 
 LAND = move("down", "Land", uri=MULTICOPTER)
@@ -28,21 +27,9 @@ def take_offs(vehicle) -> int:
     return sum(command == TAKE_OFF for _, command, _ in vehicle.autopilot.history)
 
 
-class Unmonitored(Autopilot):
-    """A vehicle that does not know its battery, which it says as -1 %."""
-
-    @property
-    def energy(self) -> float:
-        return -0.01
-
-    @energy.setter
-    def energy(self, value: float) -> None:
-        pass
-
-
 def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, hangar):
     made = controllers(two_sorties())
-    vehicles, links = hangar(made.program, energy=2.0, recharge=1e9)
+    vehicles, links = hangar(made.program, energy=2.0, recharge=1e9, falls=False)
     code, said = made.run("fleet.py", *links)
     assert code == 1, said
     assert "BATTERY_LOW: after" in said
@@ -61,7 +48,7 @@ def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
 
 def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
     made = controllers(two_sorties(charge=20.0))
-    vehicles, links = hangar(made.program, energy=2.0, recharge=40.0)
+    vehicles, links = hangar(made.program, energy=2.0, recharge=40.0, falls=False)
     code, said = made.run("fleet.py", *links)
     assert code == 0, said
     landed, left = (
@@ -73,8 +60,7 @@ def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
 
 def test_a_robot_that_does_not_know_its_battery_says_so_and_charges_as_long_as_expected(controllers, hangar):
     made = controllers(two_sorties())
-    vehicles, links = hangar(made.program)
-    vehicles["alpha"].autopilot.__class__ = Unmonitored
+    vehicles, links = hangar(made.program, tells_battery=False)
     code, said = made.run("fleet.py", *links)
     assert code == 0, said
     assert said.count("does not tell its battery") == 1

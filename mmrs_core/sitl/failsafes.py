@@ -1,0 +1,224 @@
+"""What the vehicle watches by itself, and what its parameters make it do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.fences import Zone, zones_of
+from mmrs_core.sitl.items import FENCE
+from mmrs_core.sitl.modes import BLIND
+from mmrs_core.sitl.settings import PX4
+
+CRITICAL = mavlink.MAV_SEVERITY_CRITICAL
+WARNING = mavlink.MAV_SEVERITY_WARNING
+EKF_SECONDS = 1.0
+FENCE_SECONDS = 1.0
+GIVE_UP_METRES = 100.0
+DISARM = "disarm"
+
+Answers = Mapping[int, tuple[str, ...]]
+
+ON_SILENCE: Mapping[str, Answers] = {
+    "copter": {
+        1: ("return", "land"),
+        2: ("return", "land"),
+        3: ("smart_return", "return", "land"),
+        4: ("smart_return", "land"),
+        5: ("land",),
+        6: ("return", "land"),
+        7: ("brake", "land"),
+    },
+    "sub": {1: (), 2: (DISARM,), 3: ("alt_hold",), 4: ("surface",)},
+}
+ON_ROVERS_LOSS: Answers = {
+    1: ("return", "brake"),
+    2: ("brake",),
+    3: ("smart_return", "return", "brake"),
+    4: ("smart_return", "brake"),
+    5: (DISARM,),
+    6: ("loiter", "brake"),
+}
+ON_BATTERY: Answers = {
+    1: ("land", "surface", "brake"),
+    2: ("return", "land", "brake"),
+    3: ("smart_return", "return", "land", "brake"),
+    4: ("smart_return", "land", "brake"),
+    5: (DISARM,),
+    6: ("return", "land"),
+    7: ("brake", "land"),
+}
+ON_BREACH: Answers = {
+    1: ("return", "land", "brake"),
+    2: ("land", "brake"),
+    3: ("smart_return", "return", "land", "brake"),
+    4: ("brake", "land"),
+    5: ("smart_return", "land", "brake"),
+}
+ON_PX4: Answers = {1: ("loiter",), 2: ("return", "land"), 3: ("land",), 5: (DISARM,), 6: (DISARM,)}
+"""What NAV_DLL_ACT, GF_ACTION and, with its own numbers, COM_LOW_BAT_ACT mean."""
+
+OFFBOARD_LOST: Answers = {
+    0: ("poshold",),
+    1: ("alt_hold",),
+    2: ("manual",),
+    3: ("return", "land"),
+    4: ("land",),
+    5: ("loiter",),
+}
+
+
+def watch(pilot: Autopilot, seconds: float) -> None:
+    """Look for what is wrong, and answer it once."""
+    _watch_position(pilot, seconds)
+    _watch_fence(pilot)
+    if not pilot.armed:
+        pilot.failed.pop("gcs", None)
+        return
+    _watch_link(pilot)
+    _watch_battery(pilot)
+    if pilot.settings.firmware == PX4:
+        _watch_stream(pilot)
+
+
+def _watch_position(pilot: Autopilot, seconds: float) -> None:
+    if pilot.located:
+        pilot.failed.pop("position", None)
+        pilot.failed.pop("ekf", None)
+        return
+    lost = pilot.failed["position"] = pilot.failed.get("position", 0.0) + seconds
+    if not pilot.armed or pilot.mode_name in BLIND or lost <= EKF_SECONDS or "ekf" in pilot.failed:
+        return
+    pilot.failed["ekf"] = pilot.time
+    px4 = pilot.settings.firmware == PX4
+    action = 1.0 if px4 else pilot.parameters["FS_EKF_ACTION"]
+    if action:
+        names = ("alt_hold",) if action == 2.0 or px4 else ("land", "surface", "brake", "manual")
+        pilot.enter(*names)
+        pilot.say(CRITICAL, f"EKF Failsafe: changed to {pilot.mode_name.upper()} Mode")
+
+
+def _watch_link(pilot: Autopilot) -> None:
+    px4 = pilot.settings.firmware == PX4
+    if pilot.heard is None:
+        return
+    limit = pilot.parameters["COM_DL_LOSS_T" if px4 else "FS_GCS_TIMEOUT"]
+    if pilot.time - pilot.heard < max(limit, pilot.patience):
+        if pilot.failed.pop("gcs", None) is not None:
+            pilot.say(WARNING, "GCS Failsafe Cleared")
+        return
+    enabled = pilot.parameters["NAV_DLL_ACT" if px4 else "FS_GCS_ENABLE"]
+    if not enabled or "gcs" in pilot.failed:
+        return
+    pilot.failed["gcs"] = pilot.time
+    pilot.say(WARNING, "GCS Failsafe")
+    _answer(pilot, _on_silence(pilot, int(enabled)))
+
+
+def _on_silence(pilot: Autopilot, enabled: int) -> tuple[str, ...]:
+    if pilot.settings.firmware == PX4:
+        return ON_PX4.get(enabled, ())
+    if pilot.settings.kind == "rover":
+        if enabled == 2 and pilot.mode_name == "auto":
+            return ()
+        return ON_ROVERS_LOSS.get(int(pilot.parameters["FS_ACTION"]), ())
+    return ON_SILENCE[pilot.settings.kind].get(enabled, ())
+
+
+def _watch_battery(pilot: Autopilot) -> None:
+    if not pilot.settings.tells_battery:
+        return
+    if pilot.settings.firmware == PX4:
+        _watch_px4_battery(pilot)
+        return
+    for name, action in (("CRT", "BATT_FS_CRT_ACT"), ("LOW", "BATT_FS_LOW_ACT")):
+        volts, reserve = pilot.parameters[f"BATT_{name}_VOLT"], pilot.parameters[f"BATT_{name}_MAH"]
+        left = pilot.parameters["BATT_CAPACITY"] - pilot.battery.used
+        if not (pilot.battery.voltage < volts or left < reserve):
+            pilot.failed.pop(f"{name} since", None)
+            continue
+        since = pilot.failed.setdefault(f"{name} since", pilot.time)
+        if pilot.time - since >= pilot.parameters["BATT_LOW_TIMER"] and name not in pilot.failed:
+            pilot.failed[name] = pilot.time
+            word = "low" if name == "LOW" else "critical"
+            used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
+            pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
+            _answer(pilot, ON_BATTERY.get(int(pilot.parameters[action]), ()))
+
+
+def _watch_px4_battery(pilot: Autopilot) -> None:
+    action = int(pilot.parameters["COM_LOW_BAT_ACT"])
+    for name, level, answer in (
+        ("BAT_LOW_THR", 0, ()),
+        ("BAT_CRIT_THR", 2, ("land",)),
+        ("BAT_CRIT_THR", 3, ("return", "land")),
+        ("BAT_EMERGEN_THR", 3, ("land",)),
+    ):
+        if pilot.battery.level < pilot.parameters[name] and level in (0, action):
+            key = f"{name} {level}"
+            if key not in pilot.failed:
+                pilot.failed[key] = pilot.time
+                pilot.say(CRITICAL, f"{name.split('_')[1].title()} battery level")
+                _answer(pilot, answer)
+
+
+def _watch_stream(pilot: Autopilot) -> None:
+    """PX4 leaves offboard where set-points stay away, by COM_OBL_RC_ACT after COM_OF_LOSS_T."""
+    if pilot.mode_name != "guided" or not pilot.steered:
+        return
+    limit = max(OFFBOARD_GAP, pilot.patience)
+    gap = pilot.time - pilot.steered[-1]
+    if gap > limit:
+        pilot.body.target = None
+    if gap > limit + pilot.parameters["COM_OF_LOSS_T"]:
+        pilot.say(CRITICAL, "Offboard control lost")
+        pilot.enter(*OFFBOARD_LOST.get(int(pilot.parameters["COM_OBL_RC_ACT"]), ("loiter",)), "loiter")
+
+
+OFFBOARD_GAP = 0.5
+
+
+def _watch_fence(pilot: Autopilot) -> None:
+    if pilot.settings.firmware == PX4 or pilot.time < pilot.failed.get("fence due", 0.0):
+        return
+    pilot.failed["fence due"] = pilot.time + FENCE_SECONDS
+    outside = bool(pilot.parameters["FENCE_ENABLE"]) and pilot.located and outside_fence(pilot)
+    if outside and not pilot.breached and pilot.armed:
+        breach(pilot)
+    elif not outside and not pilot.failed.get("forced"):
+        pilot.breached = False
+
+
+def breach(pilot: Autopilot) -> None:
+    """Be out of the fence, say so, and do what FENCE_ACTION says."""
+    pilot.breached = True
+    pilot.breaches += 1
+    pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
+    if pilot.settings.firmware == PX4:
+        _answer(pilot, ON_PX4.get(int(pilot.parameters["GF_ACTION"]), ()))
+    elif pilot.armed and pilot.parameters["FENCE_ENABLE"]:
+        _answer(pilot, ON_BREACH.get(int(pilot.parameters["FENCE_ACTION"]), ()))
+
+
+def outside_fence(pilot: Autopilot) -> bool:
+    """Return whether it is where its fence does not let it be, by what FENCE_TYPE heeds."""
+    heeded = int(pilot.parameters["FENCE_TYPE"])
+    north, east, up = pilot.body.position
+    if heeded & 1 and pilot.flies and up > pilot.parameters["FENCE_ALT_MAX"]:
+        return True
+    if heeded & 2 and (north**2 + east**2) ** 0.5 > pilot.parameters["FENCE_RADIUS"]:
+        return True
+    return bool(heeded & 4) and not all(zone.allows((north, east)) for zone in _zones(pilot))
+
+
+def _zones(pilot: Autopilot) -> tuple[Zone, ...]:
+    return zones_of([(item, pilot.place_of(item)[:2]) for item in pilot.stores[FENCE]])
+
+
+def _answer(pilot: Autopilot, names: tuple[str, ...]) -> None:
+    if (pilot.flies and not pilot.airborne and names) or names == (DISARM,):
+        pilot.disarm()
+    else:
+        pilot.enter(*names)

@@ -1,0 +1,359 @@
+"""A simulated vehicle: an autopilot that answers MAVLink by its radio."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from math import degrees, isnan
+from types import TracebackType
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl import parameters, telemetry
+from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.commands import ACCEPTED, complaint, obey, steer
+from mmrs_core.sitl.faults import Faults
+from mmrs_core.sitl.hosting import Host
+from mmrs_core.sitl.items import MISSION, RALLY, Item
+from mmrs_core.sitl.radio import COMPONENT, Radio
+from mmrs_core.sitl.settings import PX4, Settings
+from mmrs_core.sitl.simulation import advance
+from mmrs_core.sitl.transfers import MissionProtocol
+
+Message = Any
+
+YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
+ABOVE_SEA = frozenset({0, 5})
+UNFIT_SECONDS = 30.0
+REAL_PATIENCE = 2.0
+"""Real seconds that it waits at least for what comes by its link, however fast its time goes."""
+
+AT_ONCE = 10
+"""Parameters of a list that are told in one go."""
+
+
+class SimulatedVehicle:
+    """A vehicle that sends to one UDP address, and listens for the answers.
+
+    Attributes:
+        autopilot: what it does; read it freely, its numbers may be a tick old.
+        faults: makes things go wrong with it.
+        radio: how it speaks.
+        received: (seconds, name) of every message that has come for it, but heartbeats.
+        speedup: seconds of simulation in a second.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        settings: Settings | None = None,
+        *,
+        host: str = "127.0.0.1",
+        speedup: float = 1.0,
+        loss: float = 0.0,
+        delay: float = 0.0,
+        seed: int = 0,
+    ) -> None:
+        """Prepare a vehicle; it speaks from `start` on.
+
+        Args:
+            port: UDP port of the ground station.
+            settings: how it is.
+            host: of the ground station.
+            speedup: seconds of simulation in a second.
+            loss: part of all datagrams that are lost, either way.
+            delay: real seconds that a datagram takes, either way.
+            seed: of the losses.
+        """
+        given = settings or Settings()
+        self.autopilot = Autopilot(given)
+        self.speedup = speedup
+        self.autopilot.patience = REAL_PATIENCE * speedup
+        self.radio = Radio((host, port), given.system, key=given.key, loss=loss, delay=delay, seed=seed)
+        self.received: list[tuple[float, str]] = []
+        self.lock = threading.RLock()
+        self.faults = Faults(self.autopilot, self.lock)
+        self.radio.down = lambda: self.faults.link_down or self.autopilot.booting
+        self._missions = MissionProtocol(
+            self.autopilot.stores, self._answer, given.firmware, self.autopilot.say
+        )
+        self._missions.finished = self._count_items
+        self._missions.home = None if given.firmware == PX4 else self._home
+        self._late: list[tuple[float, Message]] = []
+        self._listed: list[str] = []
+        self._host: Host | None = None
+        self._begin()
+
+    def start(self) -> None:
+        """Switch the vehicle on, in a thread of its own."""
+        self._host = Host([self])
+        self._host.start()
+
+    def stop(self) -> None:
+        """Switch it off."""
+        if self._host is not None:
+            self._host.stop()
+        self.radio.close()
+
+    def mute(self) -> None:
+        """Cut the link both ways; the vehicle goes on."""
+        self.faults.cut_link()
+
+    def unmute(self) -> None:
+        """Mend the link."""
+        self.faults.mend_link()
+
+    def __enter__(self) -> SimulatedVehicle:
+        """Switch the vehicle on."""
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Switch it off."""
+        self.stop()
+
+    def hear(self) -> None:
+        """Answer what has come."""
+        with self.lock:
+            for message in self.radio.receive():
+                if self._is_for_it(message):
+                    self._take(message)
+
+    def go_on(self, real_seconds: float) -> None:
+        """Let real time pass, and tell what is due."""
+        with self.lock:
+            advance(self.autopilot, real_seconds * self.speedup)
+            if self.autopilot.booted != self._booted:
+                self._begin()
+            if self.autopilot.failed.pop("reboot", None):
+                self.autopilot.restart()
+            self._missions.busy = self.autopilot.uptime < self.autopilot.settings.boot
+            self._missions.go_on(self.autopilot.time, self.autopilot.patience / 4.0)
+            self._tell()
+            self.radio.flush()
+
+    def _begin(self) -> None:
+        """Begin anew after a boot: what was asked for is forgotten."""
+        self._booted = self.autopilot.booted
+        self._periods = {
+            name: 1.0 / rate for name, rate in telemetry.usual_rates(self.autopilot.settings).items()
+        }
+        self._due = dict.fromkeys(self._periods, 0.0)
+        self._unfit_due = 0.0
+        self._listed.clear()
+
+    def _is_for_it(self, message: Message) -> bool:
+        system = getattr(message, "target_system", 0)
+        component = getattr(message, "target_component", 0)
+        return system in (0, self.autopilot.settings.system) and component in (0, COMPONENT)
+
+    def _take(self, message: Message) -> None:
+        kind = message.get_type()
+        if kind == "HEARTBEAT":
+            self._hear_ground(message)
+            return
+        self.received.append((self.autopilot.time, kind))
+        handler = _HANDLERS.get(kind)
+        if handler is not None:
+            handler(self, message)
+        else:
+            self._missions.take(message)
+
+    def _hear_ground(self, message: Message) -> None:
+        pilot = self.autopilot
+        wanted = pilot.parameters.get("SYSID_MYGCS")
+        ground = message.type == mavlink.MAV_TYPE_GCS if wanted is None else message.get_srcSystem() == wanted
+        if ground:
+            pilot.heard = pilot.time
+
+    def _long(self, message: Message) -> None:
+        self._command(message, tuple(getattr(message, f"param{number}") for number in range(1, 8)))
+
+    def _int(self, message: Message) -> None:
+        params = tuple(getattr(message, f"param{number}") for number in range(1, 5))
+        self._command(message, (*params, message.x * 1e-7, message.y * 1e-7, message.z))
+
+    def _command(self, message: Message, params: tuple[float, ...]) -> None:
+        number = message.command
+        if number in self.autopilot.silent:
+            return
+        if number in _ASKING and number not in self.autopilot.settings.refuse:
+            result = _ASKING[number](self, params)
+        else:
+            result = obey(self.autopilot, number, params)
+        self.radio.send(
+            mavlink.MAVLink_command_ack_message(
+                number,
+                result,
+                target_system=message.get_srcSystem(),
+                target_component=message.get_srcComponent(),
+            )
+        )
+
+    def _interval(self, params: tuple[float, ...]) -> int:
+        name = telemetry.NUMBERS.get(int(params[0]))
+        absent = telemetry.FIRMWARE[self.autopilot.settings.firmware]
+        if name is None or name in absent:
+            return int(mavlink.MAV_RESULT_FAILED)
+        usual = telemetry.usual_rates(self.autopilot.settings)
+        if params[1] < 0.0:
+            self._periods.pop(name, None)
+        else:
+            self._periods[name] = params[1] * 1e-6 or 1.0 / usual.get(name, 1.0)
+            self._due[name] = 0.0
+        return ACCEPTED
+
+    def _request(self, params: tuple[float, ...]) -> int:
+        name = telemetry.NUMBERS.get(int(params[0]))
+        message = telemetry.TELLERS[name](self.autopilot) if name is not None else None
+        if message is None:
+            return int(mavlink.MAV_RESULT_FAILED)
+        self.radio.send(message)
+        return ACCEPTED
+
+    def _capabilities(self, params: tuple[float, ...]) -> int:
+        return self._request((float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
+
+    def _where_home(self, params: tuple[float, ...]) -> int:
+        return self._request((float(mavlink.MAVLINK_MSG_ID_HOME_POSITION),))
+
+    def _mode(self, message: Message) -> None:
+        self.autopilot.set_mode(message.custom_mode)
+
+    def _current(self, message: Message) -> None:
+        obey(self.autopilot, int(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT), (message.seq, *[0.0] * 6))
+
+    def _steer_globally(self, message: Message) -> None:
+        up = message.alt
+        if message.coordinate_frame in ABOVE_SEA:
+            up -= self.autopilot.settings.altitude
+        place = self.autopilot.local(message.lat_int * 1e-7, message.lon_int * 1e-7, up)
+        steer(self.autopilot, place, _heading(message))
+
+    def _steer_locally(self, message: Message) -> None:
+        steer(self.autopilot, (message.x, message.y, -message.z), _heading(message))
+
+    def _set_parameter(self, message: Message) -> None:
+        name, pilot = message.param_id, self.autopilot
+        if name not in pilot.parameters:
+            return
+        value = parameters.decoded(name, message.param_value, message.param_type, pilot.settings.firmware)
+        pilot.parameters[name] = value
+        self._tell_parameter(name)
+
+    def _read_parameter(self, message: Message) -> None:
+        names = list(self.autopilot.parameters)
+        name = names[message.param_index] if 0 <= message.param_index < len(names) else message.param_id
+        if name in self.autopilot.parameters:
+            self._tell_parameter(name)
+
+    def _list_parameters(self, message: Message) -> None:
+        self._listed = list(self.autopilot.parameters)
+
+    def _tell_parameter(self, name: str) -> None:
+        pilot = self.autopilot
+        value, kind = parameters.encoded(name, pilot.parameters[name], pilot.settings.firmware)
+        count, index = len(pilot.parameters), list(pilot.parameters).index(name)
+        self.radio.send(mavlink.MAVLink_param_value_message(name.encode(), value, kind, count, index))
+
+    def _synchronise(self, message: Message) -> None:
+        if message.tc1 == 0:
+            now = telemetry.milliseconds(self.autopilot) * 1_000_000
+            self.radio.send(mavlink.MAVLink_timesync_message(now, message.ts1))
+
+    def _answer(self, message: Message) -> None:
+        if self.faults.answer_delay:
+            self._late.append((self.autopilot.time + self.faults.answer_delay, message))
+        else:
+            self.radio.send(message)
+
+    def _home(self) -> Item:
+        latitude, longitude, above = self.autopilot.home
+        return Item(0, 16, (0.0, 0.0, 0.0, 0.0), round(latitude * 1e7), round(longitude * 1e7), above)
+
+    def _count_items(self, kind: int) -> None:
+        name = {MISSION: "MIS_TOTAL", RALLY: "RALLY_TOTAL"}.get(kind)
+        if name in self.autopilot.parameters:
+            self.autopilot.parameters[name] = len(self.autopilot.stores[kind])
+
+    def _tell(self) -> None:
+        pilot = self.autopilot
+        if pilot.beats_now:
+            pilot.beats_now = False
+            if pilot.settings.firmware != PX4:
+                self._due["HEARTBEAT"] = 0.0
+        for name, period in self._periods.items():
+            if pilot.time >= self._due[name]:
+                self._due[name] = max(self._due[name] + period, pilot.time - period)
+                self._tell_one(name)
+        self._tell_events()
+
+    def _tell_one(self, name: str) -> None:
+        message = telemetry.TELLERS[name](self.autopilot)
+        if message is not None:
+            self.radio.send(message)
+        if name == "MISSION_CURRENT" and self.autopilot.pending is not None:
+            self.radio.send(mavlink.MAVLink_mission_item_reached_message(self.autopilot.pending))
+            self.autopilot.pending = None
+        if name == "SYS_STATUS":
+            self._tell_values()
+
+    def _tell_values(self) -> None:
+        now = telemetry.milliseconds(self.autopilot)
+        for name, value in self.autopilot.settings.values.items():
+            told = value(self.autopilot.time)
+            self.radio.send(mavlink.MAVLink_named_value_float_message(now, name.encode(), told))
+
+    def _tell_events(self) -> None:
+        pilot = self.autopilot
+        while self._late and self._late[0][0] <= pilot.time:
+            self.radio.send(self._late.pop(0)[1])
+        while pilot.texts:
+            severity, text = pilot.texts.pop(0)
+            self.radio.send(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+        while pilot.camera.untold:
+            taken = pilot.camera.photos[-pilot.camera.untold]
+            pilot.camera.untold -= 1
+            self.radio.send(telemetry.photo(pilot, taken))
+        for name in self._listed[:AT_ONCE]:
+            self._tell_parameter(name)
+        del self._listed[:AT_ONCE]
+        self._complain()
+
+    def _complain(self) -> None:
+        pilot = self.autopilot
+        if pilot.armed or pilot.uptime < max(self._unfit_due, pilot.settings.ready):
+            return
+        why = complaint(pilot)
+        if why:
+            self._unfit_due = pilot.uptime + UNFIT_SECONDS
+            pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
+
+
+def _heading(message: Message) -> float | None:
+    if message.type_mask & YAW_IGNORED or isnan(message.yaw):
+        return None
+    return degrees(message.yaw) % 360.0
+
+
+_ASKING: Mapping[int, Callable[[SimulatedVehicle, tuple[float, ...]], int]] = {
+    int(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL): SimulatedVehicle._interval,
+    int(mavlink.MAV_CMD_REQUEST_MESSAGE): SimulatedVehicle._request,
+    int(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES): SimulatedVehicle._capabilities,
+    int(mavlink.MAV_CMD_GET_HOME_POSITION): SimulatedVehicle._where_home,
+}
+_HANDLERS: Mapping[str, Callable[[SimulatedVehicle, Message], None]] = {
+    "COMMAND_LONG": SimulatedVehicle._long,
+    "COMMAND_INT": SimulatedVehicle._int,
+    "SET_MODE": SimulatedVehicle._mode,
+    "MISSION_SET_CURRENT": SimulatedVehicle._current,
+    "SET_POSITION_TARGET_GLOBAL_INT": SimulatedVehicle._steer_globally,
+    "SET_POSITION_TARGET_LOCAL_NED": SimulatedVehicle._steer_locally,
+    "PARAM_SET": SimulatedVehicle._set_parameter,
+    "PARAM_REQUEST_READ": SimulatedVehicle._read_parameter,
+    "PARAM_REQUEST_LIST": SimulatedVehicle._list_parameters,
+    "TIMESYNC": SimulatedVehicle._synchronise,
+}
