@@ -12,6 +12,8 @@ from typing import Protocol, runtime_checkable
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.flight.bus.words import CommandId as CommandId
+from mmrs_core.flight.bus.words import SlotState as SlotState
 from mmrs_core.scene import Area, Name, Policy, Position, RobotType
 
 
@@ -179,7 +181,7 @@ class Pausable(Protocol):
         ...
 
     def paused(self, now: float) -> bool:
-        """Return whether the robot halts, and has confirmed it."""
+        """Return whether the robot has confirmed that it halts, and not yet that it goes on."""
         ...
 
 
@@ -298,37 +300,6 @@ class Condition:
     identifier: str
     holds: Callable[[RobotState], bool]
     known: Callable[[RobotState], bool] = field(default=_always)
-
-
-@dataclass(frozen=True, slots=True)
-class CommandId:
-    """What makes a notify recognisable however often it arrives.
-
-    Attributes:
-        run: identifier of the run. sender: the notifying robot. incarnation: differs each time that
-            the sender is started. sequence: counted by the sender, never used twice.
-    """
-
-    run: str
-    sender: str
-    incarnation: str
-    sequence: int
-
-
-@dataclass(frozen=True, slots=True)
-class SlotState:
-    """The state of a slot.
-
-    Attributes:
-        version: how many commands its owner has applied to it.
-        lamport: logical time of the last step that set it or passed a wait for it.
-        writer: who set it last; empty if nobody has.
-    """
-
-    active: bool = False
-    version: int = 0
-    lamport: int = 0
-    writer: str = ""
 
 
 class Delivery(Protocol):

@@ -5,9 +5,9 @@ out, ``ardupilot.py`` says it in MAVLink. ``main.py`` runs all robots, ``session
 from the opening of its link to its end, and ``options.py`` is the command line.
 """
 
-from .desk import Condition
-from .main import main
-from .objects import Locator, where_expected
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from .program import (
     Choose,
     Geographic,
@@ -35,7 +35,12 @@ from .program import (
     Then,
     Turn,
 )
-from .vehicle import State
+
+if TYPE_CHECKING:
+    from .desk import Condition
+    from .main import main
+    from .objects import Locator, where_expected
+    from .vehicle import State
 
 __all__ = [
     "Choose",
@@ -69,3 +74,20 @@ __all__ = [
     "main",
     "where_expected",
 ]
+
+_NEED_A_LINK = {
+    "Condition": "desk",
+    "Locator": "objects",
+    "State": "vehicle",
+    "main": "main",
+    "where_expected": "objects",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Return what needs pymavlink when it is asked for: programs and the bus do without."""
+    if name not in _NEED_A_LINK:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = getattr(import_module(f".{_NEED_A_LINK[name]}", __name__), name)
+    globals()[name] = found
+    return found

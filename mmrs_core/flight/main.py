@@ -14,7 +14,7 @@ from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
 from .session import FAILED, INTERRUPTED, LINK, OK, Shared, run_robot
-from .slots import LocalSlots, Slots
+from .slots import LocalSlots, Slots, shared_slots, strangers_of
 
 
 def main(
@@ -65,23 +65,22 @@ def _slots(
     parser: argparse.ArgumentParser, robots: Sequence[Robot], options: Options, stack: ExitStack
 ) -> Slots:
     if options.bus.used:
-        from .bus import BusSlots
+        from .bus.over_zenoh import Endpoints, ZenohCarrier
 
+        fleet = {robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}
+        reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
+        carrier = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached)
         try:
-            bus = BusSlots(robots, options.run, options.log, options.bus.listen, options.bus.connect)
+            bus = shared_slots(robots, options.run, options.log, carrier)
         except OSError as error:
             parser.error(f"--log {options.log}: {error.strerror or error}")
+        except ValueError as error:
+            parser.error(f"--log {options.log}: {error}")
         stack.callback(bus.close)
         return bus
-    here = {robot.id for robot in robots}
-    strangers = sorted(
-        {sender for robot in robots for _, senders in robot.senders for sender in senders} - here
-    )
-    if strangers:
-        parser.error(
-            f"waits for {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus"
-        )
-    return LocalSlots()
+    if strangers := strangers_of(robots):
+        parser.error(f"needs {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus")
+    return LocalSlots(robots, options.run)
 
 
 def _stop_on_signals(stop: threading.Event) -> None:

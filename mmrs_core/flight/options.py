@@ -48,11 +48,16 @@ class Tolerances:
 
 @dataclass(frozen=True, slots=True)
 class Bus:
-    """Whether slots are kept with robots in other processes, and the endpoints for that."""
+    """Whether slots are kept with robots in other processes, and how these are reached.
+
+    Attributes:
+        listen, connect: endpoints. file: of Zenoh's configuration, with certificates; None: there is none.
+    """
 
     used: bool
     listen: tuple[str, ...]
     connect: tuple[str, ...]
+    file: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +101,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
+    add("--bus-config", type=Path, metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it")
     return parser
 
 
@@ -182,5 +188,5 @@ def _key(parser: argparse.ArgumentParser, path: Path | None) -> bytes | None:
 
 
 def _bus(given: Any) -> Bus:
-    used = given.bus or given.bus_listen or given.bus_connect
-    return Bus(bool(used), tuple(given.bus_listen), tuple(given.bus_connect))
+    used = given.bus or given.bus_listen or given.bus_connect or given.bus_config
+    return Bus(bool(used), tuple(given.bus_listen), tuple(given.bus_connect), given.bus_config)

@@ -259,6 +259,7 @@ class Robot:
         reserve: part of the energy that must be left.
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
+        mission: name of it; fleet: all robots of it, this one included.
     """
 
     id: str
@@ -277,6 +278,7 @@ class Robot:
     rally: tuple[Place, ...] = ()
     escapes: tuple[tuple[str, Place], ...] = ()
     mission: str = field(default="", kw_only=True)
+    fleet: tuple[str, ...] = field(default=(), kw_only=True)
 
     def step(self, move: str) -> Step:
         """Return the step of that move."""

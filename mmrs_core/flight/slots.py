@@ -6,12 +6,19 @@ is not lost. All robots of one process share one order of events, which the logs
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable
-from typing import Protocol
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+from .bus import Carrier, CommandId, Delivery, FileJournal, Member, Node, NoJournal, Owned, Recorded
+from .faults import PEER_LOST, Fault
+from .program import Action, Notify, Robot
 
 Record = Callable[[int], None]
 Guard = Callable[[tuple[str, ...]], None]
+
+GLANCE_SECONDS = 0.05
 
 
 class Slots(Protocol):
@@ -24,10 +31,10 @@ class Slots(Protocol):
     def notify(
         self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
     ) -> None:
-        """Record a notification, then set the slots; return when all owners have them.
+        """Have slots set: ask their owners, record the notification, send it; return when all have it.
 
         `guard` is called again and again until then, with the owners that have not answered; it raises
-        what should end the attempt.
+        what should end the attempt. What was recorded is sent all the same, as long as this process lives.
         """
         ...
 
@@ -44,61 +51,170 @@ class Slots(Protocol):
         ...
 
     def leave(self, robot: str) -> None:
-        """Tell that a robot will set no more slots."""
+        """Tell that a robot has ended, well or by a fault: it never comes back.
+
+        A robot whose program is only suspended does not leave: it is out of reach when the process ends.
+        """
+        ...
+
+    def restore(self, active: Iterable[tuple[str, str]], lamport: int) -> None:
+        """Begin with these slots active and at that logical time; before any robot starts."""
         ...
 
 
-class LocalSlots:
-    """The slots of all robots of this process."""
+class BusSlots:
+    """The slots of this process's robots, and those of others over the bus.
 
-    def __init__(self) -> None:
-        """Begin with every slot inactive."""
-        self._changed = threading.Condition()
-        self._active: set[tuple[str, str]] = set()
-        self._left: set[str] = set()
-        self._lamport = 0
+    Attributes:
+        node: this process's end of the bus.
+    """
+
+    def __init__(self, node: Node, run: str) -> None:
+        """Use an end of the bus; `run` is the identifier of the run."""
+        self.node = node
+        self._run = run
+        self._numbers = itertools.count(1)
 
     def tick(self) -> int:
-        """Return the next logical time."""
-        with self._changed:
-            self._lamport += 1
-            return self._lamport
+        """Return the next logical time of this process."""
+        return self.node.tick()
 
     def notify(
         self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
     ) -> None:
-        """Record the notification and set all slots at once."""
-        with self._changed:
-            record(self.tick())
-            self._set(slots, active)
+        """Ask the owners, record the notification, send it; return when all have it."""
+        id = CommandId(self._run, sender, self.node.incarnation, next(self._numbers))
+        delivery = self.node.prepare(id, tuple(slots), active)
+        try:
+            lamport = self.node.tick(self._granted(delivery, guard))
+            record(lamport)
+        except BaseException:
+            delivery.withdraw()
+            raise
+        delivery.send(lamport)
+        while delivery.waiting:
+            self._wait(delivery, guard)
 
     def take(self, robot: str, names: Iterable[str], record: Record) -> bool:
         """Record that the robot goes on if all its slots of these names are active; say whether."""
-        with self._changed:
-            if not all((robot, name) in self._active for name in names):
-                return False
-            record(self.tick())
-            return True
+        slots = [(robot, name) for name in names]
+        states = [self.node.state(slot) for slot in slots]
+        if not all(state.active for state in states):
+            return False
+        lamport = self.node.tick(1 + max((state.lamport for state in states), default=0))
+        if not self.node.passed(slots, lamport):
+            return False
+        record(lamport)
+        return True
 
     def await_change(self, seconds: float) -> None:
-        """Wait until a slot changes, but no longer than so many real seconds."""
-        with self._changed:
-            self._changed.wait(seconds)
+        """Wait until something changes, but no longer than so many real seconds."""
+        self.node.await_change(seconds)
 
     def lost(self, robots: Iterable[str]) -> str | None:
-        """Return one of these robots that has left, if there is one."""
-        with self._changed:
-            return next((robot for robot in robots if robot in self._left), None)
+        """Return one of these robots that has ended or cannot be reached any more, if there is one."""
+        return next(iter(self.node.lost(robots)), None)
 
     def leave(self, robot: str) -> None:
-        """Tell that a robot will set no more slots."""
-        with self._changed:
-            self._left.add(robot)
-            self._changed.notify_all()
+        """Tell everybody that a robot has ended."""
+        self.node.leave(robot)
 
-    def _set(self, slots: Iterable[tuple[str, str]], active: bool) -> None:
-        if active:
-            self._active.update(slots)
-        else:
-            self._active.difference_update(slots)
-        self._changed.notify_all()
+    def restore(self, active: Iterable[tuple[str, str]], lamport: int) -> None:
+        """Begin with these slots active and at that logical time."""
+        self.node.restore(active, lamport)
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self.node.close()
+
+    def _granted(self, delivery: Delivery, guard: Guard) -> int:
+        while (lamport := delivery.lamport) is None:
+            self._wait(delivery, guard)
+        return lamport
+
+    def _wait(self, delivery: Delivery, guard: Guard) -> None:
+        for owner, why in delivery.refusals.items():
+            raise Fault(PEER_LOST, f"{owner!a} refuses a notification: {why}")
+        if delivery.lamport is None or delivery.waiting:
+            self.node.await_change(GLANCE_SECONDS)
+            guard(delivery.waiting)
+
+
+class LocalSlots(BusSlots):
+    """The slots of all robots of a process that needs no others."""
+
+    def __init__(self, robots: Sequence[Robot], run: str = "run-0") -> None:
+        """Begin with every slot inactive."""
+        super().__init__(Node([member_of(robot) for robot in robots], run), run)
+
+
+def shared_slots(
+    robots: Sequence[Robot],
+    run: str,
+    folder: Path,
+    carrier: Carrier,
+    recorded: Mapping[str, Recorded] | None = None,
+) -> BusSlots:
+    """Return the slots of this process's robots, shared with other processes.
+
+    Args:
+        robots: of this process.
+        run: identifier of the run; notifications of other runs are not heard.
+        folder: for what must survive this process.
+        carrier: to the other processes.
+        recorded: by robot, what the logs say of those that are started again; see `recorded_of`.
+
+    Raises:
+        OSError: the folder cannot be written, or the carrier cannot begin.
+        ValueError: the folder holds slots of another run, or of an earlier start of a robot that is not
+            started again.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = {robot.id: folder / f"{Path(robot.log).stem}.slots.ndjson" for robot in robots}
+    node = Node(
+        [member_of(robot) for robot in robots],
+        run,
+        carrier=carrier,
+        journals=lambda robot: FileJournal(paths[robot]) if robot in paths else NoJournal(),
+        recorded=recorded,
+    )
+    return BusSlots(node, run)
+
+
+def member_of(robot: Robot) -> Member:
+    """Return what the bus must know of a robot."""
+    targets = {owner for action in _actions(robot) if isinstance(action, Notify) for owner, _ in action.slots}
+    return Member(Owned(robot.id, robot.slots, dict(robot.senders), dict(robot.resets)), frozenset(targets))
+
+
+def strangers_of(robots: Sequence[Robot]) -> tuple[str, ...]:
+    """Return the robots of other processes that these robots wait for or notify, by name."""
+    members = [member_of(robot) for robot in robots]
+    return tuple(sorted({each for member in members for each in member.contacts} - {r.id for r in robots}))
+
+
+def recorded_of(robot: Robot, lines: Iterable[Mapping[str, Any]]) -> Recorded:
+    """Return what the bus must know of a robot that is started again.
+
+    Args:
+        robot: the robot.
+        lines: of its log, oldest first, each as the object that it holds.
+    """
+    lamport, notifies = 0, {}
+    for line in lines:
+        lamport = int(line["lamport"])
+        if line["label"] == "ntf":
+            action = _action(robot, str(line["move"]), str(line["detail"]))
+            assert isinstance(action, Notify)
+            notifies.update({slot: (action.active, lamport) for slot in action.slots})
+    return Recorded(lamport, notifies)
+
+
+def _actions(robot: Robot) -> Iterable[Action]:
+    return (action for step in robot.steps for action in (*step.before, *step.after))
+
+
+def _action(robot: Robot, move: str, detail: str) -> Action:
+    side, _, index = detail.partition(":")
+    step = robot.step(move)
+    return (step.before if side == "pre" else step.after)[int(index)]

@@ -1,110 +1,172 @@
-"""The bus within one process: the slots of all robots, set by acknowledged commands."""
+"""The bus as the interpreter uses it: within one process, or shared with others."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 
-from mmrs_core.behaviour.program import Program, SlotId
+from mmrs_core.behaviour.log import log_name
+from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
+from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import CommandId, SlotState
 from mmrs_core.errors import InternalError
+from mmrs_core.flight.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 
 
-class InProcessBus:
-    """Keeps the slots of all robots of a program and applies each command once, atomically.
+class ProgramBus:
+    """The slots of robots of a program, those of this process kept here.
 
-    Slots live as long as the process that all robots share. A run that is resumed replays its logs,
-    in which every notify stands before it was delivered.
+    Attributes:
+        node: this process's end of the bus.
     """
 
-    def __init__(self, program: Program) -> None:
-        self._slots = {(robot.id, slot): SlotState() for robot in program.robots for slot in robot.slots}
-        self._applied: set[CommandId] = set()
-        self._left: set[str] = set()
-        self._callbacks: list[Callable[[], None]] = []
+    def __init__(self, node: Node, program: Program) -> None:
+        """Use an end of the bus for the robots of a program."""
+        self.node = node
+        self._known = {(robot.id, slot) for robot in program.robots for slot in robot.slots}
 
-    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> LocalDelivery:
-        """Return a delivery that every owner has answered already.
+    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+        """Ask the owners of slots for setting them; owners of this process have answered at return.
 
         Raises:
             InternalError: if a slot is one that no robot has.
         """
-        least = max((self.state(slot).lamport for slot in slots), default=0) + 1
-        return LocalDelivery(self, id, slots, active, least)
-
-    def apply(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
-        """Apply a command unless it was applied already."""
-        if id in self._applied:
-            return
-        self._applied.add(id)
         for slot in slots:
-            state = self.state(slot)
-            self._slots[slot] = SlotState(active, state.version + 1, max(state.lamport, lamport), id.sender)
-        self._changed()
+            self._refuse_unknown(slot)
+        return self.node.prepare(id, slots, active)
 
     def state(self, slot: SlotId) -> SlotState:
-        """Return the state of a slot.
+        """Return the state of a slot of this process's robots.
 
         Raises:
-            InternalError: if no robot has it.
+            InternalError: if none of them has it.
         """
-        found = self._slots.get(slot)
-        if found is None:
-            raise InternalError(f"{slot[0]}.{slot[1]}: no such slot in the program")
-        return found
+        self._refuse_unknown(slot)
+        if slot[0] not in self.node.robots:
+            raise InternalError(f"{slot[0]}.{slot[1]}: belongs to a robot of another process")
+        return self.node.state(slot)
 
     def passed(self, slots: Iterable[SlotId], lamport: int) -> bool:
-        """Return whether a wait for these slots is passed at that logical time, and keep it if so."""
-        states = {slot: self.state(slot) for slot in slots}
-        if not all(state.active and state.lamport < lamport for state in states.values()):
-            return False
-        for slot, state in states.items():
-            self._slots[slot] = SlotState(state.active, state.version, lamport, state.writer)
-        return True
+        """Return whether a wait for own slots is passed at that logical time, and keep it if so."""
+        return self.node.passed(slots, lamport)
 
     def lost(self, robots: Iterable[str]) -> tuple[str, ...]:
-        """Return those of these robots that will set no more slots."""
-        return tuple(robot for robot in robots if robot in self._left)
+        """Return those of these robots that have ended or can no longer be reached."""
+        return self.node.lost(robots)
 
     def leave(self, robot: str) -> None:
-        """Note that a robot will set no more slots."""
-        if robot not in self._left:
-            self._left.add(robot)
-            self._changed()
+        """Tell everybody that a robot has ended."""
+        self.node.leave(robot)
 
     def on_change(self, callback: Callable[[], None]) -> None:
-        """Have a function called when something has changed."""
-        self._callbacks.append(callback)
+        """Have a function called when something may have changed."""
+        self.node.on_change(callback)
 
-    def _changed(self) -> None:
-        for callback in self._callbacks:
-            callback()
+    def apply(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
+        """Set slots of this process's robots as a log says they were, unless that was done already."""
+        self.node.repeat(id, [slot for slot in slots if slot[0] in self.node.robots], active, lamport)
+
+    def close(self) -> None:
+        """Leave the bus; robots that have not ended are lost to the others."""
+        self.node.close()
+
+    def _refuse_unknown(self, slot: SlotId) -> None:
+        if slot not in self._known:
+            raise InternalError(f"{slot[0]}.{slot[1]}: no such slot in the program")
 
 
-@dataclass(frozen=True, slots=True)
-class LocalDelivery:
-    """A notify whose owners all live in this process; they have answered, and acknowledge at once."""
+class InProcessBus(ProgramBus):
+    """The slots of all robots of a program, which live as long as the process that they share.
 
-    bus: InProcessBus
-    id: CommandId
-    slots: tuple[SlotId, ...]
-    active: bool
-    lamport: int
+    A run that is resumed replays its logs, in which every notify stands before it was delivered.
+    """
 
-    @property
-    def waiting(self) -> tuple[str, ...]:
-        """Return nobody."""
-        return ()
+    def __init__(self, program: Program) -> None:
+        """Begin with every slot inactive."""
+        members = members_of(program)
+        super().__init__(Node([members[robot.id] for robot in program.robots], ""), program)
 
-    def send(self, lamport: int) -> None:
-        """Set the slots.
 
-        Raises:
-            ValueError: if the logical time is not after all that has happened to them.
-        """
-        if lamport < self.lamport:
-            raise ValueError(f"logical time {lamport}: less than {self.lamport}")
-        self.bus.apply(self.id, self.slots, self.active, lamport)
+def shared_bus(
+    program: Program,
+    robots: Sequence[str],
+    run: str,
+    folder: Path,
+    carrier: Carrier,
+    records: Iterable[StepRecord] | None = None,
+) -> ProgramBus:
+    """Return the bus of a process that runs some robots of a program.
 
-    def withdraw(self) -> None:
-        """Do nothing: no slot is kept."""
+    Args:
+        program: of all robots.
+        robots: of this process.
+        run: identifier of the run.
+        folder: for what must survive this process; slots lie beside the logs there.
+        carrier: to the other processes.
+        records: the steps that these robots made before; None: they are not started again.
+
+    Raises:
+        OSError: if the folder cannot be written, or the carrier cannot begin.
+        ValueError: if the folder holds slots of another run, or of an earlier start.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    members = members_of(program)
+    paths = {robot: folder / f"{Path(log_name(robot)).stem}.slots.ndjson" for robot in robots}
+    node = Node(
+        [members[robot] for robot in robots],
+        run,
+        carrier=carrier,
+        journals=lambda robot: FileJournal(paths[robot]),
+        recorded=None if records is None else recorded_of(program, robots, tuple(records)),
+    )
+    return ProgramBus(node, program)
+
+
+def members_of(program: Program) -> dict[str, Member]:
+    """Return by robot what the bus must know of it."""
+    senders: dict[tuple[SlotId, bool], dict[str, None]] = {}
+    for robot in program.robots:
+        for slot, active in _set_by(robot):
+            senders.setdefault((slot, active), {})[robot.id] = None
+    return {
+        robot.id: Member(
+            Owned(
+                robot.id,
+                robot.slots,
+                {name: tuple(senders.get(((robot.id, name), True), ())) for name in robot.slots},
+                {name: tuple(senders.get(((robot.id, name), False), ())) for name in robot.slots},
+            ),
+            frozenset(owner for (owner, _), _ in _set_by(robot)),
+        )
+        for robot in program.robots
+    }
+
+
+def recorded_of(
+    program: Program, robots: Iterable[str], records: Sequence[StepRecord]
+) -> Mapping[str, Recorded]:
+    """Return by robot what the bus must know when they are started again, from the steps they made."""
+    found = {}
+    for robot in robots:
+        lamport, notifies = 0, {}
+        for record in (each for each in records if each.robot == robot):
+            lamport = record.lamport
+            if record.label == "ntf":
+                sets, active = _notify(program.robot(robot), record)
+                notifies.update({slot: (active, lamport) for slot in sets})
+        found[robot] = Recorded(lamport, notifies)
+    return found
+
+
+def _set_by(robot: RobotProgram) -> Iterable[tuple[SlotId, bool]]:
+    for move in robot.moves:
+        for action in (*move.before, *move.after):
+            for slot in action.sets:
+                yield slot, action.active
+
+
+def _notify(robot: RobotProgram, record: StepRecord) -> tuple[tuple[SlotId, ...], bool]:
+    move = next(move for move in robot.moves if move.id == record.move)
+    side, _, index = record.detail.partition(":")
+    action = (move.before if side == "pre" else move.after)[int(index)]
+    return action.sets, action.active

@@ -13,12 +13,9 @@ from hypothesis import strategies as st
 from mmrs_core.behaviour.log import LogWriter, merge, read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock, is_success
-from mmrs_core.contributions.execution import BackendInput
-from mmrs_core.runtime.clock import SimulatedClock
-from mmrs_core.runtime.interpreter import Terms, interpret
+from mmrs_core.runtime.interpreter import Terms
 from mmrs_core.runtime.run import assumed, simulate
-from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
-from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
@@ -136,34 +133,6 @@ def test_a_step_of_another_kind_never_goes_unnoticed(program, decided, data):
 @FAST
 def test_the_same_behaviour_gives_the_same_run(program, decided):
     assert run_of(program, decided) == run_of(program, decided)
-
-
-class Stuttering(InProcessBus):
-    """A bus whose acknowledgements get lost, so that every command arrives again, also much later."""
-
-    def __init__(self, program):
-        super().__init__(program)
-        self.sent = []
-
-    def apply(self, *command):
-        self.sent.append(command)
-        for each in (command, *self.sent, command):
-            super().apply(*each)
-
-
-@given(programs(), answers())
-@FAST
-def test_commands_that_arrive_again_change_nothing(program, decided):
-    def steps(bus):
-        moved = {robot.id: SimulatedRobot(given_to(program, robot)) for robot in program.robots}
-        conditions = assumed(decided)
-        return list(interpret(program, moved, bus=bus, clock=SimulatedClock(), conditions=conditions))
-
-    assert steps(Stuttering(program)) == steps(InProcessBus(program))
-
-
-def given_to(program, robot):
-    return BackendInput(program, robot, TYPE, **KINDS, environment={}, options={})
 
 
 @given(programs(), answers())

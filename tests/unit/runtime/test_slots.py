@@ -35,10 +35,10 @@ def test_a_command_sets_all_its_slots(bus):
     assert bus.state(B) == SlotState(active=True, version=1, lamport=1, writer="b")
 
 
-def test_a_command_that_arrives_twice_is_applied_once(bus):
+def test_a_command_that_a_log_tells_of_again_is_applied_once(bus):
     first, second = notify(bus, 0, A), notify(bus, 1, A, active=False)
-    first.send(first.lamport)
-    second.send(second.lamport)
+    bus.apply(first.errand.id, (A,), True, first.lamport)
+    bus.apply(second.errand.id, (A,), False, second.lamport)
     assert not bus.state(A).active
     assert bus.state(A).version == 2
 

@@ -1,0 +1,144 @@
+"""What carries messages between processes that keep slots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+Answered = Callable[[str], None]
+
+
+class Station(Protocol):
+    """One process's end of the bus, as carriers see it; may be called from any thread."""
+
+    def serve(self, owner: str, sender: str, request: str) -> str:
+        """Return the answer of one of this process's robots to a request.
+
+        Args:
+            owner: robot of this process.
+            sender: who asks, as far as the carrier vouches for it.
+            request: as written by whoever asks; anything.
+        """
+        ...
+
+    def noticed(self, robot: str, here: bool) -> None:
+        """Take note that a robot of another process can be reached, or no longer."""
+        ...
+
+    def shown(self, robot: str) -> str:
+        """Return the state of the slots of one of this process's robots, for whoever looks on."""
+        ...
+
+
+class Carrier(Protocol):
+    """Carries requests and answers, as well as it can: each may be lost, late, or come twice."""
+
+    def open(self, station: Station) -> None:
+        """Begin to serve, and to notice who is there.
+
+        Raises:
+            OSError: it cannot.
+        """
+        ...
+
+    def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
+        """Send a request to a robot of another process; returns at once.
+
+        `answered` is called with the answer, from any thread, or never.
+        """
+        ...
+
+    def appear(self, robot: str) -> None:
+        """Tell everybody that a robot of this process can be reached."""
+        ...
+
+    def vanish(self, robot: str) -> None:
+        """Tell everybody that a robot of this process can no longer be reached."""
+        ...
+
+    def publish(self, robot: str) -> None:
+        """Tell whoever looks on that the state of a robot's slots has changed."""
+        ...
+
+    def close(self) -> None:
+        """Stop; nobody is served any more when this returns."""
+        ...
+
+
+class NoCarrier:
+    """Carries nothing: all robots are in this process."""
+
+    def open(self, station: Station) -> None:
+        """Do nothing."""
+
+    def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
+        """Do nothing."""
+
+    def appear(self, robot: str) -> None:
+        """Do nothing."""
+
+    def vanish(self, robot: str) -> None:
+        """Do nothing."""
+
+    def publish(self, robot: str) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class Hub:
+    """Joins several ends of a bus within one process, by calls; `plug` gives each a carrier."""
+
+    def __init__(self) -> None:
+        """Join nothing yet."""
+        self.stations: dict[str, Station] = {}
+
+    def plug(self) -> HubCarrier:
+        """Return a carrier for one more end."""
+        return HubCarrier(self)
+
+    def noticed(self, robot: str, here: bool, besides: Station) -> None:
+        """Tell all other ends that a robot has come or gone."""
+        for station in {id(each): each for each in self.stations.values() if each is not besides}.values():
+            station.noticed(robot, here)
+
+
+class HubCarrier:
+    """The carrier of one end of a hub."""
+
+    def __init__(self, hub: Hub) -> None:
+        """Be plugged in, but serve nobody yet."""
+        self._hub = hub
+        self._station: Station | None = None
+
+    def open(self, station: Station) -> None:
+        """Notice who is there."""
+        self._station = station
+        for robot in tuple(self._hub.stations):
+            station.noticed(robot, True)
+
+    def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
+        """Have the robot's end answer at once, if there is one."""
+        station = self._hub.stations.get(owner)
+        if station is not None:
+            answered(station.serve(owner, sender, request))
+
+    def appear(self, robot: str) -> None:
+        """Tell the other ends."""
+        assert self._station is not None
+        self._hub.stations[robot] = self._station
+        self._hub.noticed(robot, True, self._station)
+
+    def vanish(self, robot: str) -> None:
+        """Tell the other ends."""
+        if self._hub.stations.pop(robot, None) is not None and self._station is not None:
+            self._hub.noticed(robot, False, self._station)
+
+    def publish(self, robot: str) -> None:
+        """Do nothing: nobody looks on."""
+
+    def close(self) -> None:
+        """Take all robots of this end away."""
+        for robot in [r for r, station in self._hub.stations.items() if station is self._station]:
+            self.vanish(robot)

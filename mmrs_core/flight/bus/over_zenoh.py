@@ -1,0 +1,242 @@
+"""A carrier between processes and machines, by Zenoh (``pip install eclipse-zenoh``), peer to peer.
+
+Keys hold digests, so that no name can reach beyond its own mission and run:
+``mmrs/MISSION/RUN/OWNER/from/SENDER`` for requests, ``…/ROBOT/here/START`` for who is there,
+``…/ROBOT/state`` for the state of slots. With certificates, access control binds SENDER and ROBOT to
+the certificate of whoever speaks.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import uuid
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+import zenoh
+
+from .carrier import Answered, Station
+from .words import LONGEST
+
+LEASE_MILLISECONDS = 1500
+"""After so long without a sign a frozen peer counts as lost."""
+
+ANSWER_SECONDS = 5.0
+"""How long an answer is of use; what is not answered is asked again sooner."""
+
+RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoints:
+    """How peers are reached.
+
+    Attributes:
+        listen: endpoints to listen at, such as ``tcp/0.0.0.0:7447``. connect: endpoints of others; with
+            none of either, and none in the file, others are found by multicast.
+        file: of Zenoh's configuration, with certificates for example; None: there is none.
+    """
+
+    listen: tuple[str, ...] = ()
+    connect: tuple[str, ...] = ()
+    file: Path | None = None
+
+
+class ZenohCarrier:
+    """Carries requests as queries, which the network answers from the owner itself."""
+
+    def __init__(self, mission: str, run: str, robots: Sequence[str], endpoints: Endpoints) -> None:
+        """Keep what is needed to begin.
+
+        Args:
+            mission: name of the mission, the same in every process.
+            run: identifier of the run.
+            robots: all of the mission that this process may have to do with, its own included.
+            endpoints: how peers are reached.
+        """
+        self._prefix = f"mmrs/{digest(mission)}/{digest(run)}"
+        self._names = {digest(robot): robot for robot in robots}
+        self._endpoints = endpoints
+        self._start = uuid.uuid4().hex[:12]
+        self._station: Station | None = None
+        self._own: set[str] = set()
+        self._session: Any = None
+        self._declared: list[Any] = []
+        self._tokens: dict[str, Any] = {}
+        self._there: dict[str, set[str]] = {}
+        self._work: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._worker = threading.Thread(target=self._serve_all, name="bus answers", daemon=True)
+        self._closing = threading.Lock()
+
+    def open(self, station: Station) -> None:
+        """Open a session, and watch who is there.
+
+        Raises:
+            OSError: it cannot be opened, or its configuration is not readable.
+        """
+        self._station = station
+        try:
+            self._session = zenoh.open(configuration(self._endpoints))
+        except zenoh.ZError as error:
+            raise OSError(f"bus: cannot be opened: {error}") from error
+        self._worker.start()
+        watched = self._session.liveliness().declare_subscriber(
+            f"{self._prefix}/*/here/*", self._later(self._see), history=True
+        )
+        self._declared.append(watched)
+
+    def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
+        """Send a query; Zenoh's own thread hands over the answer."""
+
+        def take(reply: Any) -> None:
+            if reply.ok is not None:
+                self._work.put(lambda: answered(reply.ok.payload.to_string()))
+
+        key = self._key(owner, "from", sender)
+        handler = zenoh.handlers.Callback(take, indirect=False)
+        with self._closing:
+            if self._session is not None:
+                self._session.get(
+                    key,
+                    handler,
+                    payload=request,
+                    timeout=ANSWER_SECONDS,
+                    consolidation=zenoh.ConsolidationMode.NONE,
+                    express=True,
+                )
+
+    def appear(self, robot: str) -> None:
+        """Answer for a robot, and tell that it is there."""
+        self._own.add(robot)
+        serve, show = self._later(self._serve), self._later(self._show)
+        self._declared.append(self._session.declare_queryable(self._key(robot, "from", None), serve))
+        self._declared.append(self._session.declare_queryable(self._key(robot, "state"), show))
+        here = f"{self._key(robot, 'here')}/{self._start}"
+        self._tokens[robot] = self._session.liveliness().declare_token(here)
+        self.publish(robot)
+
+    def vanish(self, robot: str) -> None:
+        """Tell that a robot is no longer there; it still answers."""
+        with self._closing:
+            token = self._tokens.pop(robot, None)
+        if token is not None:
+            token.undeclare()
+
+    def publish(self, robot: str) -> None:
+        """Tell whoever looks on the state of a robot's slots."""
+        if self._station is None:
+            return
+        shown = self._station.shown(robot)
+        with self._closing:
+            if self._session is not None:
+                self._session.put(self._key(robot, "state"), shown)
+
+    def close(self) -> None:
+        """Close the session."""
+        for robot in list(self._tokens):
+            self.vanish(robot)
+        for each in self._declared:
+            each.undeclare()
+        with self._closing:
+            session, self._session = self._session, None
+        if session is not None:
+            session.close()
+            self._work.put(None)
+            self._worker.join()
+
+    def _later(self, work: Callable[[Any], None]) -> Any:
+        """Return a handler that leaves its work to this carrier's own thread, in order.
+
+        Zenoh's threads, which read from the network, must not wait for locks and disks.
+        """
+        return zenoh.handlers.Callback(lambda given: self._work.put(lambda: work(given)), indirect=False)
+
+    def _serve_all(self) -> None:
+        while (work := self._work.get()) is not None:
+            work()
+
+    def _serve(self, query: Any) -> None:
+        with query:
+            owner, _, sender = str(query.key_expr).removeprefix(f"{self._prefix}/").split("/")
+            robot, asker = self._names.get(owner), self._names.get(sender)
+            if robot is None or asker is None or query.payload is None or self._station is None:
+                return
+            content = query.payload.to_bytes()
+            text = "" if len(content) > LONGEST else content.decode("utf-8", "replace")
+            query.reply(query.key_expr, self._station.serve(robot, asker, text))
+
+    def _show(self, query: Any) -> None:
+        with query:
+            robot = self._names.get(str(query.key_expr).removeprefix(f"{self._prefix}/").split("/")[0])
+            if robot in self._own and self._station is not None:
+                query.reply(query.key_expr, self._station.shown(robot))
+
+    def _see(self, sample: Any) -> None:
+        robot, _, start = str(sample.key_expr).removeprefix(f"{self._prefix}/").split("/")
+        name = self._names.get(robot)
+        if name is None or name in self._own or self._station is None:
+            return
+        there = self._there.setdefault(name, set())
+        if sample.kind == zenoh.SampleKind.DELETE:
+            there.discard(start)
+        else:
+            there.add(start)
+        self._station.noticed(name, bool(there))
+
+    def _key(self, robot: str, what: str, other: str | None = "") -> str:
+        """Return a key; `other` None: whoever it is, empty: nobody."""
+        ending = "" if other == "" else f"/{'*' if other is None else digest(other)}"
+        return f"{self._prefix}/{digest(robot)}/{what}{ending}"
+
+
+def digest(name: str) -> str:
+    """Return a name as keys hold it."""
+    return sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:24]
+
+
+def configuration(endpoints: Endpoints) -> Any:
+    """Return Zenoh's configuration.
+
+    Raises:
+        OSError: the file cannot be read, or is none of Zenoh's configurations.
+    """
+    config = zenoh.Config() if endpoints.file is None else _from_file(endpoints.file)
+    _insert(config, "transport/link/tx/lease", LEASE_MILLISECONDS)
+    _insert(config, "connect/retry", RETRY)
+    if endpoints.listen:
+        _insert(config, "listen/endpoints", list(endpoints.listen))
+    if endpoints.connect:
+        _insert(config, "connect/endpoints", list(endpoints.connect))
+    if endpoints.listen or endpoints.connect or endpoints.file is not None:
+        _insert(config, "scouting/multicast/enabled", False)
+        # A peer that is not there yet is looked for again and again, and nobody waits for it.
+        _insert(config, "connect/timeout_ms", -1)
+        _insert(config, "connect/exit_on_failure", False)
+    return config
+
+
+def _from_file(path: Path) -> Any:
+    try:
+        return zenoh.Config.from_file(str(path))
+    except zenoh.ZError as error:
+        raise OSError(f"{path}: cannot be read as a configuration of Zenoh: {error}") from error
+
+
+def _insert(config: Any, name: str, value: object) -> None:
+    config.insert_json5(name, json.dumps(value))
+
+
+def states_of(mission: str, run: str, endpoints: Endpoints, seconds: float) -> Mapping[str, str]:
+    """Return the state of slots of all robots that answer in time, by digest of the robot's name."""
+    with zenoh.open(configuration(endpoints)) as session:
+        key = f"mmrs/{digest(mission)}/{digest(run)}/*/state"
+        found = {}
+        for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
+            if reply.ok is not None:
+                found[str(reply.ok.key_expr).split("/")[3]] = reply.ok.payload.to_string()
+        return found

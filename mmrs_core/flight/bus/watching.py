@@ -1,0 +1,45 @@
+"""Who can be reached, who no longer, and who has ended."""
+
+from __future__ import annotations
+
+
+class Watching:
+    """What is known of the robots of other processes, and of all robots that have ended.
+
+    Attributes:
+        left: the robots that have ended.
+    """
+
+    def __init__(self, lease: float) -> None:
+        """Know nobody; after `lease` seconds out of reach a robot is lost for long."""
+        self.left: set[str] = set()
+        self._lease = lease
+        self._here: set[str] = set()
+        self._lost_at: dict[str, float] = {}
+
+    def noticed(self, robot: str, here: bool, now: float) -> None:
+        """Take note that a robot can be reached, or no longer."""
+        if here:
+            self._here.add(robot)
+            self._lost_at.pop(robot, None)
+        else:
+            self._here.discard(robot)
+            self._lost_at.setdefault(robot, now)
+
+    def is_here(self, robot: str) -> bool:
+        """Return whether a robot can be reached."""
+        return robot in self._here
+
+    def is_gone(self, robot: str) -> bool:
+        """Return whether a robot has ended, or was there and can no longer be reached."""
+        return robot in self.left or robot in self._lost_at
+
+    def long_lost_at(self, robot: str) -> float | None:
+        """Return when a robot is lost for long unless it comes back; None: it is not lost."""
+        lost_at = self._lost_at.get(robot)
+        return None if lost_at is None else lost_at + self._lease
+
+    def lost_for_long(self, robot: str, now: float) -> bool:
+        """Return whether a robot has been out of reach for longer than the lease."""
+        at = self.long_lost_at(robot)
+        return at is not None and now >= at

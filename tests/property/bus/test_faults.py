@@ -1,0 +1,54 @@
+"""Whatever happens to messages and processes, the logs together tell a possible story, to its end."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+from bus_world import World, spoil
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mmrs_core.behaviour.log import merge
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.testing.random_programs import programs
+
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
+def check(program, seed, faults):
+    world = World(program, Random(seed))
+    spoil(world, faults)
+    records = world.records()
+    result = replay(program, records)
+    assert result.complaints == (), "\n".join(map(str, result.complaints))
+    for process in world.processes:
+        for robot in process.robots:
+            for slot in program.robot(robot).slots:
+                state = process.node.state((robot, slot))
+                assert state.active == last_value(records, robot, slot)
+
+
+def last_value(records, robot, slot):
+    """Return what the merged logs say that a slot is in the end."""
+    value = False
+    for record in merge(records):
+        if record.label == "ntf" and f"{robot}.{slot}" in record.slot[1:].split():
+            value = record.slot[0] == "+"
+    return value
+
+
+PROGRAMS = programs(robots=(2, 4), moves=(1, 4))
+
+
+@given(PROGRAMS, st.integers(0, 2**32), st.integers(0, 40))
+@settings(max_examples=100, deadline=None, suppress_health_check=SLOW)
+def test_a_hundred_histories_of_faults_replay(program, seed, faults):
+    check(program, seed, faults)
+
+
+@pytest.mark.thorough
+@given(PROGRAMS, st.integers(0, 2**32), st.integers(0, 60))
+@settings(max_examples=1000, deadline=None, suppress_health_check=SLOW)
+def test_a_thousand_histories_of_faults_replay(program, seed, faults):
+    check(program, seed, faults)
