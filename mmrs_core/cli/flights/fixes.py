@@ -6,14 +6,14 @@ from array import array
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
-from math import inf, isfinite, nan
+from math import isfinite, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mmrs_core.behaviour.blackbox import Entry, number_of
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.cli.flights.values import Track
+from mmrs_core.cli.flights.values import Flags, Track
 from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.mavlink.earth import WGS84
 from mmrs_core.mavlink.vehicles import vehicle_class
@@ -67,12 +67,15 @@ class Fixes:
         placed = np.isfinite(positions).all(axis=1)
         self.unplaced += int(len(rows) - placed.sum())
         times = rows[placed, 0]
-        return Track(times, positions[placed], rows[placed, 5], inf if exact else _limit(times))
+        return Track(times, positions[placed], rows[placed, 5], _broken(times, exact))
 
 
-def _limit(times: Floats) -> float:
-    usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
-    return max(SHORTEST_GAP, _USUAL_TIMES * usual)
+def _broken(times: Floats, exact: bool) -> Flags:
+    broken = np.zeros(len(times), dtype=bool)
+    if len(times) > 1 and not exact:
+        passed = np.diff(times)
+        broken[:-1] = passed > max(SHORTEST_GAP, _USUAL_TIMES * float(np.median(passed)))
+    return broken
 
 
 def spot_of(place: Mapping[str, object]) -> tuple[bool, float, float, float] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import zip_longest
 
 from mmrs_core.behaviour.program import Move, Program, RobotProgram
 from mmrs_core.behaviour.steps import StepRecord
@@ -109,8 +109,7 @@ def legs_of(
     moves = {move.id: move for move in robot.moves}
     here: Position | None = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
     legs: list[PlannedLeg] = []
-    following = [*(after for _, after in pairwise(records)), None]
-    for record, after in zip(records, following, strict=True):
+    for record, after in zip_longest(records, records[1:]):
         move = moves.get(record.move)
         if record.label != "begin" or move is None:
             continue

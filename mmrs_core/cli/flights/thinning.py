@@ -11,7 +11,7 @@ from mmrs_core.geometry.frames import Floats
 
 TOLERANCE = 0.2
 """Metres that a thinned track may be off at first."""
-MOST_POINTS = 20_000
+MOST_POINTS = 6_000
 """Points of a track from which on the tolerance is doubled."""
 
 
@@ -25,9 +25,8 @@ def thinned(track: Track, tolerance: float = TOLERANCE) -> tuple[Track, float]:
     while True:
         kept = _kept(track, tolerance)
         if len(kept) <= MOST_POINTS or len(kept) <= 2 * len(track.gaps) + 2:
-            return Track(
-                track.times[kept], track.positions[kept], track.energies[kept], track.limit
-            ), tolerance
+            chosen = track.times[kept], track.positions[kept], track.energies[kept], track.broken[kept]
+            return Track(*chosen), tolerance
         tolerance *= 2
 
 
@@ -41,9 +40,9 @@ def _kept(track: Track, tolerance: float) -> list[int]:
     if not len(track.times):
         return []
     cones = _Cones(track, tolerance / sqrt(3))
-    times = cones.times
+    times, broken = cones.times, track.broken.tolist()
     for i in range(1, len(times)):
-        if times[i] - times[i - 1] > track.limit:
+        if broken[i - 1]:
             cones.stay(i - 1)
             cones.stay(i)
         elif cones.hold(i):
@@ -102,5 +101,5 @@ def pieces(track: Track) -> list[Floats]:
     """Return the positions between gaps, each (n, 3)."""
     if not len(track.times):
         return []
-    ends = np.flatnonzero(np.diff(track.times) > track.limit) + 1
+    ends = np.flatnonzero(track.broken) + 1
     return list(np.split(track.positions, ends))

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
+
+Flags: TypeAlias = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,19 +25,19 @@ class Track:
         times: (n,) seconds of the run, never falling.
         positions: (n, 3) metres east, north, up.
         energies: (n,) part of the battery that is left, 0 to 1; nan where nobody knows.
-        limit: seconds between two fixes from which on nobody knows where the robot was between them; inf
-            where it is known to have gone straight, as in a simulation.
+        broken: (n,) whether nobody knows where it was between that fix and the next; false for the last.
+            Between others it went straight.
     """
 
     times: Floats
     positions: Floats
     energies: Floats
-    limit: float = float("inf")
+    broken: Flags
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
         """Return (since, until) of every stretch of time in which nobody knows where the robot was."""
-        found = np.flatnonzero(np.diff(self.times) > self.limit)
+        found = np.flatnonzero(self.broken)
         return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
 
     def at(self, time: float) -> Position | None:
@@ -41,15 +45,16 @@ class Track:
         if not len(self.times) or not self.times[0] <= time <= self.times[-1]:
             return None
         after = min(int(np.searchsorted(self.times, time, side="right")), len(self.times) - 1)
-        since, until = self.times[after - 1] if after else self.times[0], self.times[after]
-        if until - since > self.limit and since < time < until:
+        before = max(after - 1, 0)
+        since, until = self.times[before], self.times[after]
+        if self.broken[before] and since < time < until:
             return None
         part = (time - since) / (until - since) if until > since else 1.0
-        east, north, up = self.positions[max(after - 1, 0)] * (1 - part) + self.positions[after] * part
+        east, north, up = self.positions[before] * (1 - part) + self.positions[after] * part
         return float(east), float(north), float(up)
 
 
-NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0))
+NOWHERE = Track(np.empty(0), np.empty((0, 3)), np.empty(0), np.empty(0, dtype=bool))
 
 
 @dataclass(frozen=True, slots=True)

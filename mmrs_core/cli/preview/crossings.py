@@ -29,8 +29,12 @@ def crossings(robot: RobotPicture, zones: Iterable[Zone]) -> Iterator[Crossing]:
         if zone.use is AreaUse.EMERGENCY:
             continue
         shape = Polygon(zone.shell)
+        west, south, east, north = shape.bounds
         for leg in robot.legs:
             for (begin, start), (end, stop) in pairwise(corners(leg)):
+                aside = max(start[0], stop[0]) < west or min(start[0], stop[0]) > east
+                if aside or max(start[1], stop[1]) < south or min(start[1], stop[1]) > north:
+                    continue
                 yield from (
                     Crossing(zone, begin + (end - begin) * a, begin + (end - begin) * b)
                     for a, b in _shares(start, stop, shape)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from math import dist
 
 import numpy as np
@@ -117,7 +117,7 @@ class _Shown:
     def _legs(self) -> Iterator[Leg]:
         records = self._flown.records
         acts = _acts(records)
-        for begin, after in zip(records, (*records[1:], None), strict=True):
+        for begin, after in zip_longest(records, records[1:]):
             if begin.label != "begin":
                 continue
             move = self._moves[begin.move]
@@ -194,19 +194,20 @@ def _stretches(
     if not len(track.times) or end < begin:
         return
     first, last = np.searchsorted(track.times, begin, side="right"), np.searchsorted(track.times, end)
-    times = track.times[first:last].tolist()
-    points = [tuple(each) for each in track.positions[first:last].tolist()]
-    for time, place in ((begin, 0), (end, len(times) + 1)):
+    times, broken = track.times[first:last].tolist(), track.broken[first:last].tolist()
+    points: list[Position] = [(east, north, up) for east, north, up in track.positions[first:last].tolist()]
+    for time, last_one in ((begin, False), (end, True)):
         at = track.at(time)
         if at is not None:
+            place = len(times) if last_one else 0
             times.insert(place, time)
             points.insert(place, at)
+            broken.insert(place, False)
     since = 0
-    for i in range(1, len(times) + 1):
-        if i == len(times) or times[i] - times[i - 1] > track.limit:
-            if i - since > 0:
-                yield tuple(times[since:i]), tuple(points[since:i])
-            since = i
+    for i in range(len(times)):
+        if broken[i] or i + 1 == len(times):
+            yield tuple(times[since : i + 1]), tuple(points[since : i + 1])
+            since = i + 1
 
 
 def _reach(points: Sequence[Position]) -> float:

@@ -154,7 +154,7 @@ def bars_of_records(
         if following.time <= record.time:
             continue
         move = moves[following.move]
-        if following.label in ("take", "choose"):
+        if following.label in ("take", "choose") or (following.label == "fault" and record.label != "begin"):
             kind = "wait"
         elif following.label == "act":
             kind = "work"

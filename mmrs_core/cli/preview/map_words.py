@@ -16,10 +16,11 @@ from mmrs_core.cli.preview.map_furniture import furniture_places
 from mmrs_core.cli.preview.map_places import BADGE, STEM, badge_places, task_tip, thing_tip
 from mmrs_core.cli.preview.map_ways import STAY, STAYING
 from mmrs_core.cli.preview.palette import style_of
-from mmrs_core.cli.preview.picture import Picture, TaskPicture, Zone
+from mmrs_core.cli.preview.picture import Picture, RobotPicture, TaskPicture, Zone
 from mmrs_core.cli.preview.projection import Projection
 from mmrs_core.scene import AreaUse, Point, Position, Ring
 
+_FEW = 20
 _HOME = 9.0
 """Half the width of the mark of a home, pixels."""
 
@@ -62,10 +63,18 @@ def _marks(picture: Picture, projection: Projection) -> Iterator[Box]:
 
 def _lines(picture: Picture) -> Iterator[Sequence[Point | Position]]:
     """Yield what names should not hide: ways and borders."""
-    yield from (leg.points for robot in picture.robots for leg in robot.legs)
+    if picture.flown:
+        yield from (way for robot in picture.robots for way in robot.planned or _flown(robot))
+    else:
+        yield from (leg.points for robot in picture.robots for leg in robot.legs)
     yield from ((*zone.shell, zone.shell[0]) for zone in picture.zones if zone.shell)
     for thing in picture.things:
         yield from (*thing.lines, *((*ring, ring[0]) for ring in thing.outlines))
+
+
+def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:
+    """Yield the legs of a robot that has flown and had no plan, with few of their points."""
+    yield from (leg.points[:: max(len(leg.points) // _FEW, 1)] for leg in robot.legs)
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,7 +48,7 @@ def _segments(track: Track) -> tuple[Floats, Floats, Floats]:
     """Return begins, ends and times of what a robot went straight; single fixes stay where they are."""
     if len(track.times) < 2:
         return track.positions, track.positions, track.times
-    known = np.diff(track.times) <= track.limit
+    known = ~track.broken[:-1]
     begins, ends = track.positions[:-1], track.positions[1:]
     lone = np.r_[True, ~known] & np.r_[~known, True]
     singles = track.positions[lone]

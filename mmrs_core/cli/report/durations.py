@@ -70,8 +70,9 @@ def _waits(
         transition = robot.transitions.get(index[visit.move])
         if transition is None or not transition.waits or visit.ended is None:
             continue
-        since = max(visit.ended, visit.done) if not visit.fault else visit.ended
-        end = visit.left if visit.left is not None else max(flown.end, visit.done)
+        since = visit.ended if visit.fault else visit.done
+        last = visit.done if visit.fault else max(flown.end, visit.done)
+        end = visit.left if visit.left is not None else last
         if end - since < SHORTEST_WAIT:
             continue
         yield WaitReport(

@@ -15,6 +15,7 @@ from mmrs_core.cli.report.words import (
     place,
     seconds,
     span,
+    spoken,
 )
 
 _KINDS = {
@@ -55,7 +56,7 @@ def robots(report: Report) -> str:
         (
             robot.robot,
             robot.type_name,
-            badge(robot.ending, "good" if robot.ending == "to its end" else "bad"),
+            badge(spoken(robot.ending), "good" if robot.ending == "to its end" else "bad"),
             f"{robot.moves[0]} of {robot.moves[1]}",
             f"{metres(robot.way)} of {metres(robot.planned_way)}",
             f"{seconds(robot.time)} of {seconds(robot.planned_time)}",
@@ -114,7 +115,7 @@ def approaches(report: Report) -> str:
         )
         for each in ordered
     ]
-    head = ("robot", "area", "smallest distance", "required", "", "when", "where")
+    head = ("robot", "area", "smallest distance", "required", "verdict", "when", "where")
     note = (
         "Measured in all three dimensions to the shapes as drawn, straight between fixes."
         " Required: the area's safety distance, half the robot's diagonal and the position error."
@@ -164,9 +165,9 @@ def waits(report: Report) -> str:
             each.move,
             ", ".join(each.slots),
             ", ".join(each.setters) or UNKNOWN,
-            f"{clock(each.since)} to {clock(each.until) if each.until is not None else 'the end'}",
-            seconds(each.seconds),
-            seconds(each.planned) if each.planned is not None else UNKNOWN,
+            f"{clock(each.since)} to {clock(each.since + each.seconds)}",
+            seconds(each.seconds) + (", in vain" if each.until is None else ""),
+            seconds(each.planned),
         )
         for each in report.waits
     ]
@@ -176,8 +177,11 @@ def waits(report: Report) -> str:
 
 def events(report: Report) -> str:
     """Return faults, decisions, orders and warnings."""
-    rows = [(clock(each.time), each.robot, _event(each), each.what, each.why) for each in report.events]
-    head = ("time", "robot", "", "what", "why, and what was done")
+    rows = [
+        (clock(each.time), each.robot, _event(each), spoken(each.what), spoken(each.why))
+        for each in report.events
+    ]
+    head = ("time", "robot", "kind", "what", "why, and what was done")
     shown = table(head, rows) if rows else element("p", None, "None.")
     return section("Faults, decisions, orders, warnings", shown)
 
@@ -206,7 +210,7 @@ def photos(report: Report) -> str:
         return ""
     words = f"{len(rest)} photos" if report.simulated else f"{len(rest)} photos were confirmed"
     words += f"; {len(missing)} were ordered and not confirmed" if missing else ""
-    shown = table(("number", "robot", "time", "", "task", "place"), rows)
+    shown = table(("number", "robot", "time", "state", "task", "place"), rows)
     note = "Confirmed: the vehicle said that the camera took it. Nobody has looked at the pictures."
     return section("Photos", element("p", None, text(words + ".")), folded("all photos", shown), note=note)
 
@@ -217,7 +221,7 @@ def readings(report: Report) -> str:
         (clock(each.time), each.robot, each.kind, each.name, each.content, place(each.where))
         for each in report.readings
     ]
-    head = ("time", "robot", "", "name", "content", "place")
+    head = ("time", "robot", "kind", "name", "content", "place")
     return section("Measurements and reports", table(head, rows) if rows else "")
 
 

@@ -24,12 +24,14 @@ def _verdict(report: Report) -> tuple[str, str]:
     tasks = f"{done} of {len(asked)} tasks done" if asked else "the behaviour names no tasks"
     early = f"{faults} robot{'s' * (faults != 1)} ended early" if faults else ""
     close = "a required distance was not kept" if near else ""
+    empty = any(e.lowest is not None and e.lowest < e.reserve - 0.005 for e in report.energies)
+    low = "a battery fell under the reserve" if empty else ""
     strange = "the logs are no run of this behaviour" if report.complaints else ""
     unfinished = "not all programs came to their end" if report.outcome != "success" and not faults else ""
-    words = "; ".join(each for each in (tasks, early, unfinished, close, strange) if each)
+    words = "; ".join(each for each in (tasks, early, unfinished, close, low, strange) if each)
     if near or strange or (asked and not done):
         return words, "bad"
-    return words, "good" if done == len(asked) and report.outcome == "success" else "fair"
+    return words, "good" if done == len(asked) and report.outcome == "success" and not empty else "fair"
 
 
 def tiles(report: Report) -> str:

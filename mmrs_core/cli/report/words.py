@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 from mmrs_core.cli.figures import clock, energy, length
 from mmrs_core.cli.report.values import Place
 
 UNKNOWN = "not known"
+_CODE = re.compile(r"(?<![\w'])[A-Z]{3,}(?:_[A-Z]+)*(?![\w'])")
 
 
 def seconds(value: float | None) -> str:
@@ -77,6 +80,15 @@ def place(where: Place | None) -> str:
     if where.latitude is None or where.longitude is None:
         return f"{east:.1f} m east, {north:.1f} m north, {up:.1f} m up"
     return f"{where.latitude:.7f}, {where.longitude:.7f}, {up:.1f} m up"
+
+
+def spoken(words: str) -> str:
+    """Return words with those that are written as codes written as people do.
+
+    >>> spoken("less than 30% of the energy is left; response: EMERGENCY_AREA")
+    'less than 30% of the energy is left; response: emergency area'
+    """
+    return _CODE.sub(lambda found: found[0].replace("_", " ").lower(), words)
 
 
 def span(times: tuple[float, float | None] | None) -> str:
