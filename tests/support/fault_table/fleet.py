@@ -82,9 +82,9 @@ class Fleet:
 
     def start(self, *arguments: str, robot: str = "") -> Process:
         """Start a process for all robots, or for one of them; give it these arguments beside the usual."""
-        links = [
-            word for name, link in self._links.items() if robot in ("", name) for word in (CONNECT, link)
-        ]
+        connect = CONNECT[self.execution]
+        chosen = [link for name, link in self._links.items() if robot in ("", name)]
+        links = [word for link in chosen for word in (connect, link)]
         usual = ["--log", str(self.logs), "--speedup", str(self.speedup)]
         process = Process([*self._program(robot), *links, *usual, *arguments], self.folder)
         self._processes.append(process)

@@ -32,6 +32,7 @@ class Row:
         fast: whether it is among those that are always tested.
         hands_off: whether nothing but heartbeats may be sent once the controller has noticed.
         strikes_peer: whether the fault is that of the robot which this one waits for.
+        suspends: whether the robot only comes down for a new battery, which is no fault in its log.
         says: what the process must say, where logs cannot.
     """
 
@@ -51,6 +52,7 @@ class Row:
     fast: bool = False
     hands_off: bool = False
     strikes_peer: bool = False
+    suspends: bool = False
     says: str = ""
 
     @property
@@ -74,7 +76,7 @@ class Row:
     @property
     def response(self) -> str:
         """Return what the black box must have as the response; empty where it need not have any."""
-        if not self.event or self.order:
+        if self.order or not (self.event or self.suspends):
             return ""
         return "NOTHING" if self.hands_off else self.policy[1] if self.policy is not None else ""
 

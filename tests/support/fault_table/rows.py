@@ -137,11 +137,12 @@ def _event_rows(
         Row(
             fault,
             during,
-            _policy(event, response),
+            _policy(event or "BATTERY_LOW", response),
             strike,
             event,
             ends,
             stay=5.0 if during == AUTO else 20.0,
+            suspends=not event,
             fast=response == fast,
         )
         for during, response, ends in cases
@@ -256,14 +257,14 @@ ROWS: tuple[Row, ...] = (
     ),
     *_event_rows(
         "battery low",
-        "BATTERY_LOW",
+        "",
         _battery,
         [(AT, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow"), (LEG, "LAND", "here")],
         "EMERGENCY_AREA",
     ),
     *_event_rows(
         "point of no return",
-        "BATTERY_LOW",
+        "",
         _barely,
         [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
         "",

@@ -66,6 +66,11 @@ def fly(
     return [watch.outcome for watch in watches]
 
 
+def batches(rows: Sequence[Row], size: int = 10) -> list[tuple[Row, ...]]:
+    """Return rows in groups that two cores can fly at once."""
+    return [tuple(rows[first : first + size]) for first in range(0, len(rows), size)]
+
+
 def _settled(watches: Sequence[Watch], blow: Blow | None) -> bool:
     return all([watch.settled(itself=blow is None) for watch in watches])
 

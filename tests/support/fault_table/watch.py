@@ -149,7 +149,7 @@ class Watch:
 
     def _observe_logs(self) -> None:
         steps, row, problems = self._fleet.steps(self._robot), self._row, self.outcome.problems
-        faults = [step["detail"] for step in steps if step["label"] == "fault"]
+        faults = [str(step["detail"]).partition(":")[0] for step in steps if step["label"] == "fault"]
         self.outcome.line = json.dumps(steps[-1], ensure_ascii=False) if steps else ""
         if len(faults) > 1 or "".join(faults) not in row.event.split("|"):
             problems.append(f"the step log has faults {faults}, not {row.event or 'none'}")

@@ -1,0 +1,82 @@
+"""What goes wrong, under both executions: what was declared must happen, by the vehicle's own record."""
+
+from __future__ import annotations
+
+import pytest
+from fault_table.blows import DRILLS
+from fault_table.fleet import EXECUTIONS
+from fault_table.orders import ORDERS
+from fault_table.rows import ROWS
+from fault_table.trial import batches, fly
+
+ALL = (*ROWS, *ORDERS)
+FAST = tuple(row for row in ALL if row.fast)
+REST = tuple(row for row in ALL if not row.fast)
+
+
+def title(case) -> str:
+    return case.title
+
+
+def flown_by(rows, execution, folder):
+    outcomes = [
+        outcome
+        for number, batch in enumerate(batches(rows))
+        for outcome in fly(batch, execution, folder / f"batch-{number}")
+    ]
+    return dict(zip((row.title for row in rows), outcomes, strict=True))
+
+
+@pytest.fixture(scope="module", params=EXECUTIONS)
+def usual(request, tmp_path_factory):
+    """Return what became of the rows that are always tested, flown together."""
+    return flown_by(FAST, request.param, tmp_path_factory.mktemp("usual"))
+
+
+@pytest.fixture(scope="module", params=EXECUTIONS)
+def others(request, tmp_path_factory):
+    """Return what became of all other rows."""
+    return flown_by(REST, request.param, tmp_path_factory.mktemp("others"))
+
+
+@pytest.mark.parametrize("row", FAST, ids=title)
+def test_what_goes_wrong_is_answered_as_declared(usual, row):
+    assert usual[row.title].problems == []
+
+
+@pytest.mark.thorough
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("row", REST, ids=title)
+def test_everything_that_goes_wrong_is_answered_as_declared(others, row):
+    assert others[row.title].problems == []
+
+
+def drilled(drill, execution, folder) -> None:
+    outcomes = fly(
+        drill.rows, execution, folder, blow=drill.blow, until=drill.until, arguments=drill.arguments
+    )
+    assert [(outcome.title, outcome.problems) for outcome in outcomes if outcome.problems] == []
+
+
+@pytest.mark.parametrize("execution", EXECUTIONS)
+@pytest.mark.parametrize("drill", [drill for drill in DRILLS if drill.fast], ids=lambda drill: drill.name)
+def test_robots_come_to_a_declared_end_whatever_happens_to_their_process(drill, execution, tmp_path):
+    drilled(drill, execution, tmp_path)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("execution", EXECUTIONS)
+@pytest.mark.parametrize("drill", [drill for drill in DRILLS if not drill.fast], ids=lambda drill: drill.name)
+def test_robots_come_to_a_declared_end_in_every_drill(drill, execution, tmp_path):
+    drilled(drill, execution, tmp_path)
+
+
+def test_titles_tell_rows_apart():
+    titles = [row.title for row in ALL]
+    assert len(set(titles)) == len(titles)
+
+
+@pytest.mark.parametrize("fault", sorted({row.fault for row in ROWS}))
+def test_every_fault_that_policies_answer_has_two_policies(fault):
+    rows = [row for row in ROWS if row.fault == fault]
+    assert len({row.policy[1] for row in rows}) >= 2 or fault == "vehicle's clock jumps"
