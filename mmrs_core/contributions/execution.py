@@ -228,6 +228,7 @@ class Live:
         say: tells people something about this robot, from any thread.
         run: identifier of the run.
         folder: of the logs; None where none are kept.
+        resumed: whether the run was broken off before, so that robots may be anywhere on their ways.
         links: how robots are reached, as in ``--connect``, by robot of this process.
         shared: what backends of the same run share, by names of their own; empty at first.
     """
@@ -237,6 +238,7 @@ class Live:
     say: Callable[[str], None]
     run: str
     folder: Path | None = None
+    resumed: bool = False
     links: Mapping[str, str] = field(default_factory=dict)
     shared: dict[str, object] = field(default_factory=dict)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from typing import cast
 
@@ -158,7 +159,7 @@ def _equipment(
         program.vehicle,
         program.home,
         acceptance=options.acceptance,
-        home_tolerance=options.home_tolerance,
+        home_tolerance=inf if live.resumed else options.home_tolerance,
     )
     context = context_of(given.robot, input, geographic=False)
     home = given.robot.home or (0.0, 0.0, 0.0)
@@ -182,6 +183,7 @@ def _equipment(
         joules=joules,
         locators=locators,
         box=box,
+        resumed=live.resumed,
         say=live.say,
         wake=live.wake,
         action=lambda action: cast(Action, built(action_of(action, context))),

@@ -1,4 +1,4 @@
-"""The way back to where a robot's program was broken off: as it came, from its last take-off on."""
+"""The way back to where a robot's program was broken off: along its own way, which is known to be clear."""
 
 from __future__ import annotations
 
@@ -13,7 +13,95 @@ from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend_worker import Job
 
 ON_THE_WAY = 5.0
-"""Metres that a vehicle may be off the way that it came, to go on from there."""
+"""Metres that a vehicle may be off its way, to go on from there."""
+
+Point = tuple[str, Place]
+
+
+class WayBack:
+    """Finds the way from wherever a vehicle is to where a leg of its program begins."""
+
+    def __init__(self, robot: Robot, moves: Moves, vehicle: Vehicle, home_tolerance: float) -> None:
+        """Find ways for that vehicle; on the ground it may be that far from home, metres."""
+        self._robot, self._moves, self._vehicle = robot, moves, vehicle
+        self._home_tolerance = home_tolerance
+        self._steps = {step.move: step for step in robot.steps}
+
+    def job(self, passed: Sequence[str], begun: str) -> Job:
+        """Return what brings the vehicle to where it was when it ended the last of these moves.
+
+        A vehicle on the ground at home takes off and flies the way that it came. One that is in the air,
+        on its way or ahead on the leg or run that it had begun, goes along that way. One that is anywhere
+        else is refused, since nobody has checked a way from there.
+
+        Args:
+            passed: moves that the robot has ended, in order.
+            begun: the move that it will begin once more; may be empty.
+        """
+        job = Job()
+        job.append(lambda: job.then(*self._parts(sortie_of(self._robot, passed), begun)))
+        return job
+
+    def _parts(self, sortie: Sequence[str], begun: str) -> list[Callable[[], None]]:
+        here = self._vehicle.state().place
+        low = here.height <= IN_THE_AIR
+        if not sortie or (low and bool(begun) and self._moves.kind(begun) is Land):
+            return []
+        came = list(self._places(self._robot.home, sortie))
+        first = self._steps[sortie[0]].movement
+        if isinstance(first, TakeOff) and low:
+            self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
+            height = first.height
+            return [lambda: self._moves.climb(sortie[0], height), *self._legs(came[1:])]
+        return self._along(here, came, list(self._places(came[-1][1], self._ahead(begun))))
+
+    def _along(self, here: Place, came: list[Point], ahead: list[Point]) -> list[Callable[[], None]]:
+        """Return the legs along the way from a place on it to the end of what has been passed."""
+        places = [self._robot.home, *(place for _, place in (*came, *ahead))]
+        gaps = [_gap(here, places[i], places[i + 1]) for i in range(len(places) - 1)]
+        nearest = min(range(len(gaps)), key=gaps.__getitem__)
+        self._refuse_far(gaps[nearest], ON_THE_WAY)
+        if nearest < len(came):
+            self._moves.track = came[:nearest]
+            return self._legs(came[nearest:])
+        self._moves.track = came[:-1]
+        back = ahead[: nearest - len(came)]
+        return self._legs([*((came[-1][0], place) for _, place in reversed(back)), came[-1]])
+
+    def _ahead(self, begun: str) -> tuple[str, ...]:
+        """Return the moves by which the vehicle may have gone on while nobody told it anything."""
+        for run in self._robot.runs:
+            if begun in run.moves:
+                return run.moves[run.moves.index(begun) :]
+        return (begun,) if begun else ()
+
+    def _places(self, here: Place, moves: Sequence[str]) -> Iterator[Point]:
+        for move in moves:
+            movement = self._steps[move].movement
+            if isinstance(movement, TakeOff):
+                here = self._moves.above_home(movement.height)
+                yield move, here
+            elif isinstance(movement, GoTo):
+                target = self._moves.target_of(movement)
+                for end in ends_of(here, target, movement.legs, movement.distance):
+                    here = end
+                    yield move, end
+
+    def _legs(self, way: Sequence[Point]) -> list[Callable[[], None]]:
+        def leg(move: str, place: Place) -> Callable[[], None]:
+            def go() -> None:
+                self._vehicle.go_to(place, self._moves.speed_of(move), None, True)
+                self._moves.track.append((move, place))
+
+            return go
+
+        return [leg(move, place) for move, place in way]
+
+    def _refuse_far(self, away: float, limit: float) -> None:
+        if away > limit:
+            raise Refused(
+                f"the vehicle is {away:.0f} m from its home, or off its way: bring it home before it goes on"
+            )
 
 
 def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:
@@ -27,87 +115,6 @@ def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:
         elif isinstance(movement, TakeOff):
             begin = index
     return tuple(passed[begin:])
-
-
-def way_back(robot: Robot, moves: Moves, vehicle: Vehicle, passed: Sequence[str], begun: str) -> Job:
-    """Return what brings a vehicle to where it was when it ended the last of these moves.
-
-    A vehicle on the ground takes off and flies the whole way. One that is on its way goes on from
-    there; one that is anywhere else is refused, since nobody has checked a way from there.
-
-    Args:
-        robot: its program.
-        moves: of the same vehicle.
-        vehicle: ready to move.
-        passed: moves that the robot has ended, in order.
-        begun: the move that it will begin once more; may be empty.
-    """
-    job = Job()
-
-    def look_up() -> None:
-        sortie = sortie_of(robot, passed)
-        here = vehicle.state().place
-        lands = bool(begun) and moves.kind(begun) is Land
-        if not sortie or (lands and here.height <= IN_THE_AIR):
-            return
-        way = list(_places(robot, moves, sortie))
-        first, climbs = _joins(robot, here, way)
-        moves.track = list(way[:first])
-        if climbs is not None:
-            move, height = climbs
-            job.then(lambda: moves.climb(move, height), *_legs(moves, vehicle, way[1:]))
-        else:
-            job.then(*_legs(moves, vehicle, way[first:]))
-
-    job.append(look_up)
-    return job
-
-
-def _joins(
-    robot: Robot, here: Place, way: Sequence[tuple[str, Place]]
-) -> tuple[int, tuple[str, float] | None]:
-    """Return from which place of the way on it is flown, and the take-off where there must be one.
-
-    Raises:
-        Refused: the vehicle is neither on the ground nor on its way.
-    """
-    steps = {step.move: step.movement for step in robot.steps}
-    first = steps[way[0][0]]
-    if isinstance(first, TakeOff) and here.height <= IN_THE_AIR:
-        return 0, (way[0][0], first.height)
-    places = [robot.home, *(place for _, place in way)]
-    gaps = [_gap(here, places[i], places[i + 1]) for i in range(len(places) - 1)]
-    nearest = min(range(len(gaps)), key=gaps.__getitem__)
-    if gaps[nearest] > ON_THE_WAY:
-        raise Refused(
-            f"the vehicle is {gaps[nearest]:.0f} m off the way that it came; bring it home before it goes on"
-        )
-    return nearest, None
-
-
-def _places(robot: Robot, moves: Moves, sortie: Sequence[str]) -> Iterator[tuple[str, Place]]:
-    steps = {step.move: step.movement for step in robot.steps}
-    here = robot.home
-    for move in sortie:
-        movement = steps[move]
-        if isinstance(movement, TakeOff):
-            here = moves.above_home(movement.height)
-            yield move, here
-        elif isinstance(movement, GoTo):
-            for end in ends_of(here, moves.target_of(movement), movement.legs, movement.distance):
-                here = end
-                yield move, end
-
-
-def _legs(moves: Moves, vehicle: Vehicle, way: Sequence[tuple[str, Place]]) -> list[Callable[[], None]]:
-    def leg(move: str, place: Place) -> Callable[[], None]:
-        def go() -> None:
-            vehicle.go_to(place, moves.speed_of(move), None, True)
-            moves.track.append((move, place))
-
-        return go
-
-    return [leg(move, place) for move, place in way]
 
 
 def _gap(here: Place, a: Place, b: Place) -> float:

@@ -28,7 +28,7 @@ from mmrs_core.flight.watch import Watch
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
-from mmrs_core.mavlink.backend_recovery import way_back
+from mmrs_core.mavlink.backend_recovery import WayBack
 from mmrs_core.mavlink.backend_worker import Job, Worker
 
 HANDS_OFF = "NOTHING"
@@ -50,6 +50,7 @@ class Equipment:
         joules: that its batteries hold when full; None where nobody says.
         locators: what finds objects, by description.
         box: None where no logs are kept.
+        resumed: whether the vehicle may be in the air at first.
         action: an action of the behaviour as one of the vehicle's program.
         start: to be called once the robot gets ready, for faults that are made on purpose.
     """
@@ -63,6 +64,7 @@ class Equipment:
     joules: float | None
     locators: Mapping[str, Locator]
     box: BlackBox | None
+    resumed: bool
     say: Callable[[str], None]
     wake: Callable[[], None]
     action: Callable[[Action], VehicleAction]
@@ -89,7 +91,7 @@ class MavlinkBackend:
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
         self._response = ""
-        self._watched = False
+        self._watched = self._was_paused = False
         self._seen: VehicleFault | None = None
         self._ready = False
 
@@ -181,20 +183,26 @@ class MavlinkBackend:
         self._response = ""
         self._watch = self._new_watch()
         self._move = begun or (passed[-1] if passed else "")
-        self._begin(way_back(self._robot, self._moves, self._with.vehicle, passed, begun), afresh=True)
+        way = WayBack(self._robot, self._moves, self._with.vehicle, self._options.home_tolerance)
+        self._begin(way.job(passed, begun), afresh=True)
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
+        self._was_paused = False
         self._worker.pause()
         self._with.link.wake()
 
     def resume(self, now: float) -> None:
         """Go on."""
+        self._was_paused = self._worker.halted
         self._worker.resume()
 
     def paused(self, now: float) -> bool:
-        """Return whether the vehicle stands."""
-        return self._worker.halted
+        """Return whether the vehicle stands, and has not been seen to go on."""
+        if self._worker.halted:
+            return True
+        goes_on = self._worker.done or self._with.vehicle.state().mode != modes.HOLD
+        return self._was_paused and not goes_on
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""
@@ -243,6 +251,8 @@ class MavlinkBackend:
     def _set_up(self) -> None:
         vehicle, robot = self._with.vehicle, self._robot
         vehicle.answer_lost_link(self._alone)
+        if self._with.resumed:
+            vehicle.hold()
         vehicle.prepare(fence_of(robot) if self._options.fence else (), rally_of(robot), self._mission)
         self._note_start()
         self._ready = True

@@ -113,6 +113,7 @@ def _connected(
             say=_named(venture.say, id),
             run=venture.run,
             folder=venture.folder,
+            resumed=any(record.robot == id for record in venture.resumed),
             links=venture.links,
             shared=shared,
         )

@@ -95,8 +95,6 @@ class Obedience:
             robot.held = False
         else:
             order.refuse(robot.id, "has nothing to resume")
-            return
-        order.confirm(robot.id)
 
     def _stop_again(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot whose program has ended by a fault stop in another way."""
@@ -133,5 +131,8 @@ class Obedience:
                     order.confirm(id)
                 elif robot.point.is_final:
                     order.refuse(id, "its program has ended")
+            elif order.kind == RESUME:
+                if not (isinstance(robot.backend, Pausable) and robot.backend.paused(now)):
+                    order.confirm(id)
             elif robot.stopping and isinstance(robot.backend, Watched) and robot.backend.obeys(now):
                 order.confirm(id)
