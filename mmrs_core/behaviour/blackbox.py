@@ -119,6 +119,11 @@ def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
         raise UnreadableError(f"{path}: cannot be read as a black box: {error.strerror or error}") from error
 
 
+def is_part(path: Path) -> bool:
+    """Return whether a path is called as parts of black boxes are."""
+    return bool(_stem(path))
+
+
 def _stem(path: Path) -> str:
     found = _PART.fullmatch(path.name)
     return found["stem"] if found else ""

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.settings import Json, settings_of
+
+if TYPE_CHECKING:
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.behaviour.replay import ReplayResult
+    from mmrs_core.cli.flights.values import Flight
 
 
 def replay(
@@ -19,29 +24,78 @@ def replay(
     partial: Annotated[
         bool, typer.Option("--partial", help="Accept logs that end before the run does.")
     ] = False,
+    steps: Annotated[
+        bool, typer.Option("--steps", help="Tell every step, and where its robot was by its black box.")
+    ] = False,
     json: Json = False,
 ) -> int:
-    """Replay the logs of a run through the rules of its behaviour."""
+    """Replay the logs of a run through the rules of its behaviour.
+
+    Black boxes beside the logs are read, too: what is damaged or missing of them is told.
+    """
+    from mmrs_core.behaviour.blackbox import black_boxes, is_part
     from mmrs_core.behaviour.log import read_logs
     from mmrs_core.behaviour.replay import Outcome
     from mmrs_core.behaviour.replay import replay as replayed
     from mmrs_core.cli.behaviours import load_program
-    from mmrs_core.cli.figures import clock
+    from mmrs_core.cli.flights.gathering import read_flight
     from mmrs_core.cli.journey import Workshop
 
     workshop = Workshop(settings_of(call))
     program = load_program(workshop, behaviour_file(behaviour))
-    result = replayed(program, read_logs(logs, partial=partial), partial=partial)
+    given = [path for path in logs if not is_part(path)]
+    result = replayed(program, read_logs(given, partial=partial), partial=partial)
+    flight = read_flight(logs, program, {}) if steps or black_boxes(logs) else None
     if json:
-        say_json(result)
+        _say_json(result, flight, program, steps=steps)
     else:
-        verdict = "accepted" if result.accepted else "not what the behaviour says"
-        say(f"{verdict}: {result.outcome.value} after {result.steps} steps and {clock(result.duration)}")
-        for complaint in result.complaints:
-            say(f"  - {complaint}")
-        for robot, fault in result.faults.items():
-            say(f"  fault of '{robot}': {fault}")
-        for waiting in result.waiting:
-            say(f"  {waiting}")
+        _say(result, flight)
+        if flight is not None and steps:
+            _say_steps(flight, program)
     cut = partial and result.outcome is Outcome.INCOMPLETE
     return 0 if result.accepted and (cut or result.outcome is Outcome.SUCCESS) else 1
+
+
+def _say(result: ReplayResult, flight: Flight | None) -> None:
+    from mmrs_core.cli.figures import clock
+
+    verdict = "accepted" if result.accepted else "not what the behaviour says"
+    say(f"{verdict}: {result.outcome.value} after {result.steps} steps and {clock(result.duration)}")
+    for complaint in result.complaints:
+        say(f"  - {complaint}")
+    for robot, fault in result.faults.items():
+        say(f"  fault of '{robot}': {fault}")
+    for waiting in result.waiting:
+        say(f"  {waiting}")
+    if flight is not None and flight.boxes:
+        fixes = sum(len(flown.track.times) for flown in flight.robots.values())
+        say(f"  black boxes of {counted(flight.boxes, 'robot')}: {counted(fixes, 'place')}")
+    for damage in flight.damages if flight is not None else ():
+        tell(damage)
+
+
+def _say_steps(flight: Flight, program: Program) -> None:
+    from mmrs_core.cli.figures import clock
+    from mmrs_core.cli.flights.steps import steps_of
+    from mmrs_core.cli.report.words import place
+    from mmrs_core.cli.tables import table
+
+    rows = [
+        (clock(step.time), step.robot, step.words, place(step.where) if step.where else "not known")
+        for step in steps_of(flight, program)
+    ]
+    for line in table(("time", "robot", "step", "where"), rows):
+        say(line)
+
+
+def _say_json(result: ReplayResult, flight: Flight | None, program: Program, *, steps: bool) -> None:
+    from mmrs_core.cli.encoding import plain
+    from mmrs_core.cli.flights.steps import steps_of
+
+    told = plain(result)
+    assert isinstance(told, dict)
+    if flight is not None:
+        told |= {"boxes": flight.boxes, "damages": list(flight.damages)}
+    if flight is not None and steps:
+        told["where"] = plain(steps_of(flight, program))
+    say_json(told)

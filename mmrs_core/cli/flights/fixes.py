@@ -16,7 +16,7 @@ from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.values import Flags, Track
 from mmrs_core.geometry.frames import Floats, LocalFrame
 from mmrs_core.mavlink.earth import WGS84
-from mmrs_core.mavlink.vehicles import vehicle_class
+from mmrs_core.mavlink.vehicles import SUB, vehicle_class
 from mmrs_core.scene import Frame, Position, RobotType
 
 if TYPE_CHECKING:
@@ -123,10 +123,15 @@ class Zero:
         return (east, north, up) if isfinite(east + north + up) else None
 
 
-def zero_of(robot: RobotProgram, program: Program, robot_type: RobotType | None) -> Zero:
-    """Return what the places in the black box of a robot count from."""
+def zero_of(robot: RobotProgram, program: Program, robot_type: RobotType | None, vehicle: str = "") -> Zero:
+    """Return what the places in the black box of a robot count from.
+
+    Args:
+        robot_type: None where it is not known.
+        vehicle: what the black box says that it was; empty where it says nothing.
+    """
     home = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
-    dives = vehicle_class(robot, robot_type).dives
+    dives = vehicle == SUB.name if vehicle else vehicle_class(robot, robot_type).dives
     return Zero(program.frame, home, program.frame.surface if dives else home[2])
 
 

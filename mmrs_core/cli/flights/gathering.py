@@ -61,6 +61,12 @@ class _Contents:
                 self.counts[-1][str(name)] = max(self.counts[-1][str(name)], int(number))
 
     @property
+    def vehicle(self) -> str:
+        """Return which sort of vehicle it was; empty where the box does not say."""
+        starts = (each.content.get("vehicle") for each in self.entries if each.kind == "start")
+        return next((each for each in starts if isinstance(each, str)), "")
+
+    @property
     def simulated(self) -> bool:
         """Return whether there was no vehicle: in a simulation, and in a dry run."""
         starts = (each.content for each in self.entries if each.kind == "start")
@@ -80,6 +86,7 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
     """
     damages: list[str] = []
     steps = _steps(paths, damages)
+    readable = not damages
     boxes = black_boxes(paths)
     if not steps and not boxes:
         raise UnreadableError(f"{', '.join(map(str, paths))}: neither a log nor a black box is here")
@@ -100,14 +107,15 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
             robot.id,
             steps.get(robot.id, ()),
             contents.get(robot.id, _Contents()),
-            zero_of(robot, program, types.get(robot.type_name)),
+            zero_of(robot, program, types.get(robot.type_name), contents.get(robot.id, _Contents()).vehicle),
             damages,
         )
         for robot in program.robots
     }
     begun = min((each.wall for each in contents.values() if each.wall), default="")
     run = next((each for each in (*_of_steps(steps), *_of_boxes(contents)) if each), "")
-    return Flight(run, robots, tuple(damages), len(boxes), begun)
+    whole = readable and all(flown.records for flown in robots.values())
+    return Flight(run, robots, tuple(damages), len(boxes), whole, begun)
 
 
 def _is_of(robot: RobotProgram, record: StepRecord) -> bool:

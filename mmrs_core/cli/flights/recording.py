@@ -13,6 +13,7 @@ from mmrs_core.cli.flights.fixes import zero_of
 from mmrs_core.cli.flights.gathering import SIMULATION
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.contributions.execution import Sample
+from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import RobotType
 
@@ -62,14 +63,14 @@ def _lines(
     run: str, robot: RobotProgram, track: Sequence[Sample], program: Program, robot_type: RobotType | None
 ) -> Iterator[str]:
     zero = zero_of(robot, program, robot_type)
-    full = track[0].energy
+    full, kind = track[0].energy, vehicle_class(robot, robot_type).name
     common = {"run": run, "robot": robot.id}
 
     def line(time: float, kind: str, **content: object) -> str:
         whole = {**common, "time": round(time, 3), "wall": "", "kind": kind, **content}
         return json.dumps(whole, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
-    yield line(0.0, "start", link=SIMULATION, vehicle="", firmware="", home=None, versions={})
+    yield line(0.0, "start", link=SIMULATION, vehicle=kind, firmware="", home=None, versions={})
     for sample in track:
         east, north, up = sample.position
         place = {"north": north - zero.home[1], "east": east - zero.home[0], "height": up - zero.up}

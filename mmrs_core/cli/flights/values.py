@@ -97,10 +97,13 @@ class Flight:
         robots: by name, those of the behaviour in its order; one without log or box is here, too.
         damages: what could not be read, or does not fit together, for people.
         boxes: how many black boxes there are.
+        whole: whether every robot has a log, and all logs can be read.
+        begun: date and time of day, ISO 8601; empty where nobody wrote it.
     """
 
     run: str
     robots: Mapping[str, Flown]
     damages: tuple[str, ...] = ()
     boxes: int = 0
+    whole: bool = True
     begun: str = ""

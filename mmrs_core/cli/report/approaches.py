@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.analysis.distance import prism_distances
+from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.values import Track
-from mmrs_core.cli.report.values import Approach, Place
+from mmrs_core.cli.report.values import Approach
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Area, AreaUse, Position
 

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.planned import PlannedLeg
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.nearest import nearest
-from mmrs_core.cli.report.values import Deviation, Place, Spread
+from mmrs_core.cli.report.values import Deviation, Spread
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
 

@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from mmrs_core.behaviour.blackbox import Entry, number_of
 from mmrs_core.cli.figures import quantity
 from mmrs_core.cli.flights.fixes import Zero
+from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.privacy import without_secrets
-from mmrs_core.cli.report.values import Event, Place, Reading
+from mmrs_core.cli.report.values import Event, Reading
 from mmrs_core.scene import Position
 
 MOST_TEXTS = 50

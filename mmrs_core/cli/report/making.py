@@ -10,9 +10,10 @@ from math import dist
 import numpy as np
 
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.behaviour.replay import Outcome, ReplayResult, replay
 from mmrs_core.cli.flights.fixes import Zero, zero_of
 from mmrs_core.cli.flights.photos import shots_in
+from mmrs_core.cli.flights.places import Places
 from mmrs_core.cli.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.cli.flights.thinning import pieces
 from mmrs_core.cli.flights.values import Flight, Flown
@@ -24,11 +25,10 @@ from mmrs_core.cli.report.events import events_of, readings_of
 from mmrs_core.cli.report.links import link_of
 from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.tasks import task_reports
-from mmrs_core.cli.report.values import Approach, PhotoReport, Place, Report, RobotReport
+from mmrs_core.cli.report.values import Approach, PhotoReport, Report, RobotReport
 from mmrs_core.contributions.rules import MoveKind
-from mmrs_core.geometry.frames import LocalFrame
 from mmrs_core.pipeline import Place as Surroundings
-from mmrs_core.scene import Frame, Name, Position
+from mmrs_core.scene import Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +69,8 @@ def report_of(given: Given) -> Report:
         begun=flight.begun,
         duration=max((flown.end for flown in robots), default=0.0),
         simulated=any(flown.simulated for flown in robots),
-        outcome=judged.outcome.value,
-        complaints=tuple(map(str, judged.complaints)),
+        outcome=judged.outcome.value if flight.whole else Outcome.INCOMPLETE.value,
+        complaints=tuple(map(str, judged.complaints)) if flight.whole else (),
         robots=tuple(_robot(robot, given, judged) for robot in program.robots),
         tasks=task_reports(program, flight, plan, legs),
         deviations=tuple(each for each in deviations if each is not None),
@@ -88,22 +88,6 @@ def report_of(given: Given) -> Report:
         links=tuple(link for link in links if link is not None),
         unknown=tuple(map(without_secrets, _unknown(given))),
     )
-
-
-class Places:
-    """Tells where places of a frame are, in degrees where it lies on the Earth."""
-
-    def __init__(self, frame: Frame) -> None:
-        self._laid: LocalFrame | None = None
-        if frame.latitude is not None and frame.longitude is not None:
-            self._laid = LocalFrame(frame.crs, frame.latitude, frame.longitude)
-
-    def of(self, position: Position) -> Place:
-        """Return a position as a place."""
-        if self._laid is None:
-            return Place(position)
-        latitude, longitude = self._laid.to_geographic([position[:2]])[0].tolist()
-        return Place(position, latitude, longitude)
 
 
 def _zero(given: Given, robot: RobotProgram) -> Zero:
@@ -166,6 +150,8 @@ def _unknown(given: Given) -> Iterator[str]:
             yield f"{robot}: there is no black box with places; where it was is not known"
         elif not np.isfinite(flown.track.energies).any():
             yield f"{robot}: its battery was not told; what it used is not known"
+    if not given.flight.whole:
+        yield "logs are missing or damaged: whether this is a run of the behaviour cannot be judged"
     if given.place.areas is None:
         yield "no context was given: distances to forbidden areas and obstacles are not known"
     yield from given.flight.damages

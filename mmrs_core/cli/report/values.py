@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from mmrs_core.scene import Position
+from mmrs_core.cli.flights.places import Place
 
 
 class Status(Enum):
@@ -19,15 +19,6 @@ class Status(Enum):
     PART = "partly done"
     NOT_DONE = "not done"
     NOT_CHOSEN = "not needed"
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where something was: metres in the frame of the behaviour, and degrees where it lies on the Earth."""
-
-    position: Position
-    latitude: float | None = None
-    longitude: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from mmrs_core.cli.figures import clock, energy, length
-from mmrs_core.cli.report.values import Place
+from mmrs_core.cli.flights.places import Place
 
 UNKNOWN = "not known"
 _CODE = re.compile(r"(?<![\w'])[A-Z]{3,}(?:_[A-Z]+)*(?![\w'])")
