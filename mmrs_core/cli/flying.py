@@ -11,11 +11,12 @@ from types import FrameType
 
 import typer
 
-from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_logs
+from mmrs_core.behaviour.log import LogWriter, log_name, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.behaviours import Loaded
+from mmrs_core.cli.buses import BusWishes, begin_all, bus_for
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.journey import Workshop
@@ -28,8 +29,6 @@ from mmrs_core.runtime.interpreter import Ending
 from mmrs_core.runtime.live import Venture
 from mmrs_core.runtime.obedience import STOPPED
 from mmrs_core.runtime.orders import STOP, Orders
-from mmrs_core.runtime.resuming import restore
-from mmrs_core.runtime.slots import InProcessBus
 
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 FAILED = 1
@@ -46,6 +45,7 @@ class Wishes:
         robots: those that this process runs; none: all.
         patience: seconds to wait for the order to resume once nobody else works.
         assume: fixed answers, by condition.
+        bus: what there is to say of the bus.
     """
 
     folder: Path
@@ -59,6 +59,7 @@ class Wishes:
     on_stop: str = "hold"
     patience: float = 0.0
     assume: Mapping[str, bool] = field(default_factory=dict)
+    bus: BusWishes = field(default_factory=BusWishes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,11 +110,12 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     """
     program = loaded.program
     here = _robots(program, wishes.robots)
-    bus = InProcessBus(program)
-    resumed = _resumed(program, wishes, bus)
+    resumed = _resumed(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
     orders = Orders(_on_stop(wishes.on_stop))
     with ExitStack() as stack:
+        bus = bus_for(program, here, run, wishes.folder, wishes.bus, resumed if wishes.resume else None)
+        stack.callback(bus.close)
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
         observer = _Observer(workshop, writer)
         venture = Venture(
@@ -128,6 +130,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             links=_links(wishes.links, here),
             resumed=resumed,
             patience=wishes.patience,
+            meet=begin_all(bus, program, here, run, orders) if wishes.bus.sync else lambda: None,
             observe=observer.observe,
             say=tell,
         )
@@ -199,9 +202,14 @@ def _links(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
     return links
 
 
-def _resumed(program: Program, wishes: Wishes, bus: InProcessBus) -> tuple[StepRecord, ...]:
-    """Return the steps that were made before, and have the bus know of them."""
-    found = sorted(wishes.folder.glob(f"*{SUFFIX}")) if wishes.folder.is_dir() else []
+def _resumed(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:
+    """Return the steps that the robots of this process made before.
+
+    Raises:
+        typer.BadParameter: if there are logs without --resume, or none with it.
+        InvalidModelError: if they are not logs of this behaviour.
+    """
+    found = [path for robot in here if (path := wishes.folder / log_name(robot)).exists()]
     if not wishes.resume:
         if found:
             raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
@@ -210,9 +218,8 @@ def _resumed(program: Program, wishes: Wishes, bus: InProcessBus) -> tuple[StepR
         raise typer.BadParameter(f"--resume: no logs in {wishes.folder}")
     records = read_logs(found, partial=True)
     result = replay(program, records, partial=True)
-    if not result.accepted:
+    if not result.accepted and len(here) == len(program.robots):
         raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
-    restore(bus, program, records)
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
 

@@ -55,6 +55,21 @@ def run(
             help="To wait for 'mmrs control resume' with a new battery once no other robot works.",
         ),
     ] = 0.0,
+    bus: Annotated[
+        bool, typer.Option("--bus", help="Keep slots with robots that other processes run, by Zenoh.")
+    ] = False,
+    bus_listen: Annotated[
+        _Texts, typer.Option("--bus-listen", metavar="ENDPOINT", help="Such as tcp/0.0.0.0:7447.")
+    ] = None,
+    bus_connect: Annotated[
+        _Texts, typer.Option("--bus-connect", metavar="ENDPOINT", help="Such as tcp/10.0.0.2:7447.")
+    ] = None,
+    bus_config: Annotated[
+        Path | None, typer.Option("--bus-config", metavar="FILE", help="As 'mmrs bus keys' makes it.")
+    ] = None,
+    sync: Annotated[
+        bool, typer.Option("--sync", help="Begin at one instant, once the robots of all processes are ready.")
+    ] = False,
     signing_key: Annotated[
         Path | None, typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink frames with it.")
     ] = None,
@@ -78,6 +93,7 @@ def run(
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """
     from mmrs_core.cli.behaviours import load_behaviour
+    from mmrs_core.cli.buses import BusWishes
     from mmrs_core.cli.flying import Wishes, carry_out
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.simulation import answers, options_of
@@ -100,6 +116,7 @@ def run(
         on_stop=on_stop,
         patience=battery_patience,
         assume=answers(assume),
+        bus=BusWishes(bus, tuple(bus_listen or ()), tuple(bus_connect or ()), bus_config, sync),
     )
     loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
     result = carry_out(workshop, loaded, wishes)

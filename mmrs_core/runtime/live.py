@@ -42,6 +42,7 @@ class Venture:
         resumed: the steps made before the run was broken off.
         suspends: whether a low battery only breaks a program off.
         patience: seconds to wait for the order to resume once nobody else works.
+        meet: waits for robots of other processes once those of this one are ready.
         observe: called with each step before it has an effect.
         say: tells people what goes on.
     """
@@ -58,6 +59,7 @@ class Venture:
     resumed: tuple[StepRecord, ...] = ()
     suspends: bool = True
     patience: float = 0.0
+    meet: Callable[[], None] = lambda: None
     observe: Callable[[StepRecord], None] | None = None
     say: Callable[[str], None] = print
 
@@ -78,6 +80,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     with ExitStack() as stack:
         robots = _connected(venture, backend, attention, stack)
         _get_ready(robots, venture)
+        venture.meet()
         steps = interpret(
             venture.program,
             robots,

@@ -76,6 +76,11 @@ class Orders:
         self.called: Callable[[], None] = lambda: None
         self._waiting: deque[Order] = deque()
 
+    @property
+    def waiting(self) -> bool:
+        """Return whether an order was given that nobody has looked at yet."""
+        return bool(self._waiting)
+
     def give(
         self,
         kind: str,
