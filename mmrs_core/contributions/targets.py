@@ -100,6 +100,9 @@ class Target:
         filters: Jinja2 filters beside the engine's own (``py``, ``py_lines``, ``json``, ``comment``,
             ``cell``, ``identifier``, ``name``), by name: each encodes a value in the language that is
             written.
+        capabilities: how elements of the Behaviour Language are expressed, in a few words each, by the
+            element as the table of capabilities names it, or by how its name begins: the longest
+            counts. What is expressed, and what is not, is found by trying.
     """
 
     name: str
@@ -108,3 +111,4 @@ class Target:
     files: Callable[[TargetInput], Iterable[FileSpec]]
     refusals: Callable[[TargetInput], Iterable[str]]
     filters: Mapping[str, Callable[[object], str]] = field(default_factory=dict)
+    capabilities: Mapping[str, str] = field(default_factory=dict)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Wiring, Wirings
+from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.earth import degrees_of, metres
 from mmrs_core.mavlink.vehicles import VehicleClass, speed_of, vehicle_class
 from mmrs_core.mavlink.wiring import wiring_of
@@ -73,6 +74,22 @@ def context_of(
     zero = frame.surface if vehicle.dives else home
     degrees = dict(zip(points, degrees_of(points, frame), strict=True)) if geographic else {}
     return RobotContext(robot, type, vehicle, frame, zero, degrees, input.device_actions)
+
+
+def homeless(robot: RobotProgram) -> str:
+    """Return what there is to say of a robot without a home."""
+    return f"robot '{robot.id}': its home is not known, and heights count from there"
+
+
+def require_home(robot: RobotProgram) -> Position:
+    """Return a robot's home.
+
+    Raises:
+        UnsupportedError: it has none.
+    """
+    if robot.home is None:
+        raise UnsupportedError(homeless(robot))
+    return robot.home
 
 
 def _points(robot: RobotProgram) -> list[Point]:

@@ -11,7 +11,8 @@ from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.capabilities import OF_CONTROLLERS
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
 from mmrs_core.mavlink.fencing import fence_faults
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
@@ -20,6 +21,7 @@ from mmrs_core.resources import shipped
 from mmrs_core.scene import Policy
 
 RUNTIME = "mmrs_flight"
+FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
 RUNTIME_SOURCES = Path(str(files_of("mmrs_core"))) / "flight"
 TEMPLATES = shipped("codegen_templates") / "mavlink-python"
 
@@ -34,8 +36,14 @@ class ModuleView:
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield one controller a robot, the fleet, the conditions where there are any, and the runtime."""
+    """Yield one controller a robot, the fleet, the conditions where there are any, and the runtime.
+
+    Raises:
+        UnsupportedError: a robot has no home.
+    """
     robots = input.program.robots
+    for robot in robots:
+        require_home(robot)
     stems = file_stems([robot.id for robot in robots], hyphens=False)
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
@@ -70,24 +78,29 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
-        yield f"robot '{robot.id}': its home is not known, and heights count from there"
+        yield homeless(robot)
     if not input.program.frame.is_local:
         yield from fence_faults(robot, areas_of(robot, input))
     context = context_of(robot, input, geographic=False)
     for policy in policies_of(robot, input):
-        yield from _left_alone(policy, f"robot '{robot.id}'", context)
+        yield from _impossible(policy, f"robot '{robot.id}'", context)
     for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
         yield from action_losses(move, context)
         transition = robot.transitions.get(index)
         for policy in transition.policies if transition is not None else ():
-            yield from _left_alone(policy, context.label(move), context)
+            yield from _impossible(policy, context.label(move), context)
 
 
-def _left_alone(policy: Policy, where: str, context: RobotContext) -> Iterator[str]:
-    """Yield what a vehicle is to do when it no longer hears the ground, and cannot do by itself."""
-    if policy.event == "LINK_LOST" and policy.response not in context.vehicle.alone:
-        yield f"{where}: policy LINK_LOST: no {context.vehicle.name} does {policy.response} by itself"
+def _impossible(policy: Policy, where: str, context: RobotContext) -> Iterator[str]:
+    """Yield what a vehicle is to do when something goes wrong, and cannot do, or not by itself."""
+    vehicle, event, response = context.vehicle, policy.event, policy.response
+    if event == "LINK_LOST" and response not in vehicle.alone:
+        yield f"{where}: policy {event}: no {vehicle.name} does {response} by itself"
+    elif response not in vehicle.responses:
+        yield f"{where}: policy {event}: no {vehicle.name} can {response}"
+    elif event == "POSITION_LOST" and response in FINDING_ITS_WAY:
+        yield f"{where}: policy {event}: without its position, nobody can {response}"
 
 
 MAVLINK_PYTHON = Target(
@@ -96,4 +109,5 @@ MAVLINK_PYTHON = Target(
     templates=TEMPLATES,
     files=files,
     refusals=refusals,
+    capabilities=OF_CONTROLLERS,
 )

@@ -6,7 +6,8 @@ is refused, even where it extends one that is, because its movement may differ.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from math import isfinite
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target
 from mmrs_core.contributions.rules import most_specific
@@ -38,11 +39,45 @@ def losses_of(move: Move, context: RobotContext) -> tuple[str, ...]:
     losses = []
     if move.metaclasses[0][1] == "GoTo" and context.speed(move) is None:
         losses.append(f"{context.label(move)}: its speed is not known, because its robot type is not given")
-    if move.heading is not None and not turns_to(move.heading, context):
-        losses.append(f"{context.label(move)}: {NO_TURNING}")
+    if move.heading is not None:
+        losses += [f"{context.label(move)}: {why}" for why in _unseen(move.heading, context)]
     if move.metaclasses[0] == (MULTICOPTER, "TakeOff") and _number(move, "altitude") <= 0:
         losses.append(f"{context.label(move)}: takes off to {_number(move, 'altitude'):g} m above the ground")
     return tuple(losses)
+
+
+def _unseen(heading: Heading, context: RobotContext) -> Iterator[str]:
+    """Yield why a device cannot be pointed as a heading says."""
+    if not turns_to(heading, context):
+        yield NO_TURNING
+    if not _is_number(_properties(heading, context).get("mount.yaw", "0")):
+        yield f"device '{heading.device}': mount.yaw is no number"
+    if on_gimbal(heading, context):
+        if heading.angle_degrees:
+            yield "a gimbal points straight at its target, not at an angle to it"
+        if context.frame.is_local:
+            yield "a gimbal is pointed at places on the Earth, and the behaviour is local"
+
+
+def on_gimbal(heading: Heading, context: RobotContext) -> bool:
+    """Return whether the device that a heading is of turns by itself."""
+    return "mavlink.gimbal" in _properties(heading, context)
+
+
+def mount_of(heading: Heading, context: RobotContext) -> float:
+    """Return where the device of a heading points when the robot looks north, degrees clockwise.
+
+    It is 0 where the property holds no number, which is refused.
+    """
+    given = _properties(heading, context).get("mount.yaw", "0")
+    return float(given) if _is_number(given) else 0.0
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def turns_to(heading: Heading, context: RobotContext) -> bool:
@@ -51,7 +86,7 @@ def turns_to(heading: Heading, context: RobotContext) -> bool:
     ArduPilot's Rover takes no heading: it ignores the yaw of position targets in GUIDED, and
     skips CONDITION_YAW in AUTO.
     """
-    return context.vehicle is not ROVER or "mavlink.gimbal" in _properties(heading, context)
+    return context.vehicle is not ROVER or on_gimbal(heading, context)
 
 
 def place_of(position: Position, context: RobotContext) -> Call:
@@ -123,8 +158,8 @@ def _look(heading: Heading | None, context: RobotContext) -> Call | None:
     if heading.angle_degrees:
         named.append(("angle", metres(heading.angle_degrees)))
     if "mount.yaw" in properties:
-        named.append(("mount", float(properties["mount.yaw"])))
-    if "mavlink.gimbal" in properties:
+        named.append(("mount", mount_of(heading, context)))
+    if on_gimbal(heading, context):
         named.append(("gimbal", True))
         if device := gimbal_of(heading, context):
             named.append(("device", device))

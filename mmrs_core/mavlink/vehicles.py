@@ -24,6 +24,7 @@ class VehicleClass:
         flies: whether it takes off and lands.
         dives: whether its heights count from the water surface.
         alone: responses of policies that it can give by itself, when it no longer hears the ground.
+        more: those that it can only give when its controller asks for them.
     """
 
     name: str
@@ -31,6 +32,12 @@ class VehicleClass:
     flies: bool = False
     dives: bool = False
     alone: frozenset[str] = frozenset()
+    more: frozenset[str] = frozenset()
+
+    @property
+    def responses(self) -> frozenset[str]:
+        """Return the responses of policies that it can give when its controller asks for them."""
+        return self.alone | self.more
 
 
 COPTER = VehicleClass(
@@ -44,6 +51,7 @@ SUB = VehicleClass(
     12,
     dives=True,
     alone=frozenset({"CONTINUE", "STOP_THRUST", "HOLD", "SURFACE", "LAND", "RETURN"}),
+    more=frozenset({"EMERGENCY_AREA"}),
 )
 ROVER = VehicleClass(
     "rover",

@@ -9,7 +9,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.contributions.wiring import Wired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.mavlink.movements import gimbal_of, turns_to
+from mmrs_core.mavlink.movements import gimbal_of, mount_of, on_gimbal, turns_to
 from mmrs_core.mavlink.plans import items as cmd
 from mmrs_core.mavlink.plans.items import Item
 from mmrs_core.mavlink.runs import CORNER_SECONDS
@@ -118,11 +118,13 @@ class Flight:
             self._add(cmd.LOITER_TIME, move, _number(move, "duration"), here=True)
 
     def head_to(self, move: Move, fluid: bool) -> None:
-        """Turn to something, if its place is known; a ground vehicle can only have its gimbal do so."""
-        if self._context.vehicle is ROVER:
+        """Turn to something, if its place is known; a gimbal turns by itself."""
+        heading = move.heading
+        if heading is None or self._context.vehicle is ROVER or on_gimbal(heading, self._context):
             self._look(move)
-        elif move.heading is not None and move.heading.target.position is not None:
-            angle = _bearing(self._position, move.heading.target.position) - move.heading.angle_degrees
+        elif heading.target.position is not None:
+            aside = heading.angle_degrees + mount_of(heading, self._context)
+            angle = _bearing(self._position, heading.target.position) - aside
             self._add(cmd.CONDITION_YAW, move, round(angle % 360.0, 1))
 
     def _pace(self, move: Move) -> None:

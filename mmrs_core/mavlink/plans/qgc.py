@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
+from mmrs_core.mavlink.capabilities import OF_MISSIONS
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.plans.items import Row
 from mmrs_core.mavlink.plans.refusals import refusals
@@ -74,4 +75,5 @@ QGC_PLAN = Target(
     templates=TEMPLATES,
     files=files,
     refusals=refusals,
+    capabilities=OF_MISSIONS,
 )

@@ -9,9 +9,9 @@ from mmrs_core.behaviour.program import Action, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless
 from mmrs_core.mavlink.earth import sea_level_of
-from mmrs_core.mavlink.movements import losses_of, objects_of
+from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
 from mmrs_core.mavlink.safety import explicit, policies_of
 from mmrs_core.scene import Policy
 
@@ -26,7 +26,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
 
 def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
-        yield f"robot '{robot.id}': its home is not known, and heights count from there"
+        yield homeless(robot)
     elif sea_level_of(robot.home, input.program.frame) is None:
         yield (
             f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
@@ -35,6 +35,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     for policy in _declared(robot, input):
         yield f"robot '{robot.id}': {_described(policy)}"
     context = context_of(robot, input, geographic=False)
+    yield from _coming_round(robot, context)
     for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
         for description in objects_of(move):
@@ -50,6 +51,19 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             yield f"{context.label(move)}: chooses by '{transition.condition}'"
         for policy in transition.policies if transition is not None else ():
             yield f"{context.label(move)}: {_described(explicit(policy))}"
+
+
+def _coming_round(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
+    """Yield where the moves up to the first choice lead back to one of them."""
+    index, seen = robot.start, set[int]()
+    while index not in seen and (transition := robot.transitions.get(index)) is not None:
+        if transition.condition is not None:
+            return
+        seen.add(index)
+        if transition.to in seen:
+            again = robot.moves[transition.to].id
+            yield f"{context.label(robot.moves[index])}: '{again}' comes round again, which no plan can"
+        index = transition.to
 
 
 def _declared(robot: RobotProgram, input: TargetInput) -> tuple[Policy, ...]:
@@ -74,6 +88,10 @@ def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[st
 
 
 def _of_heading(move: Move, context: RobotContext) -> Iterator[str]:
-    turns_on_the_way = move.heading is not None and move.target is not None
-    if turns_on_the_way and move.heading is not None and move.heading.angle_degrees:
+    """Yield what a region of interest cannot say: it always turns the front, or a gimbal, straight to it."""
+    if move.heading is None or move.target is None:
+        return
+    if move.heading.angle_degrees:
         yield f"{context.label(move)}: heading with an angle on the way"
+    if mount_of(move.heading, context) and not on_gimbal(move.heading, context):
+        yield f"{context.label(move)}: device '{move.heading.device}' does not look ahead (mount.yaw)"

@@ -8,9 +8,8 @@ from typing import TypeAlias
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.context import RobotContext, context_of, require_home
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
 from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.plans.flight import sorties_of
@@ -73,10 +72,9 @@ def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Seque
 
 
 def _home(robot: RobotProgram, context: RobotContext) -> Spot:
-    if robot.home is None:
-        raise UnsupportedError(f"robot '{robot.id}': its home is not known, and heights count from there")
-    ((latitude, longitude),) = degrees_of([(robot.home[0], robot.home[1])], context.frame)
-    return (latitude, longitude, sea_level_of(robot.home, context.frame) or 0.0)
+    home = require_home(robot)
+    ((latitude, longitude),) = degrees_of([(home[0], home[1])], context.frame)
+    return (latitude, longitude, sea_level_of(home, context.frame) or 0.0)
 
 
 def _rally(context: RobotContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.mavlink.capabilities import OF_LISTS
 from mmrs_core.mavlink.plans.items import (
     ABSOLUTE,
     FENCE_EXCLUSION,
@@ -93,5 +94,6 @@ WPL = Target(
     templates=TEMPLATES,
     files=files,
     refusals=refusals,
+    capabilities=OF_LISTS,
     filters={"row": line},
 )

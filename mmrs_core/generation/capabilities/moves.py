@@ -1,0 +1,202 @@
+"""Probes of moves, of what follows them, and of what is done before and after them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target, Transition
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.contributions.wiring import DeviceWiring, Wired
+from mmrs_core.generation.capabilities.probes import (
+    ALPHA,
+    BETA,
+    FLIGHT,
+    KINDS,
+    LAND,
+    MOVE,
+    TAKE_OFF,
+    THERE,
+    Probe,
+    action,
+    changed,
+    given,
+    go_to,
+    kind_of,
+    move,
+    plain,
+    robot,
+    with_move,
+)
+from mmrs_core.scene import Metaclasses
+
+AHEAD = Heading(Target((0.0, 90.0, 0.0)), "device")
+ASIDE = replace(AHEAD, angle_degrees=90.0)
+UNHEARD_OF: Metaclasses = (("urn:mmrs:nowhere:1.0", "Somersault"), MOVE)
+ON_THE_WAY = (TAKE_OFF, go_to("a"), go_to("b", THERE), LAND)
+"""Places where the moves of plug-ins are tried: between two of the core's."""
+
+WIRINGS: Mapping[str, Mapping[str, str]] = {
+    "a MAVLink command (mavlink.command.ACTION)": {"mavlink.command.act": "183 9 1900"},
+    "a value that is measured (mavlink.value)": {"mavlink.value": "CO2"},
+    "a camera (mavlink.camera)": {"mavlink.camera": "0"},
+    "a camera that the autopilot triggers": {"mavlink.camera": "0", "mavlink.camera.command": "digicam"},
+    "a camera that tells each image": {"mavlink.camera": "0", "mavlink.camera.confirms": "yes"},
+    "a servo (mavlink.servo)": {"mavlink.servo": "9", "mavlink.servo.act": "1900"},
+    "a relay (mavlink.relay)": {"mavlink.relay": "0", "mavlink.relay.act": "on"},
+    "a gripper (mavlink.gripper)": {"mavlink.gripper": "1", "mavlink.gripper.act": "release"},
+    "a video (mavlink.video)": {"mavlink.video": "0", "mavlink.video.act": "start"},
+    "a trigger by distance (mavlink.trigger)": {"mavlink.trigger": "5", "mavlink.trigger.act": "start"},
+    "a winch (mavlink.winch)": {"mavlink.winch": "1", "mavlink.winch.act": "length 5"},
+    "a gimbal (mavlink.gimbal.ACTION)": {"mavlink.gimbal": "1", "mavlink.gimbal.act": "-90 0"},
+    "a wiring of a plug-in": {"probe.device": ""},
+    "no wiring": {},
+}
+
+
+def of_moves() -> Iterator[Probe]:
+    """Yield a probe for each metaclass and feature of moves."""
+    base, two = plain(), given(robot(ALPHA, ON_THE_WAY))
+    yield Probe("move", "Start, Stop", given(robot(BETA, FLIGHT)), base)
+    yield Probe("move", "multicopter GoTo", given(robot(ALPHA, ON_THE_WAY)), base)
+    yield Probe("move", "GoTo", *_inserted(move("m", "GoTo"), target=Target(THERE), speed=2.0))
+    yield Probe("move", "GoTo.target", with_move(base, "a", target=Target(THERE)), base)
+    yield Probe("move", "GoTo.distance", with_move(base, "a", distance=4.0), base)
+    yield Probe("move", "GoTo.speed", with_move(base, "a", speed=3.0), base)
+    yield Probe("move", "GoTo.speed absent", with_move(base, "a", speed=None), base)
+    for trajectory in ("HORIZONTAL_FIRST", "VERTICAL_FIRST"):
+        other = with_move(two, "b", attributes={"trajectory": trajectory})
+        yield Probe("move", f"GoTo.trajectory {trajectory}", other, two)
+    yield Probe("move", "TakeOff", *_inserted(replace(TAKE_OFF, id="m"), LAND))
+    higher = {"altitude": 12.0}
+    yield Probe("move", "TakeOff.altitude", with_move(base, "up", attributes=higher), base)
+    yield Probe("move", "Land", *_inserted(replace(LAND, id="m"), TAKE_OFF))
+    yield Probe("move", "HoldPosition", *_inserted(move("m", "HoldPosition", duration=3.0)))
+    yield Probe("move", "HoldPosition.duration", *_differing(duration=3.0))
+    charge = move("m", "Recharge", BEHAVIOUR, (BEHAVIOUR, "HoldPosition"), duration=60.0)
+    yield Probe("move", "Recharge", *_between_sorties(charge))
+    yield Probe(
+        "move", "HeadTo.heading", *_inserted(replace(move("m", "HeadTo"), heading=replace(AHEAD, device="")))
+    )
+    for name, changes in {
+        "Move.name": {"id": "other"},
+        "Move.task": {"task": "t"},
+        "Move.rule": {"rule": "r"},
+    }.items():
+        yield Probe("move", name, with_move(base, "a", **changes), base)
+    yield Probe("move", "a move of a plug-in", *_inserted(Move("m", UNHEARD_OF)))
+
+
+def of_plugins(moves: Iterable[Metaclasses]) -> Iterator[Probe]:
+    """Yield a probe for each metaclass of moves, most specific first, that plug-ins have added."""
+    for metaclasses in moves:
+        uri, name = metaclasses[0]
+        yield Probe("move of a plug-in", f"{name} ({uri})", *_inserted(Move("m", metaclasses)))
+
+
+def of_headings() -> Iterator[Probe]:
+    """Yield a probe for each way of pointing something somewhere."""
+    for vehicle in KINDS:
+        base = plain(vehicle)
+        turned = with_move(base, "a", heading=AHEAD)
+        yield Probe("heading", f"GoTo.heading of a {vehicle}", turned, base)
+        yield Probe("heading", f"Heading.angle of a {vehicle}", with_move(base, "a", heading=ASIDE), turned)
+        for words, properties in {
+            "of a device that looks aside (mount.yaw)": {"mount__yaw": "90"},
+            "of a device on a gimbal (mavlink.gimbal)": {"mavlink__gimbal": "1"},
+        }.items():
+            fitted = replace(turned, types={"Kind": kind_of(vehicle, **properties)})
+            yield Probe("heading", f"GoTo.heading of a {vehicle}, {words}", fitted, turned)
+            aside = with_move(fitted, "a", heading=ASIDE)
+            yield Probe("heading", f"Heading.angle of a {vehicle}, {words}", aside, fitted)
+            facing = replace(move("m", "HeadTo"), heading=AHEAD)
+            ahead = _then(base, facing)
+            other = replace(ahead, types=fitted.types)
+            yield Probe("heading", f"HeadTo.heading of a {vehicle}, {words}", other, ahead)
+    front = replace(AHEAD, device="")
+    base = plain()
+    yield Probe("heading", "Heading.deviceId absent: the front", with_move(base, "a", heading=front), base)
+    found = Heading(Target((0.0, 90.0, 0.0), "a buoy", 2.0))
+    yield Probe("heading", "Heading.target: an object", with_move(base, "a", heading=found), base)
+
+
+def of_transitions() -> Iterator[Probe]:
+    """Yield a probe for each feature of MoveTransition and Choice."""
+    base = given(robot(ALPHA, ON_THE_WAY))
+    plainly = Transition(0, 3)
+    for element, transition in {
+        "MoveTransition.waitFor": replace(plainly, waits=("go",)),
+        "MoveTransition.fluid": replace(plainly, fluid=True),
+        "MoveTransition.to: a move that comes round again": Transition(0, 1),
+        "Choice.conditionIdentifier, Choice.falseBranch": Transition(0, 3, condition="calm", otherwise=4),
+        "Choice by a standard condition": Transition(0, 3, condition="battery-below:0.3", otherwise=4),
+    }.items():
+        other = changed(given(robot(ALPHA, ON_THE_WAY, a=transition)), lambda r: replace(r, slots=("go",)))
+        listening = changed(base, lambda r: replace(r, slots=("go",)))
+        yield Probe("transition", element, other, listening)
+
+
+def of_actions() -> Iterator[Probe]:
+    """Yield a probe for each metaclass of actions, and each way in which devices are wired."""
+    for words, properties in WIRINGS.items():
+        type = replace(
+            kind_of("copter"),
+            devices={"device": replace(kind_of("copter").devices["device"], properties=properties)},
+        )
+        base = replace(plain(), types={"Kind": type}, device_actions={"probe.device": _PLUGIN})
+        act = action("DeviceAction", name="act", device="device")
+        yield Probe("device action", f"DeviceAction: {words}", with_move(base, "a", after=(act,)), base)
+    servo = kind_of("copter", mavlink__servo="9", mavlink__servo__act="1900")
+    base = with_move(replace(plain(), types={"Kind": servo}), "a", after=(act,))
+    told = replace(act, parameters=(("pwm", "1100"),))
+    yield Probe("device action", "DeviceAction.parameters", with_move(base, "a", after=(told,)), base)
+    base = given(robot(ALPHA, FLIGHT), replace(robot(BETA, FLIGHT), slots=("go", "on")))
+    notify = ("Notify", "CommunicationAction")
+    go, on = (BETA, "go"), (BETA, "on")
+    for element, does in {
+        "Feedback": action("Feedback", "CommunicationAction", name="arrived"),
+        "UnicastNotify": replace(action("UnicastNotify", *notify), sets=(go,)),
+        "MulticastNotify": replace(action("MulticastNotify", *notify), sets=(go, on)),
+        "BroadcastNotify": replace(action("BroadcastNotify", *notify), sets=(go,)),
+        "Notify.active false": replace(action("UnicastNotify", *notify), sets=(go,), active=False),
+        "an action of a plug-in": replace(
+            action("Sing"), metaclasses=(("urn:mmrs:nowhere:1.0", "Sing"), (BEHAVIOUR, "Action"))
+        ),
+    }.items():
+        yield Probe("action", element, with_move(base, "a", after=(does,)), base)
+    device = replace(plain(), types={"Kind": servo})
+    yield Probe("action", "Move.preActions", with_move(device, "a", before=(act,)), device)
+    yield Probe("action", "Move.postActions", with_move(device, "a", after=(act,)), device)
+    payload = replace(action("Feedback", "CommunicationAction", name="arrived"), parameters=(("at", "a"),))
+    spoken = with_move(base, "a", after=(replace(payload, parameters=()),))
+    yield Probe("action", "Feedback.payload", with_move(base, "a", after=(payload,)), spoken)
+
+
+def _inserted(new: Move, *more: Move, **changes: object) -> tuple[TargetInput, TargetInput]:
+    """Return a journey with a move on its way, and without it; `more` makes up for it."""
+    made = replace(new, **changes)  # type: ignore[arg-type]
+    longer = (*ON_THE_WAY[:2], made, *more, *ON_THE_WAY[2:])
+    return given(robot(ALPHA, longer)), given(robot(ALPHA, ON_THE_WAY))
+
+
+def _differing(**attributes: float) -> tuple[TargetInput, TargetInput]:
+    base, _ = _inserted(move("m", "HoldPosition", duration=9.0))
+    return with_move(base, "m", attributes=attributes), base
+
+
+def _then(base: TargetInput, new: Move) -> TargetInput:
+    """Return an input whose first robot makes another move after its first GoTo."""
+    (first, *_) = base.program.robots
+    index = next(number for number, each in enumerate(first.moves) if each.id == "a")
+    moves = (*first.moves[1 : index + 1], new, *first.moves[index + 1 : -1])
+    return changed(base, lambda r: robot(ALPHA, moves))
+
+
+def _between_sorties(new: Move) -> tuple[TargetInput, TargetInput]:
+    again = (replace(TAKE_OFF, id="up2"), replace(LAND, id="down2"))
+    return given(robot(ALPHA, (*FLIGHT, new, *again))), given(robot(ALPHA, (*FLIGHT, *again)))
+
+
+_PLUGIN = DeviceWiring(
+    "probe.device", "a wiring of a plug-in", lambda action, device: Wired(183, (9.0, 1900.0))
+)

@@ -1,0 +1,33 @@
+"""Probes of policies: each response to each fault, by each kind of vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import get_args
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.generation.capabilities.probes import ALPHA, FLIGHT, KINDS, Probe, changed, given, plain, robot
+from mmrs_core.scene import Area, AreaUse, Policy, PolicyEvent, PolicyResponse, Ring
+
+MEADOW: Ring = ((-40.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (-40.0, 20.0))
+EVENTS: tuple[PolicyEvent, ...] = get_args(PolicyEvent)
+RESPONSES: tuple[PolicyResponse, ...] = get_args(PolicyResponse)
+
+
+def of_policies() -> Iterator[Probe]:
+    """Yield a probe for each event, response and kind of vehicle, and for those of single waits."""
+    for vehicle in KINDS:
+        base = replace(plain(vehicle), areas=(Area("meadow", AreaUse.EMERGENCY, MEADOW),))
+        for event in EVENTS:
+            for response in RESPONSES:
+                policy = Policy(event, response)
+                other = changed(base, lambda r, policy=policy: replace(r, policies=(policy,)))  # type: ignore[misc]
+                yield Probe(f"policy of a {vehicle}", f"{event}: {response}", other, base)
+    waiting = Transition(0, 3, waits=("go",))
+    patient = Policy("WAIT_TOO_LONG", "LAND", 9.0)
+    inputs = [
+        changed(given(robot(ALPHA, FLIGHT, a=each)), lambda r: replace(r, slots=("go",)))
+        for each in (replace(waiting, policies=(patient,)), waiting)
+    ]
+    yield Probe("transition", "MoveTransition.policies", *inputs)
