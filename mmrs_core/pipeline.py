@@ -308,6 +308,7 @@ def inputs_of(
         options=options or {},
         environment=place.environment or {},
         areas=place.areas or (),
+        device_actions=contributions.device_actions,
     )
     return {id: each for id, each in found.items() if robots is None or id in robots}
 

@@ -12,6 +12,7 @@ from typing import Protocol, runtime_checkable
 
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId
 from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.flight.bus.words import CommandId as CommandId
 from mmrs_core.flight.bus.words import SlotState as SlotState
 from mmrs_core.scene import Area, Name, Policy, Position, RobotType
@@ -252,6 +253,7 @@ class BackendInput:
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn; empty where none was given.
         live: of a run in real time; None in simulated time.
+        device_actions: how devices are wired, by property.
     """
 
     program: Program
@@ -264,6 +266,7 @@ class BackendInput:
     policies: tuple[Policy, ...] = ()
     areas: tuple[Area, ...] = ()
     live: Live | None = None
+    device_actions: Wirings = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

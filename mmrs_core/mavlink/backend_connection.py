@@ -71,7 +71,7 @@ def connect(given: BackendInput, live: Live) -> MavlinkBackend:
     """
     options = link_options(given.options)
     input = TargetInput(given.program, {given.type.name: given.type}, given.robot_kinds, given.move_kinds)
-    input = replace(input, areas=given.areas)
+    input = replace(input, areas=given.areas, device_actions=given.device_actions)
     _refuse(given, input, options)
     program = robot_of(given.robot, input)
     fleet = _fleet(live, options, given.program)

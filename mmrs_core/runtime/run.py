@@ -17,6 +17,7 @@ from mmrs_core.contributions.execution import (
     Sample,
 )
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
+from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import TO_THE_END, Ending, Terms, interpret
@@ -113,6 +114,7 @@ def inputs_of(
     options: Mapping[str, str],
     environment: Mapping[str, float],
     areas: tuple[Area, ...],
+    device_actions: Wirings | None = None,
 ) -> dict[str, BackendInput]:
     """Return what the backend of each robot may use; see `simulate` for the arguments.
 
@@ -133,6 +135,7 @@ def inputs_of(
             options,
             policies,
             areas,
+            device_actions=device_actions or {},
         )
     return found
 
