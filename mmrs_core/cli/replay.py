@@ -81,10 +81,10 @@ def _say_steps(flight: Flight, program: Program) -> None:
     from mmrs_core.cli.tables import table
 
     rows = [
-        (clock(step.time), step.robot, step.words, place(step.where) if step.where else "not known")
+        (clock(step.time), step.robot, place(step.where), step.words)
         for step in steps_of(flight, program)
     ]
-    for line in table(("time", "robot", "step", "where"), rows):
+    for line in table(("time", "robot", "where", "step"), rows):
         say(line)
 
 
