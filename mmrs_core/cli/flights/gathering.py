@@ -39,6 +39,8 @@ class _Contents:
         """Take an entry."""
         self.runs[entry.run] = None
         self.wall = self.wall or entry.wall
+        if entry.kind == "start" or not self.counts:
+            self.counts.append(Counter())
         if entry.kind == "fix":
             self.fixes.add(entry)
         elif entry.kind == "message":
@@ -52,8 +54,6 @@ class _Contents:
 
     def _count(self, entry: Entry) -> None:
         """Keep the newest counts of each process that the robot had: they only grow."""
-        if not self.counts or any(each.kind == "start" for each in self.entries[-1:]):
-            self.counts.append(Counter())
         frames = entry.content.get("frames")
         for name, count in frames.items() if isinstance(frames, Mapping) else ():
             number = number_of(count)
