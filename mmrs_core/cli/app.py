@@ -24,6 +24,7 @@ from mmrs_core.cli import (
     replay,
     show,
     simulate,
+    sitl,
     validate,
 )
 from mmrs_core.cli.output import say, tell
@@ -48,6 +49,7 @@ _COMMANDS: tuple[tuple[str, Callable[..., int]], ...] = (
     ("generate", generate.generate),
     ("explain", explain.explain),
     ("simulate", simulate.simulate),
+    ("sitl", sitl.sitl),
     ("run", live.run),
     ("control", control.control),
     ("replay", replay.replay),

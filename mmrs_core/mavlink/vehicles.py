@@ -68,12 +68,19 @@ CLASSES: Mapping[Name, VehicleClass] = {
 
 def vehicle_class(robot: RobotProgram, type: RobotType | None) -> VehicleClass:
     """Return what a robot is by its type, or, where that is missing, by what it does."""
-    if type is not None:
-        for metaclasses in (type.metaclasses, type.capability_metaclasses):
-            found = most_specific(metaclasses, CLASSES)
-            if found is not None and CLASSES[found] is not ROVER:
-                return CLASSES[found]
+    found = class_of_type(type) if type is not None else ROVER
+    if found is not ROVER:
+        return found
     return COPTER if any(move.is_a(TAKE_OFF) for move in robot.moves) else ROVER
+
+
+def class_of_type(type: RobotType) -> VehicleClass:
+    """Return what robots of a type are, whatever they do."""
+    for metaclasses in (type.metaclasses, type.capability_metaclasses):
+        found = most_specific(metaclasses, CLASSES)
+        if found is not None and CLASSES[found] is not ROVER:
+            return CLASSES[found]
+    return ROVER
 
 
 def capability_of(robot: RobotProgram, type: RobotType) -> Capability | None:

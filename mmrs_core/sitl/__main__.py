@@ -15,15 +15,16 @@ def main() -> int:
     add("--port", type=int, default=14_550, help="UDP port of the ground station")
     add("--host", default="127.0.0.1", help="address of the ground station")
     add("--kind", choices=("copter", "sub", "rover"), default="copter")
+    add("--firmware", choices=("ardupilot", "px4"), default="ardupilot")
     add("--home", default="42.37,13.35", metavar="LATITUDE,LONGITUDE")
     add("--system", type=int, default=1)
     add("--speedup", type=float, default=1.0)
     given = parser.parse_args()
     try:
         latitude, longitude = map(float, given.home.split(","))
-    except ValueError:
-        parser.error(f"--home {given.home}: is not LATITUDE,LONGITUDE")
-    settings = Settings(given.kind, latitude, longitude, given.system)
+        settings = Settings(given.kind, latitude, longitude, given.system, firmware=given.firmware)
+    except ValueError as error:
+        parser.error(f"--home {given.home}, --kind {given.kind}, --system {given.system}: {error}")
     with SimulatedVehicle(given.port, settings, host=given.host, speedup=given.speedup):
         try:
             threading.Event().wait()

@@ -47,7 +47,7 @@ class Autopilot:
         returning: where it goes back to, and by which places.
         located: whether it has a position. unfit: why it does not let itself be armed.
         obstacle: metres and degrees clockwise from its nose. breached: whether it is out of its fence.
-        silent: commands that it does not answer. clock_error: seconds by which its clocks are wrong.
+        silent: commands that it does not answer. clock_error: seconds by which its time of day is wrong.
         patience: seconds that it waits at least for what comes by its link, whatever parameters say.
         beats_now: whether a heartbeat is due because the mode has changed.
         failed: since when each thing is wrong that it watches, or that it has answered that.

@@ -203,6 +203,14 @@ def _check(pilot: Autopilot, params: Params) -> int:
     return FAILED if pilot.armed else ACCEPTED
 
 
+def _inject(pilot: Autopilot, params: Params) -> int:
+    """Fail on purpose, as PX4's simulation does: its GPS receiver only, off or on again."""
+    if pilot.settings.firmware != PX4 or params[0] != mavlink.FAILURE_UNIT_SENSOR_GPS:
+        return UNSUPPORTED
+    pilot.located = params[1] == mavlink.FAILURE_TYPE_OK
+    return ACCEPTED
+
+
 _HANDLERS: Mapping[int, Callable[[Autopilot, Params], int]] = {
     int(mavlink.MAV_CMD_COMPONENT_ARM_DISARM): _arm,
     int(mavlink.MAV_CMD_NAV_TAKEOFF): _take_off,
@@ -224,4 +232,5 @@ _HANDLERS: Mapping[int, Callable[[Autopilot, Params], int]] = {
     int(mavlink.MAV_CMD_DO_SET_HOME): _home,
     int(mavlink.MAV_CMD_DO_FLIGHTTERMINATION): _terminate,
     int(mavlink.MAV_CMD_RUN_PREARM_CHECKS): _check,
+    int(mavlink.MAV_CMD_INJECT_FAILURE): _inject,
 }

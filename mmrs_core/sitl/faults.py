@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 
 from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.body import wind_of
 from mmrs_core.sitl.failsafes import breach
 
 
@@ -93,7 +94,7 @@ class Faults:
         self.link_down = False
 
     def jump_clock(self, seconds: float) -> None:
-        """Have its clocks jump: the time since it booted, and the time of day."""
+        """Have its time of day jump; the time since it booted goes on as it did."""
         with self._lock:
             self._autopilot.clock_error += seconds
 
@@ -115,6 +116,11 @@ class Faults:
         """Have its camera work again."""
         with self._lock:
             self._autopilot.camera.works = True
+
+    def change_wind(self, speed: float, comes_from: float) -> None:
+        """Have the wind blow otherwise: metres per second, and degrees where it comes from."""
+        with self._lock:
+            self._autopilot.body.wind = wind_of(speed, comes_from)
 
     def begin(self, name: str, *values: str) -> None:
         """Begin a fault by its name in `FAULTS`, with its values as texts.
@@ -151,6 +157,7 @@ FAULTS: Mapping[str, Act] = {
     "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
     "slow-upload": lambda faults, seconds="3": faults.slow_uploads(float(seconds)),
     "camera-dead": Faults.break_camera,
+    "wind": lambda faults, speed, bearing="0": faults.change_wind(float(speed), float(bearing)),
 }
 """What can go wrong, by name, and how it begins."""
 
@@ -163,6 +170,7 @@ ENDS: Mapping[str, Act] = {
     "refuse-arming": lambda faults: faults.refuse_arming(""),
     "slow-upload": lambda faults: faults.slow_uploads(0.0),
     "camera-dead": Faults.mend_camera,
+    "wind": lambda faults: faults.change_wind(0.0, 0.0),
 }
 """How faults end, by name; the others happen once."""
 

@@ -40,6 +40,7 @@ _COMMON: Mapping[str, float] = {
     "MIS_RESTART": 0,
     "ARMING_CHECK": 1,
     "FS_OPTIONS": 0,
+    "SIM_GPS1_ENABLE": 1,
 }
 _COPTER: Mapping[str, float] = {
     "FS_THR_ENABLE": 1,

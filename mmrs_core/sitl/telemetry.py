@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from math import hypot, radians
+from math import atan2, degrees, hypot, radians
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -58,8 +58,8 @@ def heartbeat(pilot: Autopilot) -> Message:
 
 
 def milliseconds(pilot: Autopilot) -> int:
-    """Return the time since it booted, as its clock has it."""
-    return int(max(0, round((pilot.uptime + pilot.clock_error) * 1000)) % 2**32)
+    """Return the milliseconds since it booted."""
+    return int(round(pilot.uptime * 1000) % 2**32)
 
 
 def global_position(pilot: Autopilot) -> Message | None:
@@ -217,8 +217,8 @@ def wind(pilot: Autopilot) -> Message:
         return mavlink.MAVLink_wind_cov_message(
             milliseconds(pilot) * 1000, north, east, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         )
-    speed, comes_from = pilot.settings.wind
-    return mavlink.MAVLink_wind_message(comes_from, speed, 0.0)
+    comes_from = degrees(atan2(-east, -north)) % 360.0
+    return mavlink.MAVLink_wind_message(comes_from, hypot(north, east), 0.0)
 
 
 def obstacle(pilot: Autopilot) -> Message | None:

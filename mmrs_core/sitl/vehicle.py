@@ -26,6 +26,9 @@ Message = Any
 YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
 ABOVE_SEA = frozenset({0, 5})
 UNFIT_SECONDS = 30.0
+GPS_SWITCH = "SIM_GPS1_ENABLE"
+"""By which ArduPilot's simulation, too, switches its GPS receiver off and on."""
+
 REAL_PATIENCE = 2.0
 """Real seconds that it waits at least for what comes by its link, however fast its time goes."""
 
@@ -242,6 +245,8 @@ class SimulatedVehicle:
             return
         value = parameters.decoded(name, message.param_value, message.param_type, pilot.settings.firmware)
         pilot.parameters[name] = value
+        if name == GPS_SWITCH:
+            pilot.located = bool(value)
         self._tell_parameter(name)
 
     def _read_parameter(self, message: Message) -> None:

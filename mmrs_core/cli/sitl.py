@@ -1,0 +1,116 @@
+"""``mmrs sitl``: simulated vehicles to rehearse on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shlex import quote
+from typing import Annotated
+
+import typer
+
+from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.settings import Json, settings_of
+
+_Texts = list[str] | None
+FIRST_PORT, PORT_STEP = 14_550, 10
+
+
+def sitl(
+    call: typer.Context,
+    behaviour: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="BEHAVIOUR|PROJECT",
+            help="Whose robots get a vehicle each, at their homes; none: --count vehicles at --home.",
+        ),
+    ] = None,
+    count: Annotated[int, typer.Option("--count", min=1, max=250, help="Vehicles without a model.")] = 1,
+    home: Annotated[
+        str, typer.Option("--home", metavar="LATITUDE,LONGITUDE", help="Of the first of them.")
+    ] = "42.37,13.35",
+    kind: Annotated[str, typer.Option("--kind", metavar="copter|sub|rover", help="Of them.")] = "copter",
+    firmware: Annotated[
+        str,
+        typer.Option("--firmware", metavar="ardupilot|px4", help="px4: from documents, copters only."),
+    ] = "ardupilot",
+    port: Annotated[
+        int, typer.Option("--port", min=1, max=65_535, help="UDP port of the first robot.")
+    ] = FIRST_PORT,
+    step: Annotated[
+        int, typer.Option("--port-step", min=0, help="To the port of the next; 0: all share one.")
+    ] = PORT_STEP,
+    host: Annotated[str, typer.Option("--host", help="Where the controllers listen.")] = "127.0.0.1",
+    speedup: Annotated[
+        float, typer.Option("--speedup", min=0.1, max=100.0, help="Seconds of theirs in a second.")
+    ] = 1.0,
+    wind: Annotated[
+        str, typer.Option("--wind", metavar="SPEED,FROM", help="Metres a second, degrees it comes from.")
+    ] = "0,0",
+    energy: Annotated[
+        float, typer.Option("--energy", min=1.0, help="Seconds of hovering in a full battery.")
+    ] = 1200.0,
+    recharge: Annotated[
+        float,
+        typer.Option(
+            "--recharge", min=0.0, help="Seconds on the ground until it is full; 0: it stays empty."
+        ),
+    ] = 0.0,
+    parameter: Annotated[
+        _Texts, typer.Option("--parameter", metavar="NAME=VALUE", help="Of all vehicles; may be repeated.")
+    ] = None,
+    loss: Annotated[
+        float, typer.Option("--loss", min=0.0, max=0.9, help="Part of all datagrams that get lost.")
+    ] = 0.0,
+    delay: Annotated[
+        float, typer.Option("--delay", min=0.0, max=10.0, help="Real seconds that each takes.")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the losses.")] = 0,
+    fault: Annotated[
+        _Texts,
+        typer.Option(
+            "--fault",
+            metavar="[ROBOT:]FAULT[=VALUE,…][@SECONDS[+SECONDS]]",
+            help="After so many seconds under way, for so long; may be repeated. --fault list: all of them.",
+        ),
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
+    ] = 0.0,
+    json: Json = False,
+) -> int:
+    """Start simulated vehicles that speak MAVLink, for rehearsing controllers and mmrs run.
+
+    It prints the --connect arguments to copy. On a terminal it tells now and then how each vehicle is. A line
+    such as 'Drone1 gps-lost', 'Drone1 mend gps-lost' or 'all battery 0.2' makes a fault at once, 'quit' ends.
+    They are ours: what flies here may still be refused by a real autopilot.
+
+    Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Drone1:gps-lost@60+20'
+    """
+    from mmrs_core.cli.rehearsal import Berths, Rehearsal, berths_of, fault_list, plain_berths
+
+    if fault == ["list"]:
+        fault_list()
+        return 0
+    berths = Berths(
+        port=port,
+        step=step,
+        host=host,
+        speedup=speedup,
+        loss=loss,
+        delay=delay,
+        seed=seed,
+        firmware=firmware,
+        wind=wind,
+        energy=energy,
+        recharge=recharge,
+        parameters=tuple(parameter or ()),
+    )
+    settings = settings_of(call)
+    given = berths_of(settings, behaviour) if behaviour is not None else plain_berths(count, home, kind)
+    rehearsal = Rehearsal(berths.vehicles(given), fault or [])
+    if not json:
+        say(" ".join(map(quote, berths.arguments(given))))
+    code = rehearsal.run(seconds, quiet=json)
+    if json:
+        say_json({"vehicles": rehearsal.deeds(), "connect": berths.arguments(given)})
+    return code
