@@ -54,11 +54,19 @@ class FollowingClock(Clock):
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """What all robots of a run share."""
+    """What all robots of a run share; `users` are those that still do."""
 
     clock: Clock
     radios: Radios
     rehearsal: Rehearsal
+    users: set[str]
+
+    def let_go(self, robot: str) -> None:
+        """End what concerns a robot, and everything with the last one."""
+        self.rehearsal.forget(robot)
+        self.users.discard(robot)
+        if not self.users:
+            self.rehearsal.close()
 
 
 def connect(given: BackendInput, live: Live) -> MavlinkBackend:
@@ -115,7 +123,7 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
     def wrap(port: Port, url: str) -> Port:
         return rehearsal.wrap(port, sharers.get(url, []))
 
-    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal)
+    fleet = Fleet(clock, Radios(clock, _signer(options.signing_key), retries, wrap), rehearsal, set())
     live.shared[SHARED] = fleet
     return fleet
 
@@ -170,6 +178,7 @@ def _equipment(
         fleet.rehearsal.record(
             given.robot.id, lambda text, content: box.write("injected", name=text, **content)
         )
+    fleet.users.add(given.robot.id)
     fleet.rehearsal.attend(given.robot.id, link)
     locators: dict[str, Locator] = {each: where_expected for each in objects_in(given.robot)}
     joules = sum(battery.energy for battery in given.type.batteries) or None
@@ -188,6 +197,7 @@ def _equipment(
         wake=live.wake,
         action=lambda action: cast(Action, built(action_of(action, context))),
         start=_once(fleet.rehearsal.start, live.shared),
+        let_go=lambda: fleet.let_go(given.robot.id),
     )
 
 

@@ -53,6 +53,7 @@ class Equipment:
         resumed: whether the vehicle may be in the air at first.
         action: an action of the behaviour as one of the vehicle's program.
         start: to be called once the robot gets ready, for faults that are made on purpose.
+        let_go: to be called before the link is closed.
     """
 
     url: str
@@ -69,6 +70,7 @@ class Equipment:
     wake: Callable[[], None]
     action: Callable[[Action], VehicleAction]
     start: Callable[[], None]
+    let_go: Callable[[], None]
 
 
 class MavlinkBackend:
@@ -212,6 +214,7 @@ class MavlinkBackend:
     def close(self) -> None:
         """End the worker and the link; the vehicle keeps whatever it does."""
         self._worker.close()
+        self._with.let_go()
         self.note("counted", {"frames": dict(self._with.link.dropped)})
         if self._with.link.garbled:
             self._with.say(f"{self._with.link.garbled} frames from the link could not be read")
