@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mmrs_core.contributions.execution import BackendInput, Condition
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
+    from mmrs_core.generation.capabilities.judging import Capability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
     from mmrs_core.runtime.interpreter import Ending
@@ -217,6 +218,22 @@ def render(
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
     return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider, overrides=overrides)
+
+
+def capabilities(target: str | None, contributions: Contributions) -> dict[str, tuple[Capability, ...]]:
+    """Return what a target can express, or each target where None is named, by name; found by trying.
+
+    Raises:
+        UnsupportedError: if there is no such target.
+    """
+    from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+    from mmrs_core.generation.capabilities.probes import PROBED
+
+    added = sorted(name for name in contributions.move_kinds if name[0] not in PROBED)
+    tried = probes(contributions.languages.metaclass(*name).ancestry for name in added)
+    names = sorted(contributions.targets) if target is None else [target]
+    chosen = {name: _named("target", name, contributions.targets) for name in names}
+    return {name: capabilities_of(each, tried) for name, each in chosen.items()}
 
 
 def write(files: Iterable[GeneratedFile], directory: Path) -> tuple[Path, ...]:

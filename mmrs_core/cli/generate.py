@@ -43,14 +43,26 @@ def generate(
         bool, typer.Option("--force", help="Overwrite files that were changed by hand.")
     ] = False,
     list_targets: Annotated[bool, typer.Option("--list-targets", help="List the targets.")] = False,
+    capabilities: Annotated[
+        bool, typer.Option("--capabilities", help="Say what the target, or every target, can express.")
+    ] = False,
     json: Json = False,
 ) -> int:
-    """Generate the code of every robot's controller."""
+    """Generate the code of every robot's controller.
+
+    'mmrs-gen explain FILE:LINE' says which move a line of it comes from.
+
+    Example: mmrs-gen field --target mavlink-python -o code
+    """
     from mmrs_core.cli.journey import Workshop
 
     workshop = Workshop(settings_of(call))
     if list_targets:
         return _list_targets(workshop, json)
+    if capabilities:
+        from mmrs_core.cli.capabilities import print_capabilities
+
+        return print_capabilities(workshop, target or (str(behaviour) if behaviour else None), json)
     if behaviour is None or target is None or output is None:
         missing = [
             name

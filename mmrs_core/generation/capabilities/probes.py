@@ -32,6 +32,8 @@ MULTICOPTER = "urn:mmrs:multicopter:1.0"
 ROBOT = "urn:mmrs:robot:1.0"
 AUV = "urn:mmrs:auv:1.0"
 MOVE = (BEHAVIOUR, "Move")
+PROBED = frozenset({BEHAVIOUR, MULTICOPTER})
+"""Languages whose moves have probes of their own."""
 ALPHA, BETA = "alpha", "beta"
 EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
 HERE, THERE = (0.0, 30.0, 20.0), (25.0, 30.0, 20.0)

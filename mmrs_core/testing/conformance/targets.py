@@ -11,6 +11,7 @@ import pytest
 
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import target_input, two_drones
@@ -71,6 +72,19 @@ class TargetConformance(Conformance):
         with pytest.raises(UnsupportedError) as refusal:
             render(target, replace(given, program=changed))
         assert any(robot.id in each and moves[1].id in each for each in refusal.value.elements)
+
+    def test_what_it_says_of_its_capabilities_is_about_what_it_expresses(self, target: Target) -> None:
+        """The words of a target are for elements that it expresses, or whose absence is no loss."""
+        rows = capabilities_of(target)
+        kept = [row.element for row in rows if row.verdict in ("expressed", "no difference")]
+        for begin in target.capabilities:
+            assert any(element.startswith(begin) for element in kept), begin
+
+    def test_it_refuses_what_its_table_of_capabilities_says_and_nothing_else(self, target: Target) -> None:
+        """A refusal is about something that the behaviour without it is not refused for."""
+        for probe, row in zip(probes(), capabilities_of(target), strict=True):
+            refused = row.verdict in ("lossy", "refused")
+            assert bool(tuple(target.refusals(probe.given))) is refused, row.element
 
     def _input(self, target: Target) -> TargetInput:
         return self.inputs.get(target.name) or target_input(two_drones())

@@ -50,7 +50,7 @@ class TestMoveKinds(MoveKindConformance):
 
 class TestTargets(TargetConformance):
     plugin = builtin
-    inputs = {"qgc-plan": ONE_DRONE}
+    inputs = {"qgc-plan": ONE_DRONE, "wpl": ONE_DRONE}
 
 
 class TestBackends(BackendConformance):

@@ -1,0 +1,202 @@
+"""The tables of capabilities hold every element of the Behaviour Language, and are true."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.cli import run
+from mmrs_core.contributions.targets import FileSpec, Target
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.capabilities.probes import MOVE, MULTICOPTER
+from mmrs_core.generation.render import render
+from mmrs_core.mavlink.targets import TARGETS
+from mmrs_core.plugins import load_plugins
+
+PROBES = probes()
+TABLES = {target.name: capabilities_of(target, PROBES) for target in TARGETS}
+BY_NAME = {target.name: target for target in TARGETS}
+LANGUAGES = (BEHAVIOUR, MULTICOPTER)
+
+TOLD_WITH = {
+    "Behaviour.targets": "GeoCoordinate",
+    "Robot.moves": "Start, Stop",
+    "Robot.moveTransitions": "MoveTransition.",
+    "Robot.policies": "LINK_LOST: HOLD",
+    "Robot.launchType": "Robot: a copter",
+    "GeoCoordinate.latitude": "GeoCoordinate",
+    "GeoCoordinate.longitude": "GeoCoordinate",
+    "GeoCoordinate.altitude": "GeoCoordinate",
+    "GeoCoordinate.depth": "Robot: a sub",
+    "RelativeCoordinate.x": "RelativeCoordinate",
+    "RelativeCoordinate.y": "RelativeCoordinate",
+    "RelativeCoordinate.z": "RelativeCoordinate",
+    "RelativeCoordinate.reference": "RelativeCoordinate",
+    "MoveTransition.from": "MoveTransition.to",
+    "Choice.falseBranch": "Choice.conditionIdentifier, Choice.falseBranch",
+    "Slot.name": "MoveTransition.waitFor",
+    "Action.name": "Feedback",
+    "DeviceAction.actionName": "DeviceAction: ",
+    "DeviceAction.deviceId": "DeviceAction: ",
+    "UnicastNotify.slot": "UnicastNotify",
+    "MulticastNotify.slots": "MulticastNotify",
+    "BroadcastNotify.slot": "BroadcastNotify",
+    "Pair.key": "Feedback.payload",
+    "Pair.value": "Feedback.payload",
+}
+"""Features that are told together with others."""
+
+NOT_OF_BEHAVIOURS = {"Drone", "DroneSize"}
+"""Classes of the multicopters' language that are about types of robots."""
+
+MAKE_NO_DIFFERENCE = {
+    "mavlink-python": {
+        "Behaviour.altitudeReference MSL",
+        "Behaviour.altitudeReference ELLIPSOID",
+        "Behaviour.altitudeReference ORIGIN",
+        "Behaviour.geoidSeparation",
+        "Behaviour.minimumSeparation",
+        "Behaviour.acceptedUnknowns",
+        "Context.obstacles: with a height",
+        "Target.name",
+    },
+    "qgc-plan": {
+        "Behaviour.name",
+        "Behaviour.minimumSeparation",
+        "Behaviour.reserve",
+        "Behaviour.acceptedUnknowns",
+        "Robot.slots",
+        "Context.obstacles: with a height",
+        "Target.name",
+        "Recharge",
+        "Move.name",
+        "Move.task",
+        "Move.rule",
+    },
+}
+MAKE_NO_DIFFERENCE["wpl"] = MAKE_NO_DIFFERENCE["qgc-plan"] | {"Robot.typeName"}
+
+
+@pytest.fixture(scope="module")
+def features():
+    """Return ``Class.feature`` for each feature of each class of the languages of behaviours."""
+    registry = load_plugins().contributions.languages
+    found = []
+    for uri in LANGUAGES:
+        for metaclass in registry.package(uri).metaclasses:
+            inherited = {name for above in metaclass.supertypes for name in above.by_name}
+            if metaclass.name not in NOT_OF_BEHAVIOURS:
+                found += [f"{metaclass.name}.{name}" for name in metaclass.by_name if name not in inherited]
+    return found
+
+
+def test_every_feature_of_the_languages_of_behaviours_has_a_row(features):
+    elements = [row.element for row in TABLES["wpl"]]
+    told = {name: TOLD_WITH.get(name, name) for name in features}
+    assert len(features) > 60
+    assert [n for n, begin in told.items() if not any(each.startswith(begin) for each in elements)] == []
+
+
+@pytest.mark.parametrize("name", sorted(TABLES))
+def test_nothing_but_what_is_known_to_be_for_others_makes_no_difference(name):
+    """What a target neither writes nor refuses has been dropped silently."""
+    assert {row.element for row in TABLES[name] if row.verdict == "no difference"} == MAKE_NO_DIFFERENCE[name]
+
+
+@pytest.mark.parametrize("name", sorted(TABLES))
+def test_everything_that_is_expressed_is_told_how(name):
+    silent = [
+        r.element for r in TABLES[name] if r.verdict != "lossy" and not r.how and "policy" not in r.group
+    ]
+    assert silent == []
+
+
+@pytest.mark.parametrize("name", sorted(TABLES))
+def test_rendering_does_what_the_table_says(name):
+    target = without_copies(BY_NAME[name])
+    for probe, row in zip(PROBES, TABLES[name], strict=True):
+        assert outcome(target, probe.given) == row.verdict.replace("no difference", "expressed"), row
+
+
+def without_copies(target):
+    """Return a target without the files that are the same for every behaviour."""
+    return replace(target, files=lambda given: (spec for spec in target.files(given) if spec.source is None))
+
+
+def outcome(target, given):
+    """Return what happens to a behaviour: without losses, and with losses allowed."""
+    try:
+        render(target, given)
+    except UnsupportedError:
+        try:
+            render(target, given, allow_lossy=True)
+        except UnsupportedError:
+            return "refused"
+        return "lossy"
+    return "expressed"
+
+
+def test_each_element_has_one_row():
+    rows = [(row.group, row.element) for row in TABLES["wpl"]]
+    assert len(rows) == len(set(rows))
+
+
+@pytest.fixture
+def cards(tmp_path):
+    """Return a plug-in's target that writes the moves of robots and refuses devices."""
+    (tmp_path / "card.jinja").write_text("{% for m in robot.moves %}{{ m.kind | comment }}\n{% endfor %}")
+
+    def files(given):
+        for number, robot in enumerate(given.program.robots):
+            yield FileSpec(f"card_{number}.txt", "card.jinja", {"robot": robot})
+
+    def refusals(given):
+        for robot in given.program.robots:
+            for move in robot.moves:
+                if move.after:
+                    yield f"robot '{robot.id}', move '{move.id}': has actions"
+
+    return Target("cards", "cards", tmp_path, files, refusals, capabilities={"Land": "a line"})
+
+
+def test_the_target_of_a_plugin_is_tried_in_the_same_way(cards):
+    table = {row.element: row for row in capabilities_of(cards)}
+    assert (table["Land"].verdict, table["Land"].how) == ("expressed", "a line")
+    assert (table["Feedback"].verdict, table["Feedback"].how) == ("lossy", "has actions")
+    assert table["GoTo.speed"].verdict == "no difference"
+
+
+def test_moves_that_plugins_have_added_get_a_row(cards):
+    spiral = (("urn:kites:1.0", "Spiral"), MOVE)
+    row = next(row for row in capabilities_of(cards, probes([spiral])) if "Spiral" in row.element)
+    assert (row.group, row.element) == ("move of a plug-in", "Spiral (urn:kites:1.0)")
+
+
+def test_a_target_that_writes_nothing_even_with_losses_refuses(cards):
+    def files(given):
+        raise UnsupportedError("no kite flies")
+
+    row = capabilities_of(replace(cards, files=files, refusals=lambda given: ["no kite flies"]))[0]
+    assert (row.verdict, row.how) == ("refused", "no kite flies")
+
+
+def test_the_command_line_prints_the_table_of_a_target(capsys):
+    assert run(["--capabilities", "wpl"], program="mmrs-gen") == 0
+    told = capsys.readouterr().out
+    assert "NAV_TAKEOFF" in told
+    assert "qgc-plan" not in told
+
+
+def test_the_command_line_prints_all_tables_for_programs(capsys):
+    assert run(["--capabilities", "--json", "--no-plugins"], program="mmrs-gen") == 0
+    targets = json.loads(capsys.readouterr().out)["targets"]
+    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(TABLES, len(PROBES))
+
+
+def test_an_unknown_target_has_no_table(capsys):
+    assert run(["--capabilities", "wlp"], program="mmrs-gen") == 1
+    assert "did you mean wpl?" in capsys.readouterr().err
