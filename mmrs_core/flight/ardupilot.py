@@ -1,18 +1,24 @@
-"""An ArduPilot vehicle at the end of a MAVLink link, in the words of a robot's program."""
+"""A vehicle at the end of a MAVLink link, in the words of a robot's program.
+
+ArduPilot is stepped in GUIDED and PX4 in OFFBOARD; both run missions in AUTO. What else differs
+between them is in ``habits.py`` and ``px4.py``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from . import modes, preparation, safeguards
-from .commands import command
+from .commands import Unanswered, command, name_of
 from .faults import NO_PROGRESS, Fault, Refused
 from .helm import MODE_SECONDS, Helm
-from .link import Link
-from .missions import Item
+from .link import ANYBODY, Link, Message
+from .missions import Item, mark_of
+from .places import at_height
 from .program import Geographic, Look, Place
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
@@ -20,10 +26,14 @@ from .vehicle import State
 
 FORCE_DISARM = 21_196
 VALUE_SECONDS = 10.0
+IMAGE_SECONDS = 10.0
+IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
+BEFORE_MISSION_ID = 6
+"""Bytes of MISSION_CURRENT before the id of the mission."""
 
 
 class MavlinkVehicle:
-    """An ArduPilot vehicle, stepped in GUIDED and run in AUTO."""
+    """A vehicle, stepped in GUIDED and run in AUTO."""
 
     def __init__(
         self,
@@ -54,9 +64,13 @@ class MavlinkVehicle:
         self._home = home
         self._acceptance = acceptance
         self._home_tolerance = home_tolerance
+        self._mission: Sequence[Item] = ()
+        self._mark = 0
 
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
+
+        A vehicle that is in the air already may be away from home.
 
         Raises:
             Refused: something is not accepted or read back differently, the vehicle is not where the
@@ -65,22 +79,35 @@ class MavlinkVehicle:
         geographic = isinstance(self._home, Geographic)
         preparation.ask_for_messages(self._link, geographic=geographic)
         preparation.await_position(self._link, self._telemetry)
-        preparation.check_identity(self._link, self._telemetry, self._kind, self._home, self._home_tolerance)
+        tolerance = inf if self._telemetry.airborne() else self._home_tolerance
+        preparation.check_identity(self._link, self._telemetry, self._kind, self._home, tolerance)
         if geographic:
-            preparation.replace_all(self._link, mission, fence, rally)
+            self._mission = mission
+            mission = self._helm.habits.mission(mission)
+            self._mark = preparation.replace_all(self._link, mission, fence, rally)
         for line in safeguards.report(self._link, self._kind):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fence:
-            command(self._link, mavlink.MAV_CMD_DO_FENCE_ENABLE, 1)
+            self._helm.habits.enable_fence()
 
-    def answer_lost_link(self, response: str) -> None:
-        """Have the vehicle respond by itself when it no longer hears the ground.
+    def check(self) -> None:
+        """Make sure that nobody else has taken over.
+
+        Raises:
+            Fault: somebody has, or the vehicle has answered something by itself.
+        """
+        self._helm.check()
+
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
+        """Have the vehicle respond by itself when it has not heard the ground for some seconds.
 
         Raises:
             Refused: it cannot respond so, or does not say that it will.
         """
-        preparation.answer_lost_link(self._link, self._kind, response)
+        otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
+        if otherwise:
+            self._tell(otherwise)
 
     def answer_breach(self, response: str) -> None:
         """Have the vehicle respond by itself when it breaks its fence.
@@ -96,11 +123,14 @@ class MavlinkVehicle:
         return self._telemetry
 
     def take_off(self, height: float) -> None:
-        """Climb to a height above home.
+        """Climb to a height above home, or go there straight up or down from where it is in the air.
 
         Raises:
             Refused: the vehicle does not arm or take off. Fault: it does not get there.
         """
+        if self._telemetry.airborne():
+            self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
+            return
         self._helm.leave_ground(height)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
         self._helm.until(
@@ -134,13 +164,13 @@ class MavlinkVehicle:
         """Fly items of the uploaded mission; the one after `last` must make the vehicle wait.
 
         Raises:
+            Refused: the vehicle has another mission by now, or does not begin with that item.
             Fault: no item was reached for too long.
         """
         self._helm.arm()
-        command(self._link, mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, first)
-        if not self._link.wait(
-            lambda: self._telemetry.item() == first, self._link.clock.patience(MODE_SECONDS)
-        ):
+        self._check_mission()
+        self._helm.habits.select(self._helm.habits.number(first))
+        if not self._link.wait(lambda: self._item() == first, self._link.clock.patience(MODE_SECONDS)):
             raise Refused(f"the vehicle does not go to item {first} of its mission")
         self._helm.enter(modes.AUTO)
         done = first - 1
@@ -150,7 +180,7 @@ class MavlinkVehicle:
                 reached(seq)
             done = now - 1
         self._helm.enter(modes.GUIDED)
-        self._steering.stay()
+        self._steering.stay(self._place_of(last))
 
     def rest(self, seconds: float) -> None:
         """Stay for so many seconds."""
@@ -158,13 +188,25 @@ class MavlinkVehicle:
         self._link.wait(lambda: self._link.clock.now() >= until, seconds)
         self._helm.check()
 
-    def operate(self, number: int, params: tuple[float, ...]) -> None:
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         """Have a device do something.
 
+        Args:
+            number: of the command.
+            params: of the command.
+            confirmed: whether the vehicle has promised to tell the image that it takes.
+
         Raises:
-            Refused: the vehicle does not do it, or does not answer.
+            Unanswered: the vehicle does not answer, or tells no image.
+            Refused: it does not do it.
         """
-        command(self._link, number, *params)
+        with self._link.inbox(*IMAGES, component=ANYBODY) as inbox:
+            command(self._link, number, *params)
+            if confirmed and not self._link.wait(
+                lambda: any(_taken(message) for message in tuple(inbox)),
+                self._link.clock.patience(IMAGE_SECONDS),
+            ):
+                raise Unanswered(f"{name_of(number)}: no image was told within {IMAGE_SECONDS:.0f} s")
 
     def measure(self, value: str) -> float:
         """Return the next value published under that name.
@@ -200,6 +242,12 @@ class MavlinkVehicle:
             raise Refused("the vehicle does not come to a halt")
         return True
 
+    def carry_on(self) -> None:
+        """Go on being steered after a hold, where the vehicle is; nothing happens on the ground."""
+        if self._telemetry.airborne() or (self._telemetry.armed() and self._kind != "copter"):
+            self._helm.arm()
+            self._steering.stay()
+
     def surface(self) -> None:
         """Come up to the water surface."""
         self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)
@@ -226,12 +274,40 @@ class MavlinkVehicle:
         mode, armed = self._helm.mode(), self._telemetry.armed()
         return replace(self._telemetry.state(), mode=mode, armed=armed)
 
+    def _item(self) -> int:
+        """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
+        found = self._telemetry.item()
+        return found - self._helm.habits.number(0) if found >= 0 else -1
+
+    def _place_of(self, seq: int) -> Place | None:
+        """Return where an item of the mission is, or the last one before it that is anywhere."""
+        for item in reversed(self._mission[: seq + 1]):
+            if item.x or item.y:
+                return Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
+        return None
+
+    def _check_mission(self) -> None:
+        """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
+
+        Raises:
+            Refused: somebody has.
+        """
+        current = self._link.latest("MISSION_CURRENT")
+        found = mark_of(current, BEFORE_MISSION_ID) if current is not None else 0
+        if self._mark and found and found != self._mark:
+            raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
+
     def _await_item_after(self, seq: int) -> int:
         def behind() -> int | None:
-            return self._telemetry.item() if self._telemetry.item() > seq else None
+            return self._item() if self._item() > seq else None
 
         found = self._link.wait(behind, 10 * PATIENCE_SECONDS)
         self._helm.check()
         if found is None:
             raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
         return found
+
+
+def _taken(message: Message) -> bool:
+    """Return whether a message tells of an image that was taken."""
+    return message.get_type() == "CAMERA_FEEDBACK" or bool(message.capture_result == 1)

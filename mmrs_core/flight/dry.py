@@ -26,7 +26,7 @@ class DryVehicle:
         self._guard = guard
         self._items: Sequence[Item] = ()
 
-    def answer_lost_link(self, response: str) -> None:
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Do nothing: there is no link to lose."""
 
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
@@ -66,7 +66,7 @@ class DryVehicle:
             time.sleep(min(self._clock.real(left), 0.1))
         self._guard()
 
-    def operate(self, number: int, params: tuple[float, ...]) -> None:
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         """Do nothing."""
 
     def measure(self, value: str) -> None:

@@ -9,7 +9,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from . import modes
 from .commands import command
 from .faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
+from .habits import ArduPilot, Habits
 from .link import Link
+from .px4 import Px4
 from .readiness import REPEATED_SECONDS
 from .telemetry import Telemetry
 
@@ -36,8 +38,18 @@ class Helm:
         self._link = link
         self._telemetry = telemetry
         self._kind = kind
+        self._accepted: frozenset[int] = frozenset()
         self._mode: str | None = None
         self._speed: float | None = None
+        self._habits: Habits | None = None
+
+    @property
+    def habits(self) -> Habits:
+        """Return how the vehicle is steered, once its heartbeat has told what it is."""
+        if self._habits is None:
+            px4 = modes.is_px4(self._link)
+            self._habits = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
+        return self._habits
 
     @property
     def _modes(self) -> Mapping[str, modes.Mode]:
@@ -59,29 +71,42 @@ class Helm:
             Refused: the vehicle does not go into the mode.
         """
         wanted = self._modes[mode]
+        if mode == modes.GUIDED:
+            self.habits.begin_guiding()
+        self.let_go()
         for _ in range(MODE_TRIES):
             command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
             if self._link.wait(
                 lambda: self._telemetry.mode() == wanted.number, self._link.clock.patience(MODE_SECONDS)
             ):
-                self._mode, self._speed = mode, None
+                self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
+                if mode != modes.GUIDED:
+                    self.habits.end_guiding()
                 return
         raise Refused(f"the vehicle does not go into mode {mode}")
 
     def let_go(self) -> None:
         """Accept whatever mode the vehicle goes into, as after landing."""
-        self._mode = None
+        self._mode, self._accepted = None, frozenset()
 
     def check(self) -> None:
         """Make sure that nobody else has taken over.
 
         Raises:
-            Fault: the vehicle has left the mode.
+            Fault: the vehicle has left the mode; TAKEN_OVER, or what it has answered by itself.
         """
-        if self._mode is None or self._telemetry.mode() == self._modes[self._mode].number:
+        number = self._telemetry.mode()
+        if not self._accepted or number in self._accepted:
             return
         if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
-            raise Fault(TAKEN_OVER, f"the vehicle left mode {self._mode}: somebody else has taken over")
+            self.habits.end_guiding()
+            left = self._mode or "take-off"
+            cause = (
+                self._telemetry.failsafe() if number in modes.of_failsafes(self._link, self._kind) else None
+            )
+            if cause is not None:
+                raise Fault(cause, f"the vehicle left mode {left} by itself, for mode {self.mode()}")
+            raise Fault(TAKEN_OVER, f"the vehicle left mode {left}: somebody else has taken over")
 
     def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
         """Wait until a test holds.
@@ -98,8 +123,7 @@ class Helm:
         Raises:
             Refused: the vehicle does not arm; it says why, where the vehicle does.
         """
-        if self._mode != modes.GUIDED:
-            self.enter(modes.GUIDED)
+        self._be_in(modes.GUIDED)
         self.start_motors()
 
     def start_motors(self) -> None:
@@ -122,14 +146,19 @@ class Helm:
     def leave_ground(self, height: float) -> None:
         """Arm and take off, again where the vehicle has disarmed itself in between."""
         for attempt in range(TAKE_OFF_TRIES):
-            self.arm()
+            self._be_in(self.habits.climbs_in)
+            self.start_motors()
             try:
-                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.habits.take_off(height))
+                self._follow_climb()
                 return
             except Refused:
+                # It refuses also when it has left the ground already, and its first answer was lost.
+                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS):
+                    self._follow_climb()
+                    return
                 if attempt + 1 == TAKE_OFF_TRIES:
                     raise
-                self._link.wait(lambda: None, AFRESH_SECONDS)
 
     def disarm(self) -> None:
         """Stop the motors of a vehicle that does not fly; one that does refuses.
@@ -142,6 +171,20 @@ class Helm:
 
     def pace(self, speed: float | None) -> None:
         """Go at a speed in metres per second from now on; None: as before."""
-        if speed is not None and speed != self._speed:
+        if speed is not None and speed != self._speed and self.habits.paces():
             command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
             self._speed = speed
+
+    def _be_in(self, mode: str) -> None:
+        """Be in a mode, whatever anybody has chosen while nobody here cared."""
+        if self._mode != mode or not (self._telemetry.armed() or self._is_in(mode)):
+            self.enter(mode)
+
+    def _is_in(self, mode: str) -> bool:
+        return self._telemetry.mode() == self._modes[mode].number
+
+    def _follow_climb(self) -> None:
+        """Accept the modes that a take-off goes through by itself; none here is entered then."""
+        through = self.habits.climbing()
+        if through:
+            self._mode, self._accepted = None, frozenset(through)

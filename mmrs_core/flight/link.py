@@ -25,6 +25,9 @@ Observer = Callable[[Message, bool], None]
 TRIES = 5
 ANSWER_SECONDS = 1.5
 ITEM_SECONDS = 0.25
+LATE_FRAMES = 64
+"""How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
+
 ANYBODY = 0
 """Stands for every component of the vehicle's system."""
 
@@ -103,6 +106,7 @@ class Link:
         self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
         self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
+        self._newest: int | None = None
         self._ended = ""
         radio.join(self)
 
@@ -189,6 +193,8 @@ class Link:
     def wait(self, test: Callable[[], Found | None], seconds: float) -> Found | None:
         """Return what the test finds as soon as it finds something; None if time runs out.
 
+        Time that the guard takes, as for an order to hold, does not count.
+
         Raises:
             Fault: the port has ended, so that nothing will come any more; or what the guard raises.
         """
@@ -196,7 +202,9 @@ class Link:
         while True:
             if self._ended:
                 raise Fault(LINK_LOST, self._ended)
+            asked = self.clock.now()
             self.guard()
+            until += self.clock.now() - asked
             with self._changed:
                 found = test()
                 left = until - self.clock.now()
@@ -261,8 +269,16 @@ class Link:
             self._heard = now
             if kind in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)
-        if own or kind in OF_ALL:
+        if (own and not self._is_late(message)) or (kind in OF_ALL and not own):
             self._latest[kind] = (message, now)
         for kinds, component, collected in self._inboxes:
             if kind in kinds and component in (ANYBODY, message.get_srcComponent()):
                 collected.append(message)
+
+    def _is_late(self, message: Message) -> bool:
+        """Return whether messages that the vehicle sent after this one have come before it."""
+        seq = message.get_seq()
+        if self._newest is not None and 0 < (self._newest - seq) % 256 <= LATE_FRAMES:
+            return True
+        self._newest = seq
+        return False

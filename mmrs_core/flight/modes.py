@@ -53,6 +53,21 @@ def modes_of(link: Link, kind: str) -> Mapping[str, Mode]:
     return {name: Mode(number, (1.0, float(number))) for name, number in MODES[kind].items()}
 
 
+FAILSAFES: Mapping[str, frozenset[int]] = {
+    "copter": frozenset({2, 6, 9, 17, 21}),
+    "rover": frozenset({4, 11, 12}),
+    "sub": frozenset({9, 16, 19}),
+}
+PX4_FAILSAFES = frozenset({(4, 3), (4, 5), (4, 6)})
+
+
+def of_failsafes(link: Link, kind: str) -> frozenset[int]:
+    """Return the numbers of the modes that a vehicle goes into by itself when something is wrong."""
+    if is_px4(link):
+        return frozenset(px4_number(main, sub) for main, sub in PX4_FAILSAFES)
+    return FAILSAFES[kind]
+
+
 def px4_number(main: int, sub: int) -> int:
     """Return what a PX4's heartbeat says of a mode: the sub-mode above the main mode above 16 bits."""
     return sub << 24 | main << 16
@@ -60,12 +75,14 @@ def px4_number(main: int, sub: int) -> int:
 
 ON_LOST_LINK = "FS_GCS_ENABLE"
 ON_ANY_LOSS = "FS_ACTION"
+NEAREST = "RALLY_INCL_HOME"
+"""Whether home counts as a rally point when a copter returns to the nearest of them."""
 
 LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
     "copter": {
         "CONTINUE": {ON_LOST_LINK: 0},
         "RETURN": {ON_LOST_LINK: 3},
-        "EMERGENCY_AREA": {ON_LOST_LINK: 3},
+        "EMERGENCY_AREA": {NEAREST: 0, ON_LOST_LINK: 1},
         "LAND": {ON_LOST_LINK: 5},
         "HOLD": {ON_LOST_LINK: 7},
     },
@@ -89,8 +106,9 @@ LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
 """Parameters with which a vehicle responds by itself when it no longer hears the ground.
 
 By kind and by the policy's response, or by what comes nearest to it: a copter returns by the way it
-came, and lands where it may not hold for ever; a sub comes up. A rover heeds its action only where
-the failsafe of the ground station is switched on, too, which it is not at first.
+came, or to the nearest rally point, and lands where it may not hold for ever; a sub comes up. A
+rover heeds its action only where the failsafe of the ground station is switched on, too, which it is
+not at first.
 """
 
 BREACH: Mapping[str, Answers] = {
@@ -127,7 +145,11 @@ PX4_BREACH: Answers = {
     "EMERGENCY_AREA": {"GF_ACTION": 3},
     "LAND": {"GF_ACTION": 5},
 }
-PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION"), mavlink.MAV_PARAM_TYPE_INT32)
+PATIENCE = {"copter": ("FS_GCS_TIMEOUT", 2.0, 120.0), "rover": ("FS_GCS_TIMEOUT", 2.0, 120.0)}
+PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
+"""The parameter for the seconds until a link counts as lost, with its least and largest value."""
+
+PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), mavlink.MAV_PARAM_TYPE_INT32)
 """Types of parameters that are not of single precision."""
 
 
@@ -140,6 +162,11 @@ def is_px4(link: Link) -> bool:
 def lost_link_answers(link: Link, kind: str) -> Answers:
     """Return what the vehicle at a link can do by itself when it no longer hears the ground."""
     return PX4_LINK_LOST if is_px4(link) else LINK_LOST[kind]
+
+
+def patience(link: Link, kind: str) -> tuple[str, float, float] | None:
+    """Return the parameter for the seconds until a link counts as lost: name, least, largest."""
+    return PX4_PATIENCE if is_px4(link) else PATIENCE.get(kind)
 
 
 def breach_answers(link: Link, kind: str) -> Answers:

@@ -181,7 +181,8 @@ class Pilot:
 
     def _do(self, action: Action) -> None:
         if isinstance(action, Operate):
-            for command, params in ((action.command, action.params), *action.more):
+            self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
+            for command, params in action.more:
                 self._vehicle.operate(command, params)
             self._vehicle.rest(action.seconds)
         elif isinstance(action, Measure):

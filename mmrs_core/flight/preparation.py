@@ -46,15 +46,20 @@ def ask_for_messages(link: Link, *, geographic: bool) -> None:
             command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=2)
 
 
-def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rally: Sequence[Item]) -> None:
+def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rally: Sequence[Item]) -> int:
     """Replace mission, fence and rally points, and read back what the vehicle has kept.
+
+    Returns:
+        The id that the vehicle gave to the mission; 0 where it gives none.
 
     Raises:
         Refused: something is not accepted, or read back differently.
     """
+    marks = []
     for items, kind in ((mission, MISSION), (fence, FENCE), (rally, RALLY)):
-        upload(link, items, kind)
+        marks.append(upload(link, items, kind))
         verify(link, items, kind)
+    return marks[0]
 
 
 VEHICLES = {
@@ -103,13 +108,34 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
         raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
-def answer_lost_link(link: Link, kind: str, response: str) -> None:
+def answer_lost_link(link: Link, kind: str, response: str, after: float | None = None) -> str:
     """Have the vehicle respond by itself when it no longer hears the ground.
+
+    Args:
+        link: to the vehicle.
+        kind: ``copter``, ``sub`` or ``rover``.
+        response: of a policy.
+        after: seconds of silence until then; None: as it is set.
+
+    Returns:
+        What the vehicle does otherwise than wanted; empty if nothing.
 
     Raises:
         Refused: it cannot respond so, or does not say that it will.
     """
     _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
+    found = modes.patience(link, kind)
+    if after is None or found is None:
+        return ""
+    name, least, largest = found
+    seconds = min(max(after, least), largest)
+    if not parameters.write(link, name, seconds, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+        return f"the vehicle does not confirm {name} = {seconds:g}: it may respond sooner or later than that"
+    return (
+        ""
+        if seconds == after
+        else f"the vehicle responds to a lost link after {seconds:g} s, not {after:g} s"
+    )
 
 
 def answer_breach(link: Link, kind: str, response: str) -> None:

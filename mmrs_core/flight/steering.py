@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from .commands import command
 from .faults import NO_PROGRESS, Fault
 from .helm import Helm
-from .link import Link, Message
+from .link import Link
 from .places import bearing, distance, offset
 from .program import Geographic, Look, Object, Place
 from .telemetry import Telemetry
@@ -25,12 +25,13 @@ class Steering:
     """Steers a vehicle by position targets, which are sent again until it is there."""
 
     def __init__(self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float) -> None:
-        """Steer a vehicle; places within `acceptance` metres count as reached."""
+        """Steer a vehicle by the habits of its helm; places within `acceptance` metres count as reached."""
         self._link = link
         self._telemetry = telemetry
         self._helm = helm
         self._acceptance = acceptance
-        self._yaw = 0.0
+        self._yaw: float | None = None
+        self._speed: float | None = None
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
         """Go straight to a place; `through`: without a stop there.
@@ -40,6 +41,7 @@ class Steering:
         """
         self._helm.arm()
         self._helm.pace(speed)
+        self._speed = speed
         self._point(look)
         way = distance(self._telemetry.here(), place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
@@ -74,13 +76,13 @@ class Steering:
             self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
             self._helm.check()
 
-    def stay(self) -> None:
-        """Stay where the vehicle is, and look where it looked."""
-        self._send_target(self._telemetry.here(), self._yaw)
+    def stay(self, place: Place | None = None) -> None:
+        """Stay at a place, None: where the vehicle is, and look where it looks."""
+        self._send_target(self._telemetry.here() if place is None else place, self._heading())
 
     def _point(self, look: Look | None) -> None:
         if look is not None and look.gimbal and isinstance(look.at, Geographic):
-            at = (look.at.latitude, look.at.longitude, look.at.height)
+            at = (look.at.latitude, look.at.longitude, self._helm.habits.above(look.at.height))
             command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, look.device, 0, 0, 0, *at)
 
     def _unpoint(self, look: Look | None) -> None:
@@ -93,10 +95,10 @@ class Steering:
             self._yaw = _yaw(here, look)
         elif hypot(*offset(here, place)[:2]) > 1.0:
             self._yaw = bearing(here, place)
-        self._send_target(place, self._yaw)
+        self._send_target(place, self._heading() if self._yaw is None else self._yaw)
 
     def _send_target(self, place: Place, yaw: float) -> None:
-        self._link.send(_target(self._link, place, radians(yaw)))
+        self._helm.habits.aim(place, radians(yaw), self._speed)
 
     def _arrived(self, place: Place, through: bool) -> bool:
         near = distance(self._telemetry.here(), place) <= self._acceptance
@@ -107,46 +109,10 @@ class Steering:
 
     def _heading(self) -> float:
         told = self._telemetry.heading()
-        return self._yaw if told is None else told
+        return (self._yaw or 0.0) if told is None else told
 
 
 def _yaw(here: Place, look: Look) -> float:
     if isinstance(look.at, Object):
         raise ValueError(f"{look.at} has not been found yet")
     return (bearing(here, look.at) - look.angle - look.mount) % 360.0
-
-
-def _target(link: Link, place: Place, yaw: float) -> Message:
-    ignored = (
-        mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
-        | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
-    )
-    rest = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, yaw, 0.0)
-    if isinstance(place, Geographic):
-        return mavlink.MAVLink_set_position_target_global_int_message(
-            0,
-            link.system,
-            link.component,
-            mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
-            ignored,
-            round(place.latitude * 1e7),
-            round(place.longitude * 1e7),
-            place.height,
-            *rest,
-        )
-    return mavlink.MAVLink_set_position_target_local_ned_message(
-        0,
-        link.system,
-        link.component,
-        mavlink.MAV_FRAME_LOCAL_NED,
-        ignored,
-        place.north,
-        place.east,
-        -place.height,
-        *rest,
-    )

@@ -6,6 +6,7 @@ from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from .faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
 from .link import Link, Message
 from .program import Geographic, Local, Place
 from .readiness import lacks, unlocated
@@ -20,7 +21,22 @@ STALE_SECONDS = 3.0
 RECENT_SECONDS = 5.0
 """For how long an obstacle or a breach that was told counts."""
 
+IN_AIR = frozenset(
+    {
+        mavlink.MAV_LANDED_STATE_IN_AIR,
+        mavlink.MAV_LANDED_STATE_TAKEOFF,
+        mavlink.MAV_LANDED_STATE_LANDING,
+    }
+)
 OBSTACLE_METRES = 5.0
+FAILSAFE_WORDS = (
+    (POSITION_LOST, ("ekf failsafe", "gps failsafe", "position lost", "no valid position", "no position")),
+    (FENCE_BREACHED, ("fence breach", "geofence")),
+    (BATTERY_LOW, ("battery failsafe", "battery 1 is", "low battery", "critical battery", "battery level")),
+    (LINK_LOST, ("gcs failsafe", "gcs connection lost", "data link lost")),
+)
+"""What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
+
 CHARGE = {2: "low", 3: "critical", 4: "an emergency", 5: "failed", 6: "unhealthy"}
 BREACHES = {1: "too low", 2: "too high", 3: "at its boundary"}
 
@@ -103,6 +119,21 @@ class Telemetry:
             return speed, (degrees(atan2(estimated.wind_y, estimated.wind_x)) + 180.0) % 360.0
         return None
 
+    def failsafe(self) -> str | None:
+        """Return the event that the vehicle has just answered by itself, as it says; None if it has not."""
+        if self.position_trouble():
+            return POSITION_LOST
+        if self.breach():
+            return FENCE_BREACHED
+        now = self._link.clock.now()
+        said = [
+            text.text.lower() for text in self.texts.since(now - self._link.clock.patience(RECENT_SECONDS))
+        ]
+        for event, words in FAILSAFE_WORDS:
+            if any(word in text for text in said for word in words):
+                return event
+        return None
+
     def here(self) -> Place:
         """Return the position; home before there is one."""
         found = self._link.latest(self._position)
@@ -157,6 +188,11 @@ class Telemetry:
         """Return whether the vehicle says that it stands on the ground."""
         state = self._link.latest("EXTENDED_SYS_STATE")
         return bool(state is not None and state.landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
+
+    def airborne(self) -> bool:
+        """Return whether the vehicle says that it is in the air."""
+        state = self._link.latest("EXTENDED_SYS_STATE")
+        return state is not None and self.armed() and state.landed_state in IN_AIR
 
     def item(self) -> int:
         """Return the mission item that the vehicle is at; -1 where it does not say."""

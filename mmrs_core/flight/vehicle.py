@@ -34,7 +34,7 @@ class State:
 class Vehicle(Protocol):
     """What a robot's program needs of a vehicle."""
 
-    def answer_lost_link(self, response: str) -> None:
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Have the vehicle respond so by itself when it no longer hears the ground."""
         ...
 
@@ -66,8 +66,8 @@ class Vehicle(Protocol):
         """Stay for so many seconds."""
         ...
 
-    def operate(self, number: int, params: tuple[float, ...]) -> None:
-        """Have a device do something."""
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
+        """Have a device do something; `confirmed`: and wait for the image that it has promised to tell."""
         ...
 
     def measure(self, value: str) -> float | None:

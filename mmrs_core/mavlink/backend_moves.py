@@ -171,7 +171,8 @@ class Moves:
 
     def _operate(self, action: Operate) -> None:
         try:
-            for command, params in ((action.command, action.params), *action.more):
+            self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
+            for command, params in action.more:
                 self._vehicle.operate(command, params)
         except Unanswered as error:
             raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error

@@ -66,7 +66,7 @@ def test_a_run_without_stops_is_flown_as_a_mission(flown):
 def test_fence_and_rally_points_are_uploaded(flown):
     _, vehicles, _, _ = flown
     stores = vehicles["alpha"].autopilot.stores
-    assert [item.command for item in stores[1]] == [5002] * 4
+    assert [item.command for item in stores[1]] == [5002] * 8
     assert [item.command for item in stores[2]] == [5100]
     assert vehicles["alpha"].autopilot.parameters["FENCE_ENABLE"] == 1.0
 

@@ -73,7 +73,7 @@ def test_mavsdk_imports_each_item_of_a_list_as_it_stands_in_the_plan(folder, imp
 @pytest.mark.parametrize("robot", ["alpha", "beta"])
 def test_mavsdk_finds_fence_and_rally_point_in_a_plan_and_none_in_a_list(imported, robot):
     plan, listed = imported[f"{robot}.plan"], imported[f"{robot}.waypoints"]
-    assert [item[0] for item in plan["fence"]] == [5002] * 4
+    assert [item[0] for item in plan["fence"]] == [5002] * 8
     assert [item[0] for item in plan["rally"]] == [5100]
     assert (listed["fence"], listed["rally"]) == ([], [])
 
