@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli import (
+    bus,
     check,
     control,
     convert,
@@ -70,7 +71,7 @@ def app_for(arguments: Sequence[str], settings: Settings) -> typer.Typer:
     """
     app = _core_app()
     called = next((argument for argument in arguments if not argument.startswith("-")), None)
-    if called not in {*(name for name, _ in _COMMANDS), "plugin", "metamodel"}:
+    if called not in {*(name for name, _ in _COMMANDS), "plugin", "metamodel", "bus"}:
         _add_plugin_commands(app, settings, called)
     return app
 
@@ -98,6 +99,7 @@ def _core_app() -> typer.Typer:
         app.command(name)(command)
     app.add_typer(plugin.app, name="plugin")
     app.add_typer(metamodel.app, name="metamodel")
+    app.add_typer(bus.app, name="bus")
     return app
 
 

@@ -109,17 +109,33 @@ def shared_bus(
         OSError: if the folder cannot be written, or the carrier cannot begin.
         ValueError: if the folder holds slots of another run, or of an earlier start.
     """
+    recorded = None if records is None else recorded_of(program, robots, tuple(records))
+    return ProgramBus(node_of(program, robots, run, folder, carrier, recorded), program)
+
+
+def node_of(
+    program: Program,
+    robots: Sequence[str],
+    run: str,
+    folder: Path,
+    carrier: Carrier,
+    recorded: Mapping[str, Recorded] | None,
+) -> Node:
+    """Return a process's end of the bus; arguments and errors are those of `shared_bus`.
+
+    Args:
+        recorded: by robot, what the logs of those say that are started again.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     members = members_of(program)
     paths = {robot: folder / f"{Path(log_name(robot)).stem}.slots.ndjson" for robot in robots}
-    node = Node(
+    return Node(
         [members[robot] for robot in robots],
         run,
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]),
-        recorded=None if records is None else recorded_of(program, robots, tuple(records)),
+        recorded=recorded,
     )
-    return ProgramBus(node, program)
 
 
 def members_of(program: Program) -> dict[str, Member]:

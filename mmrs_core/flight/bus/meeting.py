@@ -73,6 +73,7 @@ def begin_together(
     robots: Sequence[str],
     guard: Callable[[str], None],
     now: Callable[[], float] = time.monotonic,
+    beside: Sequence[str] = (),
 ) -> Beginning:
     """Return when all robots begin, with how well this one does.
 
@@ -83,7 +84,10 @@ def begin_together(
         robots: all that begin together.
         guard: called again and again meanwhile with what is still missing; raises what should end it.
         now: the clock of the node.
+        beside: further robots of this process that are ready and begin with this one.
     """
+    for other in beside:
+        _Asking(node, other, run, min(robots), len(set(robots)), now).report(guard)
     asking = _Asking(node, robot, run, min(robots), len(set(robots)), now)
     why = "nobody has answered yet"
     while not asking.at or (asking.trips < ROUND_TRIPS and asking.left() > GLANCE_SECONDS):
@@ -129,6 +133,11 @@ class _Asking:
             return f"no answer from {self._first!a}"
         self._learn(found[0][0], asked, found[0][1])
         return found[0][0].why
+
+    def report(self, guard: Callable[[str], None]) -> None:
+        """Have it known that the robot is ready."""
+        while self.shortest == float("inf"):
+            guard(self.ask() or "nobody has answered yet")
 
     def _learn(self, answer: Answer, asked: float, heard: float) -> None:
         if answer.what == "begin":

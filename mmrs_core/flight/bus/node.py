@@ -149,6 +149,10 @@ class Node:
         """Return the robots of this process."""
         return tuple(self._members)
 
+    def slots_of(self, robot: str) -> tuple[str, ...]:
+        """Return the names of the slots of a robot of this process."""
+        return self._members[robot].owned.slots
+
     def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
@@ -468,6 +472,12 @@ class Delivery:
         """Return the owners that have still to answer or, once it was sent, to acknowledge."""
         with self.node._changed:
             return self.errand.waiting
+
+    @property
+    def is_over(self) -> bool:
+        """Return whether nothing is left to be done for it."""
+        with self.node._changed:
+            return self.errand.is_over
 
     @property
     def refusals(self) -> Mapping[str, str]:

@@ -13,7 +13,6 @@ import threading
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
@@ -21,7 +20,7 @@ from typing import Any
 import zenoh
 
 from .carrier import Answered, Station
-from .words import LONGEST
+from .words import LONGEST, digest
 
 LEASE_MILLISECONDS = 1500
 """After so long without a sign a frozen peer counts as lost."""
@@ -29,6 +28,13 @@ LEASE_MILLISECONDS = 1500
 ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
 
+_FILES = (
+    "root_ca_certificate",
+    "listen_private_key",
+    "listen_certificate",
+    "connect_private_key",
+    "connect_certificate",
+)
 RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
 
 
@@ -194,11 +200,6 @@ class ZenohCarrier:
         return f"{self._prefix}/{digest(robot)}/{what}{ending}"
 
 
-def digest(name: str) -> str:
-    """Return a name as keys hold it."""
-    return sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:24]
-
-
 def configuration(endpoints: Endpoints) -> Any:
     """Return Zenoh's configuration.
 
@@ -221,10 +222,16 @@ def configuration(endpoints: Endpoints) -> Any:
 
 
 def _from_file(path: Path) -> Any:
+    """Return the configuration in a file; names of files in it are those of files beside it."""
     try:
-        return zenoh.Config.from_file(str(path))
+        config = zenoh.Config.from_file(str(path))
     except zenoh.ZError as error:
         raise OSError(f"{path}: cannot be read as a configuration of Zenoh: {error}") from error
+    for name in _FILES:
+        found = json.loads(config.get_json(f"transport/link/tls/{name}"))
+        if isinstance(found, str) and not Path(found).is_absolute():
+            _insert(config, f"transport/link/tls/{name}", str((path.parent / found).absolute()))
+    return config
 
 
 def _insert(config: Any, name: str, value: object) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from typing import Any, TypeAlias
 
 SlotId: TypeAlias = tuple[str, str]
@@ -142,6 +143,11 @@ class Answer:
 
 class Unreadable(ValueError):  # noqa: N818  # said of a message, as in 'unreadable message'
     """A message that is none of ours."""
+
+
+def digest(name: str) -> str:
+    """Return a name as keys hold it: nothing of it can be read as a part of a key."""
+    return sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:24]
 
 
 def written(message: Request | Answer) -> str:

@@ -1,0 +1,239 @@
+"""``mmrs bus``: what robots on different machines need to keep their slots together."""
+
+from __future__ import annotations
+
+import json as json_format
+import re
+import signal
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mmrs_core.cli.output import counted, say, say_json, tell
+from mmrs_core.cli.parameters import Behaviour, behaviour_file
+from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.errors import LinkLostError, UnreadableError
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from mmrs_core.behaviour.program import Program
+    from mmrs_core.cli.bus_access import Holder
+    from mmrs_core.flight.bus import Node, Recorded
+    from mmrs_core.flight.bus.gateway import Gateway
+    from mmrs_core.flight.bus.over_zenoh import Endpoints
+
+app = typer.Typer(
+    rich_markup_mode=None,
+    help="Slots of robots on different machines: keys, a gateway for programs without Zenoh, their state.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+
+Listen = Annotated[
+    list[str] | None,
+    typer.Option("--listen", metavar="ENDPOINT", help="To listen at, such as tcp/0.0.0.0:7447; repeatable."),
+]
+Connect = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--connect", metavar="ENDPOINT", help="Of another process, as tcp/10.0.0.2:7447; repeatable."
+    ),
+]
+Config = Annotated[
+    Path | None,
+    typer.Option("--config", metavar="FILE", help="Zenoh's configuration, as mmrs bus keys makes it."),
+]
+Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Identifier of the run.")]
+
+_HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+
+
+@app.callback()
+def bus() -> None:
+    """Slots of robots on different machines: keys, a gateway for programs without Zenoh, their state."""
+
+
+@app.command("keys")
+def keys(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write.")],
+    robots: Annotated[
+        list[str],
+        typer.Option(
+            "--robot", metavar="NAME", help="A robot, or NAME=ROBOT,ROBOT: a process that runs several."
+        ),
+    ],
+    hosts: Annotated[
+        list[str] | None,
+        typer.Option("--host", metavar="HOST", help="By which they are reached; repeatable."),
+    ] = None,
+    days: Annotated[int, typer.Option("--days", min=1, max=36_500, help="How long they are valid.")] = 730,
+    json: Json = False,
+) -> int:
+    """Make certificates, and configurations by which each robot can speak only for itself.
+
+    DIR/NAME holds all that the machine of that robot needs: copy it there, and give its bus.json5 to the
+    controller as --bus-config. DIR/observer is for looking on. The authority's key stays with you. Call
+    it again with all robots to add one: what there is, is kept.
+
+    Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
+    """
+    from datetime import UTC, datetime
+
+    from mmrs_core.cli.bus_certificates import make_keys
+
+    holders = tuple(_holder(text) for text in robots)
+    _refuse_doubles(holders)
+    try:
+        made = make_keys(folder, holders, hosts or ["localhost", "127.0.0.1"], datetime.now(UTC), days)
+    except OSError as error:
+        raise UnreadableError(f"{error.filename}: {error.strerror}") from error
+    except ValueError as error:
+        raise UnreadableError(str(error)) from error
+    if json:
+        say_json({"folders": [str(each) for each in made]})
+    else:
+        for each in made:
+            say(f"written: {each}")
+    return 0
+
+
+@app.command("gateway")
+def gateway(
+    call: typer.Context,
+    behaviour: Behaviour,
+    robot: Annotated[str, typer.Option("--robot", metavar="NAME", help="For which a program speaks.")],
+    listen: Listen = None,
+    connect: Connect = None,
+    config: Config = None,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65_535, help="Of this machine, for the program; 0: any.")
+    ] = 0,
+    run: Run = "run-0",
+    log: Annotated[
+        Path, typer.Option("--log", metavar="DIR", help="Where slots are kept, and gateway.json.")
+    ] = Path("logs"),
+) -> int:
+    """Let a program without Zenoh (Ada, C, Lua) take part as one robot, by lines of JSON over TCP.
+
+    The program reads port and token from DIR/gateway.json; the page "bus" shows a session. When the
+    program goes without having ended, or this gateway does, the robot is lost to the others. It runs
+    until it is interrupted.
+
+    Example: mmrs bus gateway survey.bl.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
+    """
+    from mmrs_core.cli.behaviours import load_program
+    from mmrs_core.cli.journey import Workshop
+    from mmrs_core.flight.bus.over_zenoh import Endpoints
+
+    program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
+    if robot not in {each.id for each in program.robots}:
+        raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
+    endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
+    try:
+        found = _gateway(program, robot, endpoints, run, log, port)
+    except OSError as error:
+        raise LinkLostError(f"gateway: {error.strerror or error}") from error
+    tell(f"gateway of '{robot}' at 127.0.0.1:{found.port}; its token stands in {log / 'gateway.json'}")
+    _until_interrupted(found)
+    return 0
+
+
+@app.command("state")
+def state(
+    mission: Annotated[str, typer.Argument(metavar="MISSION", help="Name of the mission.")],
+    listen: Listen = None,
+    connect: Connect = None,
+    config: Config = None,
+    run: Run = "run-0",
+    robots: Annotated[
+        list[str] | None, typer.Option("--robot", metavar="NAME", help="Whose slots; repeatable.")
+    ] = None,
+    seconds: Annotated[float, typer.Option("--seconds", min=0.1, help="To wait for answers.")] = 2.0,
+    json: Json = False,
+) -> int:
+    """Show the slots of all robots that can be reached.
+
+    Exit codes: 0 where all robots that were asked for have answered, 5 where one has not.
+
+    Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
+    """
+    from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
+    from mmrs_core.flight.bus.words import digest
+
+    endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
+    try:
+        answers = states_of(mission, run, endpoints, seconds)
+    except OSError as error:
+        raise LinkLostError(str(error)) from error
+    names = {digest(robot): robot for robot in robots or ()}
+    known = {names.get(key, key): json_format.loads(text) for key, text in sorted(answers.items())}
+    shown = {name: slots for name, slots in known.items() if not names or name in names.values()}
+    missing = [name for name in names.values() if name not in shown]
+    if json:
+        say_json({"slots": shown, "missing": missing})
+    else:
+        _say_states(shown, missing)
+    return LinkLostError.exit_code if missing or not shown else 0
+
+
+def _holder(text: str) -> Holder:
+    from mmrs_core.cli.bus_access import Holder
+
+    name, separator, robots = text.partition("=")
+    if not _HOLDER.fullmatch(name) or name in ("observer", "authority"):
+        raise typer.BadParameter(
+            f"--robot {text}: a folder is named so: letters, digits, . _ - only; say NAME=ROBOT for others"
+        )
+    return Holder(name, tuple(robots.split(",")) if separator else (name,))
+
+
+def _refuse_doubles(holders: tuple[Holder, ...]) -> None:
+    names = [holder.name for holder in holders]
+    robots = [robot for holder in holders for robot in holder.robots]
+    for given in (names, robots):
+        for name in given:
+            if given.count(name) > 1:
+                raise typer.BadParameter(f"--robot {name}: given twice")
+
+
+def _gateway(
+    program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
+) -> Gateway:
+    from mmrs_core.flight.bus.gateway import Gateway
+    from mmrs_core.flight.bus.over_zenoh import ZenohCarrier
+    from mmrs_core.runtime.slots import node_of
+
+    names = [each.id for each in program.robots]
+
+    def enter(recorded: Recorded | None) -> Node:
+        carrier = ZenohCarrier(program.name, run, names, endpoints)
+        given = None if recorded is None else {robot: recorded}
+        return node_of(program, [robot], run, folder, carrier, given)
+
+    folder.mkdir(parents=True, exist_ok=True)
+    return Gateway(robot, run, enter, folder, port)
+
+
+def _until_interrupted(found: Gateway) -> None:
+    def stop(number: int, frame: FrameType | None) -> None:
+        threading.Thread(target=found.close).start()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    found.serve(tell)
+
+
+def _say_states(shown: dict[str, dict[str, dict[str, object]]], missing: list[str]) -> None:
+    for robot, slots in shown.items():
+        say(f"{robot}: {counted(len(slots), 'slot')}")
+        for name, found in slots.items():
+            word = "active" if found["active"] else "inactive"
+            by = f", set by '{found['writer']}'" if found["writer"] else ""
+            say(f"  {name}: {word}{by}")
+    for robot in missing:
+        tell(f"'{robot}': no answer")
+    if not shown and not missing:
+        tell("nobody has answered")

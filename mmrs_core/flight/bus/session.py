@@ -1,0 +1,176 @@
+"""One program at a gateway: what it asks, and what it is told."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import IO, Any
+
+from .meeting import begin_together
+from .node import Delivery, Node
+from .words import LONGEST, CommandId, Unreadable, flag_in, names_in, number_in, object_in, text_in
+
+WAITING_SECONDS = 1.0
+"""How often a program is told for whom its notify waits."""
+
+
+class Session:
+    """Serves one program until it goes."""
+
+    def __init__(self, robot: str, run: str, node: Node, connection: socket.socket) -> None:
+        """Speak for a robot at an end of the bus."""
+        self._robot, self._run, self._node, self._connection = robot, run, node, connection
+        self._turn = threading.Lock()
+        self._deliveries: dict[int, Delivery] = {}
+        self._told: dict[int, str] = {}
+        self._told_waiting = 0.0
+        self._look = threading.Event()
+        self._changed = False
+        self._over = threading.Event()
+        self._slots = node.slots_of(robot)
+        node.on_change(self._take_note)
+
+    def run(self, lines: IO[bytes]) -> None:
+        """Answer every line, and tell what changes, until the program goes."""
+        teller = threading.Thread(target=self._tell_news, name="gateway news", daemon=True)
+        teller.start()
+        slots = list(self._slots)
+        self._say({"is": "welcome", "robot": self._robot, "run": self._run, "slots": slots})
+        try:
+            while line := lines.readline(LONGEST + 1):
+                with self._turn:
+                    self._say(self._answer(line))
+                self._look.set()
+        except OSError:
+            self._over.set()  # the connection broke: the program has gone
+        self._over.set()
+        self._look.set()
+        teller.join()
+
+    def hang_up(self) -> None:
+        """End the connection."""
+        try:
+            self._connection.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            self._over.set()
+
+    def _answer(self, line: bytes) -> Mapping[str, object]:
+        try:
+            content = object_in(line)
+            what = text_in(content, "do")
+            if what not in self._ANSWERS:
+                raise Unreadable(f"{what!a}: nothing that can be done here")
+            return self._ANSWERS[what](self, content)
+        except (ValueError, KeyError, OSError) as error:
+            return {"is": "wrong", "why": str(error)}
+
+    def _prepare(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        number, active = number_in(content, "number"), flag_in(content, "active")
+        if number in self._deliveries:
+            raise Unreadable(f"number {number}: used already")
+        slots = tuple(_slot(each) for each in content.get("slots", ()))
+        if not slots:
+            raise Unreadable("slots: none")
+        id = CommandId(self._run, self._robot, "", number)
+        self._deliveries[number] = self._node.prepare(id, slots, active)
+        return {"is": "asked", "number": number}
+
+    def _send(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        number = number_in(content, "number")
+        self._deliveries[number].send(number_in(content, "lamport"))
+        return {"is": "sent", "number": number}
+
+    def _withdraw(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        number = number_in(content, "number")
+        self._deliveries.pop(number).withdraw()
+        return {"is": "withdrawn", "number": number}
+
+    def _state(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        return {"is": "state", "slots": json.loads(self._node.shown(self._robot))}
+
+    def _pass(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        slots = [(self._robot, name) for name in names_in(content, "slots")]
+        passed = self._node.passed(slots, number_in(content, "lamport"))
+        return {"is": "passed" if passed else "held"}
+
+    def _lost(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        return {"is": "lost", "robots": list(self._node.lost(names_in(content, "robots")))}
+
+    def _begin(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        until = time.monotonic() + number_in(content, "seconds", 60)
+
+        def guard(why: str) -> None:
+            if time.monotonic() > until:
+                raise Unreadable(f"not everybody is ready: {why}")
+
+        begun = begin_together(self._node, self._robot, self._run, names_in(content, "robots"), guard)
+        return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
+
+    def _leave(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        self._node.leave(self._robot)
+        return {"is": "left"}
+
+    def _take_note(self) -> None:
+        self._changed = True
+        self._look.set()
+
+    def _tell_news(self) -> None:
+        while not self._over.is_set():
+            self._look.wait(WAITING_SECONDS)
+            self._look.clear()
+            with self._turn:
+                if self._changed:
+                    self._changed = False
+                    self._say({"is": "changed"})
+                for number, delivery in tuple(self._deliveries.items()):
+                    self._tell_delivery(number, delivery)
+
+    def _tell_delivery(self, number: int, delivery: Delivery) -> None:
+        what, more = _progress(delivery)
+        now = time.monotonic()
+        again = what == "waiting" and now - self._told_waiting >= WAITING_SECONDS
+        if self._told.get(number) == what and not again:
+            return
+        if what == "waiting":
+            self._told_waiting = now
+        self._told[number] = what
+        self._say({"is": what, "number": number, **more})
+        if what == "acknowledged":
+            self._deliveries.pop(number, None)
+
+    def _say(self, content: Mapping[str, object]) -> None:
+        try:
+            self._connection.sendall(json.dumps(content).encode() + b"\n")
+        except OSError:
+            self._over.set()  # the program has gone: reading ends, too
+
+    _ANSWERS: Mapping[str, Callable[[Session, Mapping[str, Any]], Mapping[str, object]]] = {
+        "prepare": _prepare,
+        "send": _send,
+        "withdraw": _withdraw,
+        "state": _state,
+        "pass": _pass,
+        "lost": _lost,
+        "begin": _begin,
+        "leave": _leave,
+    }
+
+
+def _slot(each: object) -> tuple[str, str]:
+    if not isinstance(each, list) or len(each) != 2 or not all(isinstance(part, str) for part in each):
+        raise Unreadable("slots: no lists of robot and slot")
+    return each[0], each[1]
+
+
+def _progress(delivery: Delivery) -> tuple[str, Mapping[str, object]]:
+    """Return how far a notify is, in a word and with what belongs to it."""
+    if delivery.refusals:
+        return "refused", {"why": "; ".join(delivery.refusals.values())}
+    if delivery.waiting:
+        return "waiting", {"for": list(delivery.waiting)}
+    if delivery.is_over:
+        return "acknowledged", {}
+    return "granted", {"lamport": delivery.lamport}
