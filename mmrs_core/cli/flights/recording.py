@@ -67,7 +67,7 @@ def _lines(
     common = {"run": run, "robot": robot.id}
 
     def line(time: float, kind: str, **content: object) -> str:
-        whole = {**common, "time": round(time, 3), "wall": "", "kind": kind, **content}
+        whole = {**common, "time": round(time, 6), "wall": "", "kind": kind, **content}
         return json.dumps(whole, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
     yield line(0.0, "start", link=SIMULATION, vehicle=kind, firmware="", home=None, versions={})

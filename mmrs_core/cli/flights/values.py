@@ -14,6 +14,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
 
+_OFTEN = 0.5
 Flags: TypeAlias = NDArray[np.bool_]
 
 
@@ -41,9 +42,13 @@ class Track:
         return tuple((float(self.times[i]), float(self.times[i + 1])) for i in found)
 
     def at(self, time: float) -> Position | None:
-        """Return where the robot was; None before the first fix, after the last, and in a gap."""
-        if not len(self.times) or not self.times[0] <= time <= self.times[-1]:
+        """Return where the robot was; None before the first fix, after the last, and in a gap.
+
+        At the ends, half a second does not matter: fixes come that often.
+        """
+        if not len(self.times) or not self.times[0] - _OFTEN <= time <= self.times[-1] + _OFTEN:
             return None
+        time = min(max(time, float(self.times[0])), float(self.times[-1]))
         after = min(int(np.searchsorted(self.times, time, side="right")), len(self.times) - 1)
         before = max(after - 1, 0)
         since, until = self.times[before], self.times[after]

@@ -33,7 +33,7 @@ def test_a_simulated_run_is_read_back_as_it_was(flight, run):
         assert flown.simulated
         assert flown.records == tuple(record for record in run.records if record.robot == robot)
         for sample in track:
-            assert flown.track.at(round(sample.time, 3)) == pytest.approx(sample.position, abs=0.02)
+            assert flown.track.at(sample.time) == pytest.approx(sample.position, abs=0.002)
 
 
 def test_a_flight_without_black_boxes_has_steps_and_no_places(flight, folder):

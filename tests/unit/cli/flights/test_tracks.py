@@ -79,9 +79,15 @@ def test_between_two_fixes_a_robot_went_straight():
 
 def test_before_the_first_fix_and_after_the_last_nobody_knows():
     _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
-    assert track.at(0.9) is None
-    assert track.at(2.1) is None
+    assert track.at(0.4) is None
+    assert track.at(2.6) is None
     assert track.at(2.0) == pytest.approx((100.0, -40.0, 11.0))
+
+
+def test_half_a_second_beyond_the_ends_does_not_matter():
+    _, track = track_of([fix(1.0, local(0, 0, 0)), fix(2.0, local(10, 0, 4))])
+    assert track.at(0.6) == pytest.approx((100.0, -50.0, 7.0))
+    assert track.at(2.4) == pytest.approx((100.0, -40.0, 11.0))
 
 
 def test_in_a_gap_nobody_knows():
