@@ -9,7 +9,10 @@ from contextlib import contextmanager
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core import flight
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.link import Link
+from mmrs_core.flight.ports import NOTHING, open_port
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
 
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
@@ -45,7 +48,7 @@ class Port:
     def read(self, seconds: float):
         self.reads += 1
         threading.Event().wait(seconds)
-        return flight.ports.NOTHING
+        return NOTHING
 
     def write(self, data: bytes, to=None) -> None:
         raise OSError("no buffer space")
@@ -56,8 +59,8 @@ class Port:
 
 def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason():
     with hangs_up_after(0.1) as url:
-        link = flight.link.Link(flight.ports.open_port(url), flight.clock.Clock())
-        with pytest.raises(flight.faults.Fault, match="has closed the connection") as fault:
+        link = Link(open_port(url), Clock())
+        with pytest.raises(Fault, match="has closed the connection") as fault:
             link.wait(lambda: None, 30.0)
         assert fault.value.event == "LINK_LOST"
         assert not link.listening
@@ -65,7 +68,7 @@ def test_a_link_whose_peer_hangs_up_ends_every_wait_with_the_reason():
 
 
 def test_what_cannot_be_sent_is_lost_and_the_link_says_why():
-    link = flight.link.Link(Port(), flight.clock.Clock())
+    link = Link(Port(), Clock())
     link.send(mavlink.MAVLink_mission_ack_message(1, 1, 0, 0))
     assert link.trouble == "no buffer space"
     assert link.listening

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core import flight
 from mmrs_core.behaviour.program import Transition
+from mmrs_core.flight.modes import LINK_LOST
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,
@@ -76,4 +76,4 @@ def test_a_target_knows_what_each_kind_of_vehicle_can_do_by_itself(kind):
     from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB
 
     (vehicle,) = (each for each in (COPTER, SUB, ROVER) if each.name == kind)
-    assert set(flight.modes.LINK_LOST[kind]) == vehicle.alone
+    assert set(LINK_LOST[kind]) == vehicle.alone

@@ -10,6 +10,12 @@ from pathlib import Path
 import pytest
 
 from mmrs_core import flight
+from mmrs_core.flight import missions
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.commands import command
+from mmrs_core.flight.link import Link
+from mmrs_core.flight.ports import open_port
+from mmrs_core.flight.uploads import mission_of
 
 PEERS = Path(__file__).parents[2] / "peers"
 
@@ -43,7 +49,7 @@ class Peer:
 @pytest.fixture
 def link(free_port):
     port = free_port()
-    made = flight.link.Link(flight.ports.open_port(f"udpin:127.0.0.1:{port}"), flight.clock.Clock())
+    made = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock())
     yield made, str(port)
     made.close()
 
@@ -62,14 +68,14 @@ def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
         ),
         runs=(flight.Run(("a", "b", "c"), (1.0, 0.0, 1.0)),),
     )
-    items, _ = flight.uploads.mission_of(robot)
+    items, _ = mission_of(robot)
     with Peer("mavsdk_autopilot.py", port) as peer:
         assert made.wait(lambda: made.component, 30.0), "MAVSDK is not heard"
         assert peer.next()["what"] == "ready"
-        flight.missions.upload(made, items)
+        missions.upload(made, items)
         found = peer.next()
         assert [item[0] for item in found["items"]] == [16, 178, 16, 16, 16, 17]
         assert found["items"][2] == [16, 3, 423701000, 133500000, 20.0, 1.0, 0.0]
-        flight.missions.verify(made, items)
-        flight.commands.command(made, 400, 1)
+        missions.verify(made, items)
+        command(made, 400, 1)
         assert peer.next() == {"what": "arm", "arm": True}

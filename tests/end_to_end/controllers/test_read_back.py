@@ -6,7 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core import flight
+from mmrs_core.flight import missions
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.link import Link
+from mmrs_core.flight.ports import open_port
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100
@@ -18,7 +22,7 @@ MISSION, FENCE, RALLY = 0, 1, 2
 def linked(free_port):
     """Return a link, and the simulated vehicle at its end."""
     port = free_port()
-    link = flight.link.Link(flight.ports.open_port(f"udpin:127.0.0.1:{port}"), flight.clock.Clock(20.0))
+    link = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock(20.0))
     with SimulatedVehicle(port, Settings(boot=0.0, ready=0.0), speedup=20.0) as vehicle:
         assert link.wait(lambda: link.component, 600.0)
         yield link, vehicle
@@ -31,12 +35,12 @@ def read_back(linked):
     link, vehicle = linked
 
     def verify(kind: int, given, **kept) -> None:
-        home = flight.missions.Item(WAYPOINT, x=423_700_000, y=133_500_000)
+        home = missions.Item(WAYPOINT, x=423_700_000, y=133_500_000)
         items = [home, given] if kind == MISSION else [given]
-        flight.missions.upload(link, items, kind)
+        missions.upload(link, items, kind)
         store = vehicle.autopilot.stores[kind]
         store[-1] = replace(store[-1], **kept)
-        flight.missions.verify(link, items, kind)
+        missions.verify(link, items, kind)
 
     return verify
 
@@ -44,7 +48,7 @@ def read_back(linked):
 @pytest.fixture
 def item():
     """Return a function that makes an item 20.5 m above home."""
-    return lambda command, frame=RELATIVE: flight.missions.Item(
+    return lambda command, frame=RELATIVE: missions.Item(
         command, x=423_701_000, y=133_500_000, z=20.5, frame=frame
     )
 
@@ -58,13 +62,13 @@ def test_the_same_frame_by_another_number_is_no_difference(read_back, item, fram
 @pytest.mark.parametrize("frame", [SEA, SEA_INT, TERRAIN, TERRAIN_INT, 1])
 @pytest.mark.parametrize(("kind", "command"), [(MISSION, WAYPOINT), (RALLY, RALLY_POINT)])
 def test_a_height_above_something_else_is_refused(read_back, item, frame, kind, command):
-    with pytest.raises(flight.faults.Refused, match="instead of"):
+    with pytest.raises(Refused, match="instead of"):
         read_back(kind, item(command), frame=frame)
 
 
 @pytest.mark.parametrize("frame", [SEA, RELATIVE, NO_FRAME])
 def test_the_frame_of_an_item_without_a_place_means_nothing(read_back, frame):
-    paced = flight.missions.Item(SPEED, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)
+    paced = missions.Item(SPEED, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)
     read_back(MISSION, paced, frame=frame)
 
 
@@ -73,17 +77,17 @@ def test_a_fence_is_given_back_without_heights(read_back, item):
 
 
 def test_a_corner_of_a_fence_somewhere_else_is_refused(read_back, item):
-    with pytest.raises(flight.faults.Refused, match="fence: item 0"):
+    with pytest.raises(Refused, match="fence: item 0"):
         read_back(FENCE, item(VERTEX), frame=SEA, z=0.0, x=423_701_100)
 
 
 def test_a_rally_point_keeps_whole_metres(read_back, item):
     read_back(RALLY, item(RALLY_POINT), z=20.0)
-    with pytest.raises(flight.faults.Refused):
+    with pytest.raises(Refused):
         read_back(RALLY, item(RALLY_POINT), z=18.0)
 
 
 def test_a_waypoint_keeps_centimetres(read_back, item):
     read_back(MISSION, item(WAYPOINT), z=20.49)
-    with pytest.raises(flight.faults.Refused):
+    with pytest.raises(Refused):
         read_back(MISSION, item(WAYPOINT), z=20.0)
