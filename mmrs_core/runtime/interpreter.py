@@ -186,8 +186,10 @@ class _Run:
                 self._look_after_stopping()
                 if not self._deadlock and self._is_quiet():
                     self._deadlock = self._waiting()
+                if self._made >= self._terms.steps or self._is_over():
+                    break
                 until = self._next_wake()
-                if self._made >= self._terms.steps or until > self._terms.seconds or self._is_over(until):
+                if until > self._terms.seconds or (until == inf and not self._clock.passes_by_itself):
                     break
                 self._clock.sleep_until(until)
                 self._wake()
@@ -365,15 +367,17 @@ class _Run:
             if robot.id in called or (BUS in called and affected):
                 heappush(self._ready, order)
 
-    def _is_over(self, until: float) -> bool:
-        """Return whether nothing will happen any more."""
+    def _is_over(self) -> bool:
+        """Return whether nothing will happen any more in real time."""
         if not self._clock.passes_by_itself:
-            return until == inf
+            return False
         if any(robot.stopping or self._is_watched(robot) for robot in self._robots):
             return False
         working = [robot for robot in self._robots if not robot.point.is_final and not robot.suspended]
         if not working or (self._is_quiet() and not self._is_patient()):
-            return self._clock.now() >= self._patience_ends(begin=True)
+            ends = self._patience_ends(begin=True)
+            return ends <= self._clock.now()
+        self._idle_since = None
         return False
 
     def _is_watched(self, robot: RunningRobot) -> bool:
@@ -384,7 +388,6 @@ class _Run:
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
         if not any(robot.suspended for robot in self._robots):
-            self._idle_since = None
             return -inf if begin else inf
         if begin and self._idle_since is None:
             self._idle_since = self._clock.now()

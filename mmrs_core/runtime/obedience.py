@@ -27,8 +27,8 @@ class Obedience:
         concerned: list[str] = []
         for order in self._orders.taken():
             self._open.append(order)
+            concerned += (id for id in order.robots if id in self._robots)
             for id in order.robots:
-                concerned.append(id)
                 self._begin(order, id)
         for order in self._open:
             self._look(order)
@@ -48,7 +48,8 @@ class Obedience:
 
     def give_up(self) -> None:
         """Tell all orders that are still open that the run has ended."""
-        for order in (*self._open, *self._orders.taken()):
+        self._orders.close("the run has ended")
+        for order in self._open:
             for id in order.open:
                 order.refuse(id, "the run has ended")
 

@@ -75,6 +75,7 @@ class Orders:
         self.on_stop = on_stop
         self.called: Callable[[], None] = lambda: None
         self._waiting: deque[Order] = deque()
+        self._closed = ""
 
     @property
     def waiting(self) -> bool:
@@ -99,8 +100,17 @@ class Orders:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
         order = Order(kind, tuple(robots), question, answer, told)
         self._waiting.append(order)
+        if self._closed:
+            self.close(self._closed)
         self.called()
         return order
+
+    def close(self, why: str) -> None:
+        """Refuse all orders that nobody has looked at, and those to come."""
+        self._closed = why
+        for order in self.taken():
+            for robot in order.open:
+                order.refuse(robot, why)
 
     def response(self, kind: str) -> str:
         """Return what a robot does when its program is ended by such an order."""

@@ -104,7 +104,9 @@ def test_without_a_name_the_core_simulates():
 
 
 def test_a_name_that_nobody_contributed_is_refused_with_the_nearest():
-    with pytest.raises(UnsupportedError, match=r"'jumpr': not known; there are jumper, mavlink, simulation; .*jumper"):
+    with pytest.raises(
+        UnsupportedError, match=r"'jumpr': not known; there are jumper, mavlink, simulation; .*jumper"
+    ):
         simulated(Jumping(), backend="jumpr")
 
 
