@@ -1,0 +1,134 @@
+"""The thread that has a vehicle do things: interruptions, pauses, faults."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from mmrs_core.flight.faults import CRASHED, LINK_LOST, Fault
+from mmrs_core.mavlink.backend_worker import Job, Worker
+
+
+class Yard:
+    """A worker, and what it did."""
+
+    def __init__(self):
+        self.did, self.news, self.trouble = [], threading.Event(), None
+        self.worker = Worker("of a test", self.watch, self.watch, lambda: self.did.append("halted"))
+        self.worker.changed = self.news.set
+
+    def watch(self):
+        if self.trouble is not None:
+            raise self.trouble
+
+    def do(self, word):
+        return lambda: self.did.append(word)
+
+    def wait(self, word, seconds=30.0):
+        """Return a part of a job that takes time, as waits for vehicles do."""
+
+        def part():
+            self.did.append(word)
+            until = time.monotonic() + seconds
+            while time.monotonic() < until:
+                self.worker.guard()
+                time.sleep(0.001)
+
+        return part
+
+    def until(self, test):
+        end = time.monotonic() + 20.0
+        while not test():
+            assert time.monotonic() < end, self.did
+            time.sleep(0.002)
+
+
+@pytest.fixture
+def yard():
+    made = Yard()
+    yield made
+    made.worker.close()
+
+
+def test_parts_are_done_in_order_and_the_end_is_told(yard):
+    yard.worker.begin(Job(yard.do("one"), yard.do("two")))
+    assert yard.news.wait(20.0)
+    assert yard.did == ["one", "two"]
+    assert yard.worker.done
+
+
+def test_a_new_job_ends_the_old_one_at_once(yard):
+    yard.worker.begin(Job(yard.wait("old"), yard.do("never")))
+    yard.until(lambda: yard.did == ["old"])
+    yard.worker.begin(Job(yard.do("new")))
+    yard.until(lambda: yard.worker.done)
+    assert yard.did == ["old", "new"]
+
+
+def test_a_pause_halts_and_the_interrupted_part_is_begun_again(yard):
+    yard.worker.begin(Job(yard.do("before"), yard.wait("under way", 0.3), yard.do("after")))
+    yard.until(lambda: "under way" in yard.did)
+    yard.worker.pause()
+    yard.until(lambda: yard.worker.halted)
+    assert not yard.worker.done
+    yard.worker.resume()
+    yard.until(lambda: yard.worker.done)
+    assert yard.did == ["before", "under way", "halted", "under way", "after"]
+
+
+def test_a_job_given_while_it_pauses_waits(yard):
+    yard.worker.pause()
+    yard.until(lambda: yard.worker.halted)
+    yard.worker.begin(Job(yard.do("later")))
+    time.sleep(0.2)
+    assert yard.did == ["halted"]
+    yard.worker.resume()
+    yard.until(lambda: yard.worker.done)
+    assert yard.did == ["halted", "later"]
+
+
+def test_a_fault_ends_the_job_and_stays(yard):
+    yard.worker.begin(Job(yard.wait("under way")))
+    yard.until(lambda: yard.did)
+    yard.trouble = Fault(LINK_LOST, "silence")
+    assert yard.news.wait(20.0)
+    assert yard.worker.fault is yard.trouble
+
+
+def test_a_fault_is_noticed_while_there_is_nothing_to_do(yard):
+    yard.trouble = Fault(LINK_LOST, "silence")
+    assert yard.news.wait(20.0)
+    assert yard.worker.fault is yard.trouble
+
+
+def test_nothing_more_is_done_after_a_fault_until_something_is_begun_afresh(yard):
+    yard.trouble = Fault(LINK_LOST, "silence")
+    assert yard.news.wait(20.0)
+    yard.trouble = None
+    yard.worker.begin(Job(yard.do("no")))
+    time.sleep(0.2)
+    assert yard.did == []
+    yard.worker.begin(Job(yard.do("yes")), afresh=True)
+    yard.until(lambda: yard.worker.done)
+    assert yard.did == ["yes"]
+    assert yard.worker.fault is None
+
+
+def test_what_a_part_raises_is_a_fault_of_the_robot_and_the_thread_lives_on(yard):
+    yard.worker.begin(Job(lambda: 1 / 0))
+    assert yard.news.wait(20.0)
+    assert yard.worker.fault.event == CRASHED
+    yard.worker.begin(Job(yard.do("more")), afresh=True)
+    yard.until(lambda: yard.did == ["more"])
+
+
+def test_parts_can_be_put_in_while_one_is_done(yard):
+    job = Job()
+    job.append(lambda: job.then(yard.do("b"), yard.do("c")))
+    job.append(yard.do("d"))
+    job.first(yard.do("a"))
+    yard.worker.begin(job)
+    yard.until(lambda: yard.worker.done)
+    assert yard.did == ["a", "b", "c", "d"]
