@@ -33,6 +33,7 @@ from .program import (
     Stop,
     TakeOff,
     Then,
+    Travel,
     Turn,
 )
 
@@ -70,6 +71,7 @@ __all__ = [
     "Stop",
     "TakeOff",
     "Then",
+    "Travel",
     "Turn",
     "main",
     "where_expected",

@@ -19,9 +19,10 @@ from .helm import MODE_SECONDS, Helm
 from .link import ANYBODY, Link, Message
 from .missions import Item, mark_of
 from .places import at_height
-from .program import Geographic, Look, Place
+from .program import Geographic, Look, Place, Travel
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
+from .travel import set_up
 from .vehicle import State
 
 FORCE_DISARM = 21_196
@@ -41,7 +42,8 @@ class MavlinkVehicle:
         kind: str,
         home: Place,
         *,
-        acceptance: float = 0.5,
+        acceptance: float | None = None,
+        travel: Travel = Travel(),  # noqa: B008  it is frozen
         home_tolerance: float = 20.0,
         tell: Callable[[str], None] = lambda line: None,
     ) -> None:
@@ -51,7 +53,8 @@ class MavlinkVehicle:
             link: open.
             kind: ``copter``, ``sub`` or ``rover``.
             home: of the robot, as its program says.
-            acceptance: metres from a place at which it counts as reached.
+            acceptance: metres from a place at which it counts as reached; None: as `travel` says.
+            travel: how carefully it is to go.
             home_tolerance: metres that the vehicle may be from home at the beginning.
             tell: is given what people should know, as what the vehicle does by itself.
         """
@@ -59,10 +62,11 @@ class MavlinkVehicle:
         self._link = link
         self._telemetry = Telemetry(link, home)
         self._helm = Helm(link, self._telemetry, kind)
-        self._steering = Steering(link, self._telemetry, self._helm, acceptance)
+        self._acceptance = travel.acceptance if acceptance is None else acceptance
+        self._steering = Steering(link, self._telemetry, self._helm, self._acceptance)
+        self._travel = travel
         self._kind = kind
         self._home = home
-        self._acceptance = acceptance
         self._home_tolerance = home_tolerance
         self._mission: Sequence[Item] = ()
         self._mark = 0
@@ -86,6 +90,8 @@ class MavlinkVehicle:
             mission = self._helm.habits.mission(mission)
             self._mark = preparation.replace_all(self._link, mission, fence, rally)
         for line in safeguards.report(self._link, self._kind):
+            self._tell(line)
+        for line in set_up(self._link, self._kind, self._travel):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fence:

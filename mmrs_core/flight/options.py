@@ -40,9 +40,12 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """Metres from a place that count as there, and metres that a vehicle may be from home at first."""
+    """Metres from a place that count as there, and metres that a vehicle may be from home at first.
 
-    place: float
+    Where the former is None, the robot's travel mode says it.
+    """
+
+    place: float | None
     home: float
 
 
@@ -96,7 +99,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--speedup", type=float, default=None, help="how much faster than real time the vehicles run")
     add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
     add("--no-fence", action="store_true", help="do not upload the fence")
-    add("--acceptance", type=float, default=0.5, help="metres from a place that count as there")
+    add("--acceptance", type=float, help="metres from a place that count as there; else by the travel mode")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")

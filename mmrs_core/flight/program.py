@@ -248,6 +248,23 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
+class Travel:
+    """How carefully a robot travels.
+
+    Attributes:
+        mode: ``SAFE``, ``NORMAL`` or ``AGGRESSIVE``; speeds stand with the moves.
+        acceptance: metres from a place at which the controller counts it as reached.
+        radius: metres within which the vehicle counts places of a run as passed, at most.
+        margin: metres that the vehicle keeps from what it perceives itself, at least.
+    """
+
+    mode: str = "NORMAL"
+    acceptance: float = 0.5
+    radius: float = 2.0
+    margin: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Robot:
     """One robot and all that it does.
 
@@ -260,6 +277,7 @@ class Robot:
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
         mission: name of it; fleet: all robots of it, this one included.
+        travel: how carefully it travels.
     """
 
     id: str
@@ -279,6 +297,7 @@ class Robot:
     escapes: tuple[tuple[str, Place], ...] = ()
     mission: str = field(default="", kw_only=True)
     fleet: tuple[str, ...] = field(default=(), kw_only=True)
+    travel: Travel = field(default=Travel(), kw_only=True)
 
     def step(self, move: str) -> Step:
         """Return the step of that move."""

@@ -174,7 +174,14 @@ def _vehicle(robot: Robot, options: Options, watch: Watch, link: Link | None) ->
     if link is None:
         return DryVehicle(options.clock, robot.home, watch.check)
     near = options.tolerances
-    vehicle = MavlinkVehicle(link, robot.vehicle, robot.home, acceptance=near.place, home_tolerance=near.home)
+    vehicle = MavlinkVehicle(
+        link,
+        robot.vehicle,
+        robot.home,
+        acceptance=near.place,
+        travel=robot.travel,
+        home_tolerance=near.home,
+    )
     watch.begin(link, vehicle)
     return vehicle
 

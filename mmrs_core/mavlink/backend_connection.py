@@ -167,6 +167,7 @@ def _equipment(
         program.vehicle,
         program.home,
         acceptance=options.acceptance,
+        travel=program.travel,
         home_tolerance=inf if live.resumed else options.home_tolerance,
     )
     context = context_of(given.robot, input, geographic=False)

@@ -18,7 +18,7 @@ class LinkOptions:
 
     Attributes:
         patience: real seconds to wait for a vehicle's first sign.
-        acceptance: metres from a place that count as there.
+        acceptance: metres from a place that count as there; None: by the robot's travel mode.
         home_tolerance: metres that a vehicle may be from its home at first.
         tries: how often to send at most what is not answered.
         answer_seconds: how long to wait for an answer.
@@ -30,7 +30,7 @@ class LinkOptions:
     """
 
     patience: float = 30.0
-    acceptance: float = 0.5
+    acceptance: float | None = None
     home_tolerance: float = 20.0
     tries: int = 5
     answer_seconds: float = 1.5

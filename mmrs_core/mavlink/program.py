@@ -23,6 +23,7 @@ from mmrs_core.mavlink.safety import (
     policies_of,
     refuges,
 )
+from mmrs_core.mavlink.vehicles import manner_of
 from mmrs_core.scene import Point, Policy
 
 
@@ -186,6 +187,10 @@ def _head(
     yield "resets", senders_of(robot, program, active=False)
     yield "policies", tuple(_policy(policy) for policy in policies_of(robot, input))
     yield "reserve", program.reserve
+    manner = manner_of(robot, program.position_error)
+    names = ("acceptance", "radius", "margin")
+    how = tuple((name, getattr(manner, name)) for name in names)
+    yield "travel", Call("Travel", (robot.travel_mode,), how)
     yield "runs", tuple(_run(run, robot) for run in runs_of(context))
     yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)

@@ -7,7 +7,7 @@ import pytest
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.context import context_of
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
-from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, speed_of, vehicle_class
+from mmrs_core.mavlink.vehicles import COPTER, ROVER, SUB, manner_of, speed_of, vehicle_class
 from mmrs_core.scene import Capability, Frame
 from mmrs_core.testing.programs import L_AQUILA, go_to, program, quad, robot_program, take_off, target_input
 
@@ -87,3 +87,18 @@ def test_the_height_above_the_sea_is_told_only_where_it_is_known(frame, expected
 
 def test_a_length_is_never_minus_zero():
     assert str(metres(-0.0001)) == "0.0"
+
+
+@pytest.mark.parametrize(
+    ("mode", "error", "acceptance"),
+    [
+        ("SAFE", 3.0, 0.5),
+        ("NORMAL", 3.0, 0.5),
+        ("AGGRESSIVE", 0.0, 0.5),
+        ("AGGRESSIVE", 0.8, 0.8),
+        ("AGGRESSIVE", 3.0, 1.0),
+    ],
+)
+def test_a_place_counts_as_reached_as_near_as_mode_and_position_error_allow(mode, error, acceptance):
+    robot = replace(robot_program("alpha", []), travel_mode=mode)
+    assert manner_of(robot, error).acceptance == acceptance
