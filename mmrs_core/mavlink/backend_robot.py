@@ -81,7 +81,7 @@ class MavlinkBackend:
         self._robot, self._with, self._options = robot, equipment, options
         self._policies: Sequence[Policy] = ()
         self._watch = self._new_watch()
-        self._alone = self._wanted = policy_for(LINK_LOST, robot).response
+        self._alone = self._wanted = policy_for(LINK_LOST, robot)
         self._worker = Worker(f"robot {robot.id!a}", self._look, self._idle, self._halt)
         self._worker.changed = equipment.wake
         equipment.link.guard = self._worker.guard
@@ -237,6 +237,8 @@ class MavlinkBackend:
     def _look(self) -> None:
         """Look after the vehicle, whatever it does."""
         self._watch.check()
+        if self._ready:
+            self._with.vehicle.check()
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
@@ -253,7 +255,7 @@ class MavlinkBackend:
 
     def _set_up(self) -> None:
         vehicle, robot = self._with.vehicle, self._robot
-        vehicle.answer_lost_link(self._alone)
+        vehicle.answer_lost_link(self._alone.response, self._alone.after)
         if self._with.resumed:
             vehicle.hold()
         vehicle.prepare(fence_of(robot) if self._options.fence else (), rally_of(robot), self._mission)
@@ -284,11 +286,11 @@ class MavlinkBackend:
     def _follow(self, policies: Sequence[Policy]) -> None:
         """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
         self._policies = policies
-        self._wanted = policy_for(LINK_LOST, self._robot, policies).response
+        self._wanted = policy_for(LINK_LOST, self._robot, policies)
 
     def _instruct(self) -> None:
         if self._wanted != self._alone:
-            self._with.vehicle.answer_lost_link(self._wanted)
+            self._with.vehicle.answer_lost_link(self._wanted.response, self._wanted.after)
             self._alone = self._wanted
 
     def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
