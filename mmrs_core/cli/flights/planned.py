@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from mmrs_core.behaviour.program import Move, Program, RobotProgram
@@ -23,7 +23,7 @@ class Planned:
     """What should have happened.
 
     Attributes:
-        run: as simulated; None where it cannot be.
+        run: as simulated, from when the flight's first step was; None where it cannot be simulated.
         notes: what was taken for granted, or why there is no run, for people.
     """
 
@@ -69,7 +69,22 @@ def planned_for(
         run = fly(workshop, program, loaded.place, {**dict.fromkeys(guessed, True), **known})
     except MmrsError as error:
         return Planned(None, (*notes, f"times and energy as planned are not known: {error}"))
-    return Planned(run, (*notes, *run.notes))
+    begun = min((flown.records[0].time for flown in flight.robots.values() if flown.records), default=0.0)
+    return Planned(_later(run, begun), (*notes, *run.notes))
+
+
+def _later(run: Run, seconds: float) -> Run:
+    """Return a run that begins so much later: when the flight does, whose vehicles had to get ready."""
+    if seconds <= 0:
+        return run
+    return replace(
+        run,
+        records=tuple(replace(record, time=record.time + seconds) for record in run.records),
+        tracks={
+            robot: tuple(replace(sample, time=sample.time + seconds) for sample in track)
+            for robot, track in run.tracks.items()
+        },
+    )
 
 
 def _answers(program: Program, flight: Flight) -> tuple[dict[str, bool], list[str]]:
