@@ -77,7 +77,7 @@ def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, co
             link.send(
                 mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
             )
-            heard = link.wait(lambda: _answer(inbox, number), link.clock.patience(link.retries.answer))
+            heard = link.wait(lambda: _answer(inbox, number), link.patience)
             answer = heard or answer
             if heard is not None and heard.result == _BEGUN:
                 return _end(link, inbox, number, component)

@@ -25,6 +25,9 @@ Observer = Callable[[Message, bool], None]
 TRIES = 5
 ANSWER_SECONDS = 1.5
 ITEM_SECONDS = 0.25
+LEAST_SECONDS = 0.5
+"""Real seconds for an answer at least, unless less was asked for."""
+
 LATE_FRAMES = 64
 """How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
 
@@ -133,6 +136,11 @@ class Link:
     def garbled(self) -> int:
         """Return how many frames could not be read, or were not signed as they should be."""
         return sum(self._radio.dropped[reason] for reason in ("unreadable", "not signed with the key"))
+
+    @property
+    def patience(self) -> float:
+        """Return the seconds of the run to wait for an answer: networks do not speed up with simulators."""
+        return self.clock.patience(self.retries.answer, min(LEAST_SECONDS, self.retries.answer))
 
     @property
     def tries(self) -> int:

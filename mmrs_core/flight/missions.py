@@ -116,14 +116,10 @@ def _transfer(link: Link, items: Sequence[Item], kind: int, transfer: _Transfer)
         tries = 0
         while tries < link.retries.tries:
             link.send(last)
-            message = link.wait(
-                lambda: _first(inbox, lambda m: _of(m, kind)), link.clock.patience(link.retries.answer)
-            )
+            message = link.wait(lambda: _first(inbox, lambda m: _of(m, kind)), link.patience)
             while message is not None and tries and _repeated(message):
                 # The vehicle had the item already and was only waiting for the next.
-                message = link.wait(
-                    lambda: _first(inbox, lambda m: _of(m, kind)), link.clock.patience(link.retries.answer)
-                )
+                message = link.wait(lambda: _first(inbox, lambda m: _of(m, kind)), link.patience)
             if message is None:
                 tries += 1
                 continue

@@ -45,7 +45,7 @@ def read(link: Link, names: Iterable[str]) -> dict[str, float]:
                     found[message.param_id] = value_of(link, message)
                 return all(name in found for name in wanted)
 
-            if link.wait(complete, link.clock.patience(link.retries.answer)) or not found:
+            if link.wait(complete, link.patience) or not found:
                 break
     return {name: found[name] for name in wanted if name in found}
 
@@ -68,7 +68,7 @@ def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:
             )
             if link.wait(
                 lambda: any(m.param_id == name and same(value_of(link, m), value) for m in tuple(inbox)),
-                link.clock.patience(link.retries.answer),
+                link.patience,
             ):
                 return True
     return False

@@ -167,9 +167,7 @@ class Px4:
             self._link.send(
                 mavlink.MAVLink_mission_set_current_message(self._link.system, self._link.component, seq)
             )
-            if self._link.wait(
-                lambda: self._telemetry.item() == seq, self._link.clock.patience(self._link.retries.answer)
-            ):
+            if self._link.wait(lambda: self._telemetry.item() == seq, self._link.patience):
                 return
 
     def enable_fence(self) -> None:

@@ -172,7 +172,7 @@ class Radio:
         if kind == "BAD_DATA":
             self.dropped[_why_unread(message)] += 1
         elif kind.startswith("UNKNOWN"):
-            self.dropped[f"message {message.get_msgId()}: unknown"] += 1
+            self.dropped[f"message {kind.removeprefix('UNKNOWN_')}: unknown"] += 1
         elif kind == "RADIO_STATUS":
             self.status = message
             self.on_status(message)
