@@ -96,7 +96,7 @@ class Autopilot:
         self.home = (*self.degrees()[:2], self.settings.altitude + self.body.position[2])
         self.beats_now = False
         self.failed: dict[str, float] = {}
-        self.body.target = self.body.onward = self.body.wanted_heading = None
+        self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
 
     @property
     def energy(self) -> float:
@@ -169,7 +169,7 @@ class Autopilot:
             self.modes.append((self.time, number))
             self.beats_now = True
         self.mode, self.mode_name = number, name
-        self.body.target = self.body.onward = None
+        self.body.target = self.body.onward = self.body.origin = None
         self.body.speed = self._usual_speed()
         self.body.adrift = False
         self.held, self.returning = 0.0, []

@@ -43,7 +43,7 @@ def steer(pilot: Autopilot, target: Vector, heading: float | None) -> None:
     """Go to a position, if in a mode that is steered and, for what flies, in the air."""
     pilot.steered = [*pilot.steered[-20:], pilot.time]
     if pilot.mode_name == "guided" and pilot.armed and (pilot.airborne or not pilot.flies):
-        pilot.body.target, pilot.body.onward = target, None
+        pilot.body.target, pilot.body.onward, pilot.body.origin = target, None, None
         if heading is not None:
             pilot.body.wanted_heading = heading
 

@@ -45,9 +45,11 @@ def _leave(pilot: Autopilot, item: Item) -> bool:
         pilot.pending = pilot.item
     if item.command == mavlink.MAV_CMD_DO_JUMP and _jumps(pilot, item):
         return True
+    if item.command in MOVING:
+        pilot.body.leave()
     if pilot.item + 1 >= len(pilot.stores[MISSION]):
         pilot.finished = True
-        pilot.body.target = pilot.body.onward = None
+        pilot.body.target = pilot.body.onward = pilot.body.origin = None
         return False
     jump(pilot, pilot.item + 1)
     return True

@@ -73,14 +73,17 @@ def _surface(pilot: Autopilot, seconds: float) -> None:
 def _return(pilot: Autopilot, seconds: float) -> None:
     begin_return(pilot)
     body = pilot.body
-    while len(pilot.returning) > 1 and body.distance_to(pilot.returning[0]) < NEAR:
+    while len(pilot.returning) > 1 and body.distance_to(pilot.returning[0]) < CLIMBED:
         pilot.returning.pop(0)
-    goal = pilot.returning[0]
+    smooth = pilot.mode_name == "smart_return" and len(pilot.returning) > 1
+    goal = body.target = pilot.returning[0]
+    body.onward = pilot.returning[1] if smooth else None
+    if smooth and body.goes_by():
+        goal = body.target = pilot.returning.pop(0)
     aside = hypot(goal[0] - body.position[0], goal[1] - body.position[1])
     if pilot.flies and len(pilot.returning) == 1 and aside < NEAR:
         _land(pilot, seconds)
         return
-    body.target = goal
     face(pilot, goal)
 
 

@@ -58,7 +58,7 @@ def _stand(pilot: Autopilot, seconds: float) -> None:
         pilot.body.velocity = (0.0, 0.0, -FALL_SPEED)
         _remember(pilot)
     else:
-        pilot.body.velocity = (0.0, 0.0, 0.0)
+        pilot.body.rest_at(0.0 if pilot.flies else pilot.body.position[2])
     if pilot.uptime < pilot.settings.boot:
         pilot.mode_name = first_mode(pilot.settings)
         pilot.mode = pilot.numbers[pilot.mode_name]
