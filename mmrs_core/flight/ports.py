@@ -120,7 +120,7 @@ class UdpPort:
         self._socket.settimeout(seconds)
         try:
             return Received(*self._socket.recvfrom(LARGEST))
-        except (TimeoutError, ConnectionRefusedError, ConnectionResetError):
+        except (TimeoutError, BlockingIOError, ConnectionRefusedError, ConnectionResetError):
             return NOTHING
 
     def write(self, data: bytes, to: Address | None = None) -> object:
@@ -154,7 +154,7 @@ class TcpPort:
         self._socket.settimeout(seconds)
         try:
             data = self._socket.recv(LARGEST)
-        except TimeoutError:
+        except (TimeoutError, BlockingIOError):
             return NOTHING
         if not data:
             raise ConnectionError("the vehicle's side has closed the connection")
