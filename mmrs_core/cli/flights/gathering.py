@@ -55,10 +55,8 @@ class _Contents:
     def _count(self, entry: Entry) -> None:
         """Keep the newest counts of each process that the robot had: they only grow."""
         frames = entry.content.get("frames")
-        for name, count in frames.items() if isinstance(frames, Mapping) else ():
-            number = number_of(count)
-            if number is not None:
-                self.counts[-1][str(name)] = max(self.counts[-1][str(name)], int(number))
+        for name, count in _flat(frames) if isinstance(frames, Mapping) else ():
+            self.counts[-1][name] = max(self.counts[-1][name], count)
 
     @property
     def vehicle(self) -> str:
@@ -71,6 +69,16 @@ class _Contents:
         """Return whether there was no vehicle: in a simulation, and in a dry run."""
         starts = (each.content for each in self.entries if each.kind == "start")
         return any(each.get("link") == SIMULATION or each.get("dry_run") is True for each in starts)
+
+
+def _flat(frames: Mapping[object, object]) -> Iterator[tuple[str, int]]:
+    """Yield names and numbers; of numbers by a further name, ``name: further``."""
+    for name, count in frames.items():
+        number = number_of(count)
+        if number is not None:
+            yield str(name), int(number)
+        elif isinstance(count, Mapping):
+            yield from ((f"{name}: {further}", inner) for further, inner in _flat(count))
 
 
 def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, RobotType]) -> Flight:

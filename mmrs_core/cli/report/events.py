@@ -42,12 +42,20 @@ def _events(flown: Flown) -> Iterator[Event]:
         yield Event(flown.robot, entry.time, "decision", _words(entry, "what"), _decided(entry))
     for entry in flown.of_kind("order"):
         yield Event(flown.robot, entry.time, "order", _words(entry, "order"), _confirmed(entry))
+    for entry in flown.of_kind("injected"):
+        state = f"on purpose: {_words(entry, 'state')}" if entry.content.get("state") else "on purpose"
+        yield Event(flown.robot, entry.time, "injected", injected_by(entry), state)
     texts = [entry for entry in flown.of_kind("text") if str(entry.content.get("severity")) in _WARNINGS]
     for entry in texts[:MOST_TEXTS]:
         yield Event(flown.robot, entry.time, "text", _words(entry, "text"), _words(entry, "severity").lower())
     if len(texts) > MOST_TEXTS:
         more = f"{len(texts) - MOST_TEXTS} more warnings of the vehicle"
         yield Event(flown.robot, texts[MOST_TEXTS].time, "text", more, "left out here")
+
+
+def injected_by(entry: Entry) -> str:
+    """Return which fault was made on purpose."""
+    return _words(entry, "fault") or _words(entry, "name") or "a fault"
 
 
 def _decided(entry: Entry) -> str:

@@ -18,10 +18,10 @@ from mmrs_core.cli.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.cli.flights.thinning import pieces
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.cli.report.approaches import approaches_of
-from mmrs_core.cli.report.deviations import deviation_of
+from mmrs_core.cli.report.deviations import AWAY, deviation_of
 from mmrs_core.cli.report.durations import move_reports, wait_reports
 from mmrs_core.cli.report.energies import energy_of
-from mmrs_core.cli.report.events import events_of, readings_of
+from mmrs_core.cli.report.events import events_of, injected_by, readings_of
 from mmrs_core.cli.report.links import link_of
 from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.tasks import task_reports
@@ -71,6 +71,9 @@ def report_of(given: Given) -> Report:
         simulated=any(flown.simulated for flown in robots),
         outcome=judged.outcome.value if flight.whole else Outcome.INCOMPLETE.value,
         complaints=tuple(map(str, judged.complaints)) if flight.whole else (),
+        injected=tuple(
+            dict.fromkeys(injected_by(entry) for flown in robots for entry in flown.of_kind("injected"))
+        ),
         robots=tuple(_robot(robot, given, judged) for robot in program.robots),
         tasks=task_reports(program, flight, plan, legs),
         deviations=tuple(each for each in deviations if each is not None),
@@ -116,9 +119,12 @@ def _ending(robot: RobotProgram, flown: Flown, judged: ReplayResult) -> str:
         return "no log"
     last = flown.records[-1]
     if last.label == "fault":
-        return last.detail
+        return last.detail.partition(":")[0]
     if last.move == robot.moves[robot.stop].id and last.label == "end":
         return "to its end"
+    left = [each for each in flown.of_kind("decision") if each.time >= last.time]
+    if left and left[-1].content.get("response") in AWAY:
+        return f"suspended: {without_secrets(str(left[-1].content.get('what')))}"
     waits = next((each.slots for each in judged.waiting if each.robot == robot.id), ())
     return f"waiting for {', '.join(waits)}" if waits else "log ends before the program does"
 

@@ -60,9 +60,17 @@ def _head(report: Report, picture: Picture) -> str:
         element("h1", None, text(report.title or "mission")),
         element("p", None, f"<bdi>{text(lead)}</bdi>"),
         simulated if report.simulated else "",
+        _injected(report),
         verdict(report),
         tiles(report),
     )
+
+
+def _injected(report: Report) -> str:
+    if not report.injected:
+        return ""
+    words = f"A rehearsal: these faults were made on purpose: {', '.join(report.injected)}."
+    return element("p", {"class": "verdict none"}, text(words))
 
 
 def _when(begun: str) -> str:

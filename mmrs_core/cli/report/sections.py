@@ -187,7 +187,7 @@ def events(report: Report) -> str:
 
 
 def _event(event: Event) -> Markup:
-    words = {"text": "vehicle warns"}.get(event.kind, event.kind)
+    words = {"text": "vehicle warns", "injected": "made on purpose"}.get(event.kind, event.kind)
     return badge(words, {"fault": "bad", "decision": "fair", "text": "fair"}.get(event.kind, "none"))
 
 

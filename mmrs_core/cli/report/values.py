@@ -164,7 +164,7 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that people must know: ``fault``, ``decision``, ``order`` or ``text``.
+    """Something that people must know: ``fault``, ``decision``, ``order``, ``injected`` or ``text``.
 
     Attributes:
         what: it was. why: and what was done about it.
@@ -224,6 +224,7 @@ class Report:
     Attributes:
         begun: date and time of day, ISO 8601; empty where not known.
         outcome: of the run, by the replayer. complaints: why the logs are no run of the behaviour.
+        injected: faults that were made on purpose.
         unknown: what is not known, or was taken for granted, for people.
     """
 
@@ -234,6 +235,7 @@ class Report:
     simulated: bool
     outcome: str
     complaints: tuple[str, ...]
+    injected: tuple[str, ...]
     robots: tuple[RobotReport, ...]
     tasks: tuple[TaskReport, ...]
     deviations: tuple[Deviation, ...]

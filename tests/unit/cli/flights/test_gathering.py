@@ -103,6 +103,12 @@ def test_counts_grow_within_a_process_and_add_up_over_processes(flight, folder):
     assert flight().robots["alpha"].counted == {"unreadable": 8}
 
 
+def test_counts_by_type_and_reason_are_told_with_both(flight, folder):
+    frames = {"HEARTBEAT": {"wrong system": 3}, "unreadable": 1}
+    (folder / "alpha.blackbox.ndjson").write_text(box_line(kind="counted", frames=frames))
+    assert flight().robots["alpha"].counted == {"HEARTBEAT: wrong system": 3, "unreadable": 1}
+
+
 def test_a_folder_with_neither_log_nor_box_is_refused(flight, tmp_path):
     with pytest.raises(UnreadableError, match="neither a log nor a black box"):
         flight(tmp_path)

@@ -157,6 +157,12 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
     ]
 
 
+def test_a_fault_that_was_made_on_purpose_says_so(make):
+    entry = make.entry(1.0, "injected", fault="gps-lost", state="begins")
+    (event,) = events_of(make.flown("alpha", entries=(entry,)))
+    assert (event.kind, event.what, event.why) == ("injected", "gps-lost", "on purpose: begins")
+
+
 def test_a_flood_of_warnings_is_told_in_short(make):
     texts = tuple(make.entry(float(i), "text", severity="ERROR", text="again") for i in range(500))
     events = events_of(make.flown("alpha", entries=texts))
