@@ -151,7 +151,7 @@ class Errand:
         self._round += 1
         self._granted = {}
         self.phase = Phase.ASKING
-        self.due = now + min(LONGEST_ROUND, ROUND_SECONDS * 1.3**self._round) + self._pause()
+        self.due = now + min(LONGEST_ROUND, ROUND_SECONDS * 1.3**self._tries) + self._pause()
         self._settle()
         floor = max(self._clock(), self._floor)
         return [

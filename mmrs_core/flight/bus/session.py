@@ -35,10 +35,10 @@ class Session:
 
     def run(self, lines: IO[bytes]) -> None:
         """Answer every line, and tell what changes, until the program goes."""
-        teller = threading.Thread(target=self._tell_news, name="gateway news", daemon=True)
-        teller.start()
         slots = list(self._slots)
         self._say({"is": "welcome", "robot": self._robot, "run": self._run, "slots": slots})
+        teller = threading.Thread(target=self._tell_news, name="gateway news", daemon=True)
+        teller.start()
         try:
             while line := lines.readline(LONGEST + 1):
                 with self._turn:

@@ -1,0 +1,86 @@
+"""What every bus keeps, whatever carries it and whatever happens to the robots."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.behaviour.semantics import entry, steps
+
+
+def check_success(fleet):
+    result = fleet.replayed()
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+
+
+def test_robots_hand_things_to_each_other_and_their_logs_replay(fleet):
+    fleet = fleet("exchange")
+    fleet.start("a")
+    fleet.start("b")
+    assert fleet.ended("a")
+    assert fleet.ended("b")
+    check_success(fleet)
+
+
+def test_a_late_joiner_gets_what_it_was_told_before(fleet):
+    fleet = fleet("gathering", 3)
+    fleet.start("r0")
+    fleet.start("r1")
+    time.sleep(1.0)
+    fleet.start("r2")
+    assert all(fleet.ended(robot) for robot in fleet.names)
+    check_success(fleet)
+
+
+@pytest.mark.parametrize("point", ["granted", "logged", "acknowledged", "applied"])
+def test_a_robot_that_is_killed_and_started_again_goes_on_exactly(fleet, point):
+    fleet = fleet("exchange", 4)
+    number = notifies(fleet, "a")[2]
+    fleet.start("a", *([f"{point}:{number}"] if point != "applied" else []))
+    fleet.start("b", *([f"applied:{number}"] if point == "applied" else []))
+    dead = "b" if point == "applied" else "a"
+    assert not fleet.ended(dead)
+    fleet.start(dead, again=True)
+    assert fleet.ended("a")
+    assert fleet.ended("b")
+    check_success(fleet)
+
+
+def test_a_robot_that_is_killed_at_any_moment_and_started_again_goes_on_exactly(fleet):
+    fleet = fleet("exchange", 8)
+    fleet.start("a", pause=0.01)
+    fleet.start("b", pause=0.01)
+    for robot, step in (("a", 8), ("b", 20), ("a", 30)):
+        fleet.await_steps(robot, step)
+        fleet.kill(robot)
+        fleet.start(robot, again=True, pause=0.01)
+    assert fleet.ended("a")
+    assert fleet.ended("b")
+    check_success(fleet)
+
+
+def test_a_frozen_robot_goes_on_exactly_when_it_wakes(fleet):
+    fleet = fleet("exchange", 8)
+    fleet.start("a", pause=0.02)
+    fleet.start("b", pause=0.02)
+    fleet.await_steps("b", 12)
+    fleet.freeze("b")
+    time.sleep(3.0)
+    fleet.thaw("b")
+    assert fleet.ended("a")
+    assert fleet.ended("b")
+    check_success(fleet)
+
+
+def notifies(fleet, robot):
+    """Return the numbers of the steps of a robot that are notifies, in its undisturbed run."""
+    made = fleet.program.robot(robot)
+    everything = {(robot, name) for name in made.slots}
+    point, number, found = entry(made, made.start), 0, []
+    while possible := steps(made, point, everything):
+        if possible[0].sets:
+            found.append(number)
+        point, number = possible[0].leads_to, number + 1
+    return found
