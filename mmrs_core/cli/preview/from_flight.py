@@ -109,7 +109,7 @@ class _Shown:
             heights=tuple(zip(self._track.times.tolist(), self._track.positions[:, 2].tolist(), strict=True)),
             planned=tuple(leg.points for leg in plan.legs if not leg.stays),
             planned_heights=plan.heights,
-            arms=(Arm("as planned", 0.0, plan.bars[-1].end, plan.bars),) if plan.bars else (),
+            arms=(Arm("as planned", plan.bars[0].begin, plan.bars[-1].end, plan.bars),) if plan.bars else (),
             marks=tuple(self._marks()),
             summary=(("moves", _moves_done(self._program, flown)), *known, ("time", clock(flown.end))),
         )
@@ -196,13 +196,15 @@ def _stretches(
     first, last = np.searchsorted(track.times, begin, side="right"), np.searchsorted(track.times, end)
     times, broken = track.times[first:last].tolist(), track.broken[first:last].tolist()
     points: list[Position] = [(east, north, up) for east, north, up in track.positions[first:last].tolist()]
-    for time, last_one in ((begin, False), (end, True)):
-        at = track.at(time)
-        if at is not None:
-            place = len(times) if last_one else 0
-            times.insert(place, time)
-            points.insert(place, at)
-            broken.insert(place, False)
+    at_begin, at_end = track.at(begin), track.at(end)
+    if at_begin is not None:
+        times.insert(0, begin)
+        points.insert(0, at_begin)
+        broken.insert(0, bool(track.broken[first - 1]) if first else False)
+    if at_end is not None:
+        times.append(end)
+        points.append(at_end)
+        broken.append(False)
     since = 0
     for i in range(len(times)):
         if broken[i] or i + 1 == len(times):

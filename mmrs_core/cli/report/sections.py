@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
+
 from mmrs_core.cli.figures import clock, quantity
 from mmrs_core.cli.preview.markup import element, text
 from mmrs_core.cli.report.tables import Markup, badge, folded, section, table
@@ -234,7 +237,7 @@ def links(report: Report) -> str:
             str(each.fixes),
             f"{each.gaps}, {seconds(each.silent)} in all" if each.gaps else "none",
             seconds(each.longest) if each.gaps else "",
-            ", ".join(f"{count} {name}" for name, count in sorted(each.dropped.items())) or "none counted",
+            _dropped(each.dropped),
             f"{each.commands}, {each.repeated} repeated, {each.refused} not accepted",
             quantity(each.slowest, "s") if each.slowest is not None else "",
         )
@@ -251,6 +254,15 @@ def links(report: Report) -> str:
         "slowest answer",
     )
     return section("Links", table(head, rows) if rows else "")
+
+
+def _dropped(counts: Mapping[str, int]) -> str:
+    """Return how many frames were dropped, by reason where there are reasons beside the types."""
+    reasons: Counter[str] = Counter()
+    for name, count in counts.items():
+        reasons[name.partition(": ")[2] or name] += count
+    told = (f"{count} {reason}" for reason, count in sorted(reasons.items()) if count)
+    return ", ".join(told) or "none counted"
 
 
 def moves(report: Report) -> str:

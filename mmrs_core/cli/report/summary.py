@@ -21,7 +21,8 @@ def _verdict(report: Report) -> tuple[str, str]:
     done = sum(task.status is Status.DONE for task in asked)
     faults = sum(event.kind == "fault" for event in report.events)
     near = any(approach.too_near for approach in report.approaches)
-    tasks = f"{done} of {len(asked)} tasks done" if asked else "the behaviour names no tasks"
+    ended = "all robots came to the end of their programs" if report.outcome == "success" else ""
+    tasks = f"{done} of {len(asked)} tasks done" if asked else ended
     early = f"{faults} robot{'s' * (faults != 1)} ended early" if faults else ""
     close = "a required distance was not kept" if near else ""
     empty = any(e.lowest is not None and e.lowest < e.reserve - 0.005 for e in report.energies)
@@ -31,6 +32,7 @@ def _verdict(report: Report) -> tuple[str, str]:
     words = "; ".join(each for each in (tasks, early, unfinished, close, low, strange) if each)
     if near or strange or (asked and not done):
         return words, "bad"
+    words = words or "nothing is known of how it ended"
     return words, "good" if done == len(asked) and report.outcome == "success" and not empty else "fair"
 
 

@@ -205,7 +205,13 @@ class LinkReport:
 
 @dataclass(frozen=True, slots=True)
 class RobotReport:
-    """One robot as a whole. Attributes: how its program ended; metres flown; seconds; moves ended and all."""
+    """One robot as a whole.
+
+    Attributes:
+        ending: of its program.
+        way, planned_way: metres. time, planned_time: seconds from its first step to its last.
+        moves: how many ended, and how many there are.
+    """
 
     robot: str
     type_name: str

@@ -1,0 +1,126 @@
+"""The picture of a flight shows what logs and black boxes say, over what was planned."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.flights.planned import Planned
+from mmrs_core.cli.flights.values import Flight, Flown, Track
+from mmrs_core.cli.preview.from_flight import picture_of_flight
+from mmrs_core.cli.preview.from_run import Surroundings
+from mmrs_core.cli.preview.map_drawing import map_markup
+from mmrs_core.cli.preview.page import page
+from mmrs_core.pipeline import Place, simulate
+from mmrs_core.scene import Part
+from mmrs_core.testing.programs import MULTICOPTER, quad, two_drones
+
+TYPES = {"Quad": replace(quad(), part=Part(((MULTICOPTER, "Drone"),), {"maxAltitude": 120.0}))}
+
+
+@pytest.fixture(scope="module")
+def behaviour():
+    return two_drones()
+
+
+@pytest.fixture(scope="module")
+def run(behaviour, contributions):
+    return simulate(behaviour, Place(TYPES, (), {}), contributions)
+
+
+def track_of(points, broken=()):
+    rows = np.array(points, dtype=float).reshape(-1, 4)
+    flags = np.zeros(len(rows), dtype=bool)
+    flags[list(broken)] = True
+    return Track(rows[:, 0], rows[:, 1:], np.full(len(rows), np.nan), flags)
+
+
+@pytest.fixture
+def shown(behaviour, run, contributions):
+    """Return a function: the picture of a flight that went as planned, but for what is given by robot."""
+
+    def picture(**changed):
+        robots = {
+            robot.id: Flown(
+                robot.id,
+                tuple(record for record in run.records if record.robot == robot.id),
+                track_of([(s.time, *s.position) for s in run.tracks[robot.id]]),
+            )
+            for robot in behaviour.robots
+        }
+        flown = {id: replace(each, **changed.get(id, {})) for id, each in robots.items()}
+        around = Surroundings(types=TYPES)
+        return picture_of_flight(behaviour, Flight("r", flown), Planned(run), contributions, around)
+
+    return picture
+
+
+def test_every_leg_is_where_and_when_the_robot_was(shown):
+    alpha = shown().robots[0]
+    assert [leg.moves for leg in alpha.legs] == [
+        f"move {id}" for id in ("up", "a1", "a2", "a3", "a4", "back", "down")
+    ]
+    for before, after in zip(alpha.legs[:-1], alpha.legs[1:], strict=True):
+        assert before.points[-1] == pytest.approx(after.points[0], abs=0.3)
+    assert all(len(leg.times) == len(leg.points) for leg in alpha.legs)
+
+
+def test_what_was_planned_lies_beneath(shown):
+    alpha = shown().robots[0]
+    assert len(alpha.planned) == 7
+    assert alpha.planned_heights[-1][1] == pytest.approx(0.0)
+    assert [arm.words for arm in alpha.arms] == ["as planned"]
+    assert map_markup(shown()).count('class="planned"') == 2
+
+
+def test_a_gap_is_not_drawn(shown):
+    whole = shown().robots[0]
+    points = [(leg.begin, *leg.points[0]) for leg in whole.legs]
+    cut = shown(alpha={"track": track_of(points, broken=[2])}).robots[0]
+    begin, end = points[2][0], points[3][0]
+    assert not any(leg.begin < end and leg.end > begin for leg in cut.legs)
+
+
+def test_a_way_that_no_move_says_is_not_in_the_plan(shown, run):
+    records = [record for record in run.records if record.robot == "alpha"]
+    index = next(i for i, record in enumerate(records) if (record.label, record.move) == ("begin", "a3"))
+    last = records[index]
+    fault = StepRecord(
+        last.run, "alpha", last.seq + 1, last.lamport + 1, last.time, "fault", "a3", "LINK_LOST"
+    )
+    points = [(s.time, *s.position) for s in run.tracks["alpha"] if s.time <= last.time]
+    home = [(last.time + 20.0, 0.0, 0.0, 20.0), (last.time + 30.0, 0.0, 0.0, 0.0)]
+    picture = shown(alpha={"records": (*records[: index + 1], fault), "track": track_of([*points, *home])})
+    alpha = picture.robots[0]
+    assert [leg.kind for leg in alpha.legs][-1] == "response"
+    assert alpha.legs[-1].points[-1] == (0.0, 0.0, 0.0)
+    assert (alpha.bars[-1].kind, alpha.bars[-1].end) == ("response", last.time + 30.0)
+    assert [mark.kind for mark in alpha.marks] == ["fault"]
+
+
+def test_a_robot_of_which_nobody_knows_where_it_was_is_said_to_be_one(shown):
+    picture = shown(beta={"track": track_of([])})
+    assert picture.robots[1].legs == ()
+    assert "beta: where it was is not known, there is no black box of it" in picture.notes
+    assert ("way", "not known") in picture.robots[1].summary
+
+
+def test_a_photo_that_nobody_confirmed_is_marked(shown):
+    assert [mark.kind for mark in shown().robots[0].marks] == ["missing"]
+
+
+def test_a_map_of_one_robot_keeps_its_style(shown):
+    picture = shown()
+    only = map_markup(picture, only=1)
+    assert 'data-robot="1"' in only
+    assert 'data-robot="0"' not in only
+    assert ">alpha<" not in only
+
+
+def test_the_page_has_the_times_of_the_ways(shown):
+    text = page(shown())
+    assert '"times"' in text
+    assert "ways as planned" in text
