@@ -1,0 +1,182 @@
+"""`mmrs run` as a process: missions, orders, interrupts, resumption, several processes."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from fault_table.fleet import free_port, wait_for
+from fault_table.project import OUT, TOUR, Pad
+
+from mmrs_core.behaviour.replay import Outcome
+
+PATIENCE = 60.0
+HOLDING = 17
+"""ArduPilot's number of BRAKE."""
+
+SYNCHRONISED = (Pad("a", "wait"), Pad("b", "give", stay=8.0, gives="a"))
+
+
+def control(fleet, *words):
+    """Give an order by `mmrs control`; return its answer by robot."""
+    command = [sys.executable, "-m", "mmrs_core", "control", *words, "--log", str(fleet.logs), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    assert done.stdout, done.stderr
+    return {reply["robot"]: reply for reply in json.loads(done.stdout)["robots"]}
+
+
+def begun(fleet, robot, move):
+    """Wait until a robot has begun a move."""
+
+    def found():
+        return any(s["label"] == "begin" and s["move"] == move for s in fleet.steps(robot))
+
+    assert wait_for(found, PATIENCE), fleet.process.said
+    return fleet.vehicles[robot]
+
+
+def judged(fleet):
+    """Return the outcome of a replay without complaints."""
+    result = fleet.replayed()
+    assert result.complaints == ()
+    return result.outcome
+
+
+def landed(fleet):
+    return not any(vehicle.autopilot.armed for vehicle in fleet.vehicles.values())
+
+
+def least_distance(vehicle, place):
+    return min(
+        sum((a - b) ** 2 for a, b in zip(point[1:], place, strict=True)) ** 0.5
+        for point in vehicle.autopilot.track
+    )
+
+
+def test_robots_of_one_process_wait_for_each_other_and_their_logs_replay(fleet):
+    flown = fleet(*SYNCHRONISED, Pad("c", stay=2.0))
+    assert flown.start().end(PATIENCE) == 0, flown.process.said
+    assert judged(flown) is Outcome.SUCCESS
+    assert landed(flown)
+    assert all(least_distance(flown.vehicles["c"], place) < 2.0 for place in (OUT, *TOUR))
+
+
+def test_robots_of_two_processes_meet_on_the_bus_and_begin_together(fleet):
+    flown = fleet(*SYNCHRONISED)
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    first = flown.start("--bus-listen", endpoint, "--sync", robot="a")
+    second = flown.start("--bus-connect", endpoint, "--sync", robot="b")
+    assert (first.end(PATIENCE), second.end(PATIENCE)) == (0, 0), first.said + second.said
+    assert judged(flown) is Outcome.SUCCESS
+    assert any("begins together" in line for line in first.said)
+
+
+def test_a_robot_whose_peers_run_elsewhere_needs_the_bus(fleet):
+    flown = fleet(*SYNCHRONISED)
+    assert flown.start(robot="a").end(PATIENCE) == 2
+    assert "say --bus" in flown.process.said[-1]
+
+
+def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
+    flown = fleet(Pad("a"), Pad("b"), speedup=8.0)
+    process = flown.start()
+    vehicle, other = begun(flown, "a", "out"), begun(flown, "b", "out")
+    held = control(flown, "hold")
+    assert all(reply["confirmed"] for reply in held.values()), held
+    assert all(reply["seconds"] < 1.0 for reply in held.values()), held
+    assert (vehicle.autopilot.mode, other.autopilot.mode) == (HOLDING, HOLDING)
+    place = vehicle.autopilot.body.position
+    time.sleep(1.0)
+    assert vehicle.autopilot.body.position == pytest.approx(place, abs=0.3)
+    assert control(flown, "resume", "a")["a"]["confirmed"]
+    begun(flown, "a", "stay")
+    landing = control(flown, "land", "b")["b"]
+    assert landing["confirmed"]
+    assert landing["seconds"] < 1.0
+    assert wait_for(lambda: not other.autopilot.armed, PATIENCE)
+    assert control(flown, "return", "a")["a"]["confirmed"]
+    assert process.end(PATIENCE) == 1, process.said
+    assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=1.0)
+    assert {s["detail"] for r in "ab" for s in flown.steps(r) if s["label"] == "fault"} == {"ORDERED"}
+    assert judged(flown) is Outcome.FAILED
+
+
+def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
+    flown = fleet(Pad("a"), Pad("b", "wait"), Pad("g", "give", stay=100.0, gives="b"))
+    process = flown.start()
+    begun(flown, "a", "tour 0")
+    process.signal(signal.SIGINT)
+    assert process.end(PATIENCE) == 130, process.said
+    assert all(vehicle.autopilot.mode == HOLDING for vehicle in flown.vehicles.values())
+    assert {f"'{robot}': has done HOLD" for robot in "abg"} <= set(process.said)
+    assert judged(flown) is Outcome.FAILED
+
+
+@pytest.mark.parametrize("move", [pytest.param("out", marks=pytest.mark.thorough), "tour 0"])
+def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
+    flown = fleet(
+        Pad("a", stay=2.0), *(Pad(p.robot + "2", p.program, (), 8.0, p.gives and "a2") for p in SYNCHRONISED)
+    )
+    killed = flown.start()
+    begun(flown, "a", move)
+    killed.signal(signal.SIGKILL)
+    killed.end(PATIENCE)
+    resumed = flown.start("--resume")
+    assert resumed.end(PATIENCE) == 0, resumed.said
+    assert judged(flown) is Outcome.SUCCESS
+    assert landed(flown)
+
+
+def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
+    flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
+    first = flown.start()
+    vehicle = begun(flown, "a", "tour 1")
+    vehicle.faults.set_battery(0.15)
+    assert first.end(PATIENCE) == 1, first.said
+    assert "fault" not in {step["label"] for step in flown.steps("a")}
+    assert not vehicle.autopilot.armed
+    assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=1.0)
+    vehicle.faults.set_battery(1.0)
+    before = len(vehicle.autopilot.track)
+    second = flown.start("--resume")
+    assert second.end(PATIENCE) == 0, second.said
+    assert judged(flown) is Outcome.SUCCESS
+    again = vehicle.autopilot.track[before:]
+    assert min((n - TOUR[0][0]) ** 2 + (e - TOUR[0][1]) ** 2 for _, n, e, _ in again) < 4.0
+    assert all(least_distance(vehicle, place) < 2.0 for place in (OUT, *TOUR))
+
+
+def test_a_folder_with_logs_is_not_flown_over(fleet):
+    flown = fleet(Pad("a"))
+    flown.logs.mkdir()
+    (flown.logs / "a.jsonl").write_text("", "ascii")
+    assert flown.start().end(PATIENCE) == 2
+    assert "holds logs already" in flown.process.said[-1]
+
+
+def test_a_vehicle_that_is_not_there_is_told_with_its_link(fleet):
+    flown = fleet(Pad("a"))
+    flown.vehicles["a"].faults.cut_link()
+    assert flown.start("--backend-option", "patience=1").end(PATIENCE) == 5
+    assert "no vehicle at udpin" in flown.process.said[-1]
+
+
+def test_faults_on_purpose_are_made_and_the_mission_still_flies(fleet):
+    flown = fleet(Pad("a", stay=1.0))
+    assert flown.start("--inject", "loss=0.1,delay=0.02~0.01,seed=7").end(PATIENCE) == 0, flown.process.said
+    assert judged(flown) is Outcome.SUCCESS
+    assert any(line["kind"] == "injected" for line in flown.box("a"))
+
+
+def test_simulated_robots_run_by_the_same_command(fleet):
+    flown = fleet(*SYNCHRONISED)
+    command = [sys.executable, "-m", "mmrs_core", "run", str(flown.behaviour), "--backend", "simulation"]
+    command += ["--speedup", "100", "--log", str(flown.logs), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["ending"]["outcome"] == "success"
+    assert judged(flown) is Outcome.SUCCESS
