@@ -8,6 +8,7 @@ from the opening of its link to its end, and ``options.py`` is the command line.
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from .conditions import standard
 from .program import (
     Choose,
     Geographic,
@@ -38,7 +39,7 @@ from .program import (
 )
 
 if TYPE_CHECKING:
-    from .desk import Condition
+    from .conditions import Condition
     from .main import main
     from .objects import Locator, where_expected
     from .vehicle import State
@@ -74,11 +75,12 @@ __all__ = [
     "Travel",
     "Turn",
     "main",
+    "standard",
     "where_expected",
 ]
 
 _NEED_A_LINK = {
-    "Condition": "desk",
+    "Condition": "conditions",
     "Locator": "objects",
     "State": "vehicle",
     "main": "main",

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 from .blackbox import BlackBox
 from .clock import Clock
+from .conditions import Condition
 from .log import Log
 from .objects import Locator
 from .slots import Slots
-from .vehicle import State
 
-Condition = Callable[[State], bool]
 Say = Callable[[str], None]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from .desk import Condition
+from .conditions import Condition
 from .objects import Locator
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 

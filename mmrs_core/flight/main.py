@@ -8,7 +8,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 
-from .desk import Condition
+from .conditions import Condition
 from .judgement import Judgement
 from .objects import Locator
 from .options import Options, options_of, parser_for

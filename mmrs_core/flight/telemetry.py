@@ -6,6 +6,7 @@ from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from .detections import Detections
 from .faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
 from .link import Link, Message
 from .program import Geographic, Local, Place
@@ -56,10 +57,21 @@ class Telemetry:
         self._position = "GLOBAL_POSITION_INT" if self._geographic else "LOCAL_POSITION_NED"
         self.texts = Texts(link.clock)
         link.observe(self.texts)
+        self._detections = Detections()
+        link.observe(self._detections)
 
     def state(self) -> State:
         """Return all that conditions are asked with."""
-        return State(self._link.clock.now(), self.here(), self.speed(), self.heading() or 0.0, self.energy())
+        wind = self.wind()
+        return State(
+            self._link.clock.now(),
+            self.here(),
+            self.speed(),
+            self.heading() or 0.0,
+            self.energy(),
+            wind=None if wind is None else wind[0],
+            detected=self._detections.names,
+        )
 
     def lacks(self) -> tuple[str, ...]:
         """Return in words what keeps the vehicle from being ready to move; empty when nothing does."""

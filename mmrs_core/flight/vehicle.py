@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from .missions import Item
@@ -20,6 +20,9 @@ class State:
             None where the vehicle does not say.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
+        wind: metres per second, or None where the vehicle does not say.
+        detected: names of what the vehicle has told that it detected.
+        answers: what people have answered so far, by question.
     """
 
     time: float
@@ -29,6 +32,9 @@ class State:
     energy: float | None
     mode: str = ""
     armed: bool = False
+    wind: float | None = None
+    detected: frozenset[str] = frozenset()
+    answers: Mapping[str, bool] = field(default_factory=dict)
 
 
 class Vehicle(Protocol):

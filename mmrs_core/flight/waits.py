@@ -75,13 +75,36 @@ class Waits:
 
     def _choose(self, then: Choose) -> str:
         self._await(then.waits, None)
-        try:
-            holds = bool(self._desk.conditions[then.condition](self._vehicle.state()))
-        except Exception as error:
-            raise Fault(CONDITION_FAILED, f"condition {then.condition!a} fails: {error!r}") from error
+        holds = self._decided(then.condition)
         chosen = "true" if holds else "false"
         self._await(then.waits, lambda lamport: self._journal.write("choose", chosen, "", lamport))
         return then.move if holds else then.otherwise
+
+    def _decided(self, condition: str) -> bool:
+        """Return whether a condition holds, once that can be said."""
+        begun = self._desk.clock.now()
+        told = False
+        while (holds := self._asked(condition)) is None:
+            if not told:
+                self._desk.say(f"{self._robot.id!a} waits until {condition!a} can be decided")
+                told = True
+            self._check_patience(condition, begun)
+            self._vehicle.rest(GLANCE_SECONDS)
+        return holds
+
+    def _asked(self, condition: str) -> bool | None:
+        try:
+            holds = self._desk.conditions[condition](self._vehicle.state())
+        except Exception as error:
+            raise Fault(CONDITION_FAILED, f"condition {condition!a} fails: {error!r}") from error
+        return None if holds is None else bool(holds)
+
+    def _check_patience(self, shown: str, begun: float) -> None:
+        if self._desk.stop.is_set():
+            raise Stopped()
+        limit = self._patience(WAIT_TOO_LONG, inf)
+        if self._desk.clock.now() - begun > limit:
+            self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {shown}"))
 
     def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
         slots, clock = self._desk.slots, self._desk.clock
@@ -101,12 +124,8 @@ class Waits:
             self._journal.waited(names, clock.now() - begun)
 
     def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
-        if self._desk.stop.is_set():
-            raise Stopped()
         now, shown = self._desk.clock.now(), ", ".join(map(ascii, names))
-        limit = self._patience(WAIT_TOO_LONG, inf)
-        if now - begun > limit:
-            self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {shown}"))
+        self._check_patience(shown, begun)
         if now - alone > self._patience(PEER_LOST, PEER_SECONDS):
             self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
 

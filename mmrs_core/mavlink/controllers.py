@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.flight.conditions import is_standard
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.capabilities import OF_CONTROLLERS
@@ -58,6 +59,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
             for module, robot in zip(modules, robots, strict=True)
         ],
         "conditions": conditions,
+        "standard_conditions": [name for name in conditions if is_standard(name)],
+        "own_conditions": [name for name in conditions if not is_standard(name)],
         "objects": objects,
     }
     yield FileSpec("fleet.py", "fleet.py.jinja", common)

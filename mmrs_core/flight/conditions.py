@@ -1,0 +1,80 @@
+"""Conditions of choices that need nobody to write them: their identifiers say what they ask.
+
+``battery-below:0.3`` holds with less than that part of the battery left, ``wind-above:8`` in wind of
+more metres per second, ``detected:NAME`` once the vehicle has told that it detected that, and
+``answer:QUESTION`` if the operator answers yes. Where there is no figure to go by, or no answer yet,
+they are undecided, and the robot waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from .vehicle import State
+
+Condition: TypeAlias = "Callable[[State], bool | None]"
+"""Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
+
+BATTERY, WIND, DETECTED, ANSWER = "battery-below", "wind-above", "detected", "answer"
+
+
+def standard(identifier: str) -> Condition:
+    """Return the standard condition that an identifier asks for.
+
+    Raises:
+        ValueError: it asks for none.
+    """
+    word, _, rest = identifier.partition(":")
+    if not is_standard(identifier):
+        raise ValueError(f"{identifier!a}: no standard condition; there are {', '.join(_MAKE)}")
+    return _MAKE[word](rest)
+
+
+def is_standard(identifier: str) -> bool:
+    """Return whether an identifier asks for a standard condition.
+
+    >>> [name for name in ("wind-above:8", "wind-above:gale", "calm") if is_standard(name)]
+    ['wind-above:8']
+    """
+    word, _, rest = identifier.partition(":")
+    return word in _MAKE and bool(rest) and (word not in (BATTERY, WIND) or _is_number(rest))
+
+
+def question_of(identifier: str) -> str:
+    """Return what an operator is asked by a condition; empty where nobody is."""
+    word, _, rest = identifier.partition(":")
+    return rest if word == ANSWER else ""
+
+
+def _battery(limit: str) -> Condition:
+    return lambda state: None if state.energy is None else state.energy < float(limit)
+
+
+def _wind(limit: str) -> Condition:
+    return lambda state: None if state.wind is None else state.wind > float(limit)
+
+
+def _detected(name: str) -> Condition:
+    return lambda state: name in state.detected
+
+
+def _answer(question: str) -> Condition:
+    return lambda state: state.answers.get(question)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return isfinite(float(text))
+    except ValueError:
+        return False
+
+
+_MAKE: Mapping[str, Callable[[str], Condition]] = {
+    BATTERY: _battery,
+    WIND: _wind,
+    DETECTED: _detected,
+    ANSWER: _answer,
+}
