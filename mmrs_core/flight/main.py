@@ -13,6 +13,7 @@ from .judgement import Judgement
 from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
+from .radios import Radios
 from .session import FAILED, INTERRUPTED, LINK, OK, Shared, run_robot
 from .slots import LocalSlots, Slots, shared_slots, strangers_of
 
@@ -40,7 +41,8 @@ def main(
         slots = _slots(parser, robots, options, stack)
         stop = threading.Event()
         _stop_on_signals(stop)
-        codes = _run_all(robots, Shared(options, slots, judgement, stop))
+        radios = Radios(options.clock, options.reach.signer, options.reach.retries)
+        codes = _run_all(robots, Shared(options, slots, judgement, radios, stop))
     return next((code for code in (INTERRUPTED, LINK, FAILED) if code in codes), OK)
 
 

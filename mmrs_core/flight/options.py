@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from .clock import Clock
-from .link import TRIES
-from .ports import address_of
+from .link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
+from .ports import address_of, split_system
 from .program import Robot
-from .signing import signing_key
+from .signing import Signer, signer_for
 
 FIRST_PORT = 14_550
 PORT_STEP = 10
@@ -24,18 +24,18 @@ class Reach:
     """How vehicles are reached.
 
     Attributes:
-        urls: of the links, by robot.
-        system: MAVLink system of the vehicles; 0: whichever speaks first.
+        urls: of the links, by robot; robots with the same one share its port.
+        systems: MAVLink systems of the vehicles, by robot; 0: whichever speaks first.
         patience: real seconds to wait for a vehicle's first sign.
-        tries: how often to send at most what is not answered.
-        key: to sign with; None: no signatures.
+        retries: how often, and how long apart, to send what is not answered.
+        signer: None: no signatures.
     """
 
     urls: Mapping[str, str]
-    system: int
+    systems: Mapping[str, int]
     patience: float
-    tries: int
-    key: bytes | None
+    retries: Retries
+    signer: Signer | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,51 +141,71 @@ def options_of(
 def _add_reach(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
-        "--link",
+        "--connect",
         action="append",
         default=[],
-        metavar="[ROBOT=]URL",
-        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD;"
+        metavar="[ROBOT=]URL[@SYSTEM]",
+        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD, and the MAVLink system of the"
+        " vehicle where several share a link;"
         f" default udpin:127.0.0.1:{FIRST_PORT} for the first robot, {PORT_STEP} more for each further one",
     )
     add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
     add("--tries", type=int, default=TRIES, help="how often to send at most what a vehicle does not answer")
-    add("--system", type=int, default=0, help="MAVLink system of the vehicle; 0: whichever speaks first")
+    add("--answer-seconds", type=float, default=ANSWER_SECONDS, help="how long to wait for an answer")
+    add("--item-seconds", type=float, default=ITEM_SECONDS, help="how long to wait for a mission's item")
     add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
 
 
 def _reach(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:
     if given.tries < 1:
         parser.error("--tries must be at least 1")
-    urls, key = _urls(parser, robots, given.link), _key(parser, given.signing_key)
-    return Reach(urls, given.system, given.patience, given.tries, key)
+    if min(given.answer_seconds, given.item_seconds) <= 0:
+        parser.error("--answer-seconds and --item-seconds must be positive")
+    found = _links(parser, robots, given.connect)
+    return Reach(
+        {robot: url for robot, (url, _) in found.items()},
+        {robot: system for robot, (_, system) in found.items()},
+        given.patience,
+        Retries(given.tries, given.answer_seconds, given.item_seconds),
+        _signer(parser, given.signing_key),
+    )
 
 
-def _urls(parser: argparse.ArgumentParser, robots: Sequence[Robot], links: Sequence[str]) -> dict[str, str]:
-    urls = {robot.id: f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * i}" for i, robot in enumerate(robots)}
+def _links(
+    parser: argparse.ArgumentParser, robots: Sequence[Robot], links: Sequence[str]
+) -> dict[str, tuple[str, int]]:
+    found = {
+        robot.id: (f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * index}", 0)
+        for index, robot in enumerate(robots)
+    }
     for link in links:
-        robot, separator, url = link.rpartition("=")
-        if separator and robot not in urls:
-            parser.error(f"--link {link}: there is no robot {robot!a}")
+        robot, separator, text = link.rpartition("=")
+        if separator and robot not in found:
+            parser.error(f"--connect {link}: there is no robot {robot!a}")
         if not separator and len(robots) > 1:
-            parser.error(f"--link {link}: which robot? say ROBOT={link}")
-        _check(parser, url)
-        urls[robot or robots[0].id] = url
-    return urls
+            parser.error(f"--connect {link}: which robot? say ROBOT={link}")
+        found[robot or robots[0].id] = _link(parser, text)
+    taken = [each for each in found.values() if each[1]]
+    for url, system in taken:
+        if taken.count((url, system)) > 1:
+            parser.error(f"--connect {url}@{system}: is given to two robots")
+    return found
 
 
-def _check(parser: argparse.ArgumentParser, url: str) -> None:
+def _link(parser: argparse.ArgumentParser, text: str) -> tuple[str, int]:
     try:
+        url, system = split_system(text)
         address_of(url)
     except ValueError as error:
-        parser.error(f"--link {error}")
+        parser.error(f"--connect {error}")
+    return url, system
 
 
-def _key(parser: argparse.ArgumentParser, path: Path | None) -> bytes | None:
+def _signer(parser: argparse.ArgumentParser, path: Path | None) -> Signer | None:
     if path is None:
         return None
     try:
-        return signing_key(path)
+        return signer_for(path)
     except (OSError, ValueError) as error:
         parser.error(str(error))
 

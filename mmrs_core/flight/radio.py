@@ -190,7 +190,9 @@ class Radio:
             if ear.system == system and ear.component:
                 ear.hears(message, sender)
                 return
-        self.dropped[f"{message.get_type()}: from system {system}, which is no robot's"] += 1
+        if all(ear.component for ear in self._ears):
+            # Before everybody has met their vehicle, nobody can say whose this is.
+            self.dropped[f"{message.get_type()}: from system {system}, which is no robot's"] += 1
 
     def _introduce(self, heartbeat: Message) -> None:
         system = heartbeat.get_srcSystem()

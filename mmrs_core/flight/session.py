@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -22,8 +23,8 @@ from .link import Link
 from .log import Log
 from .options import Options
 from .pilot import Pilot
-from .ports import Port, open_port
 from .program import Geographic, Robot
+from .radios import Radios
 from .responses import policy_for, respond
 from .screen import say
 from .slots import Slots
@@ -42,6 +43,7 @@ class Shared:
     options: Options
     slots: Slots
     judgement: Judgement
+    radios: Radios
     stop: threading.Event
 
 
@@ -76,8 +78,8 @@ class Session:
     def run(self, fence: bool) -> int:
         """Carry the program out, with or without a fence; return the exit code."""
         code = self._carry_out(fence)
-        if self.link is not None and self.link.garbled:
-            self._tell_garbled(self.link.garbled)
+        if self.link is not None and self.link.dropped:
+            self._tell_dropped(self.link.dropped)
         return code
 
     def _carry_out(self, fence: bool) -> int:
@@ -125,9 +127,10 @@ class Session:
                 raise
             say(f"{self.robot.id!a}: {fault}")
 
-    def _tell_garbled(self, frames: int) -> None:
-        say(f"{self.robot.id!a}: {frames} frames from the link could not be read")
-        self.desk.box.write("counted", frames={"unreadable": frames})
+    def _tell_dropped(self, dropped: Mapping[str, int]) -> None:
+        shown = ", ".join(f"{reason} ({frames})" for reason, frames in sorted(dropped.items()))
+        say(f"{self.robot.id!a}: frames on the link that were not used: {shown}")
+        self.desk.box.write("counted", frames=dropped)
 
     def _response_to(self, fault: Fault) -> str:
         if fault.event == STOPPED:
@@ -159,7 +162,7 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
         options.dry,
     )
     watch = Watch(robot, options.clock, shared.stop)
-    link = None if options.dry else _link(robot, options, watch, stack)
+    link = None if options.dry else _link(robot, shared, watch, stack)
     vehicle = _vehicle(robot, options, watch, link)
     box.write("start", **_facts(robot, options, link))
     if link is not None:
@@ -181,19 +184,20 @@ def _vehicle(robot: Robot, options: Options, watch: Watch, link: Link | None) ->
         acceptance=near.place,
         travel=robot.travel,
         home_tolerance=near.home,
+        tell=lambda line: say(f"{robot.id!a}: {line}"),
     )
     watch.begin(link, vehicle)
     return vehicle
 
 
-def _link(robot: Robot, options: Options, watch: Watch, stack: ExitStack) -> Link:
-    reach, url = options.reach, options.reach.urls[robot.id]
-    link = Link(_port(url), options.clock, reach.system, reach.key)
+def _link(robot: Robot, shared: Shared, watch: Watch, stack: ExitStack) -> Link:
+    reach, clock = shared.options.reach, shared.options.clock
+    url, system = reach.urls[robot.id], reach.systems[robot.id]
+    link = shared.radios.open(url, system)
     stack.callback(link.close)
-    link.guard, link.tries = watch.check, reach.tries
-    say(f"{robot.id!a}: waits for a vehicle at {url}")
-    if not link.wait(lambda: link.component, reach.patience * options.clock.speedup):
-        raise Fault(LINK_LOST, f"no vehicle at {url}{_why_unheard(link)}")
+    link.guard = watch.check
+    say(f"{robot.id!a}: waits for {f'system {system}' if system else 'a vehicle'} at {url}")
+    shared.radios.meet(link, url, reach.patience * clock.speedup)
     return link
 
 
@@ -207,16 +211,3 @@ def _facts(robot: Robot, options: Options, link: Link | None) -> dict[str, objec
         "home": robot.home,
         "versions": {"python": python_version(), "pymavlink": version("pymavlink")},
     }
-
-
-def _port(url: str) -> Port:
-    try:
-        return open_port(url)
-    except OSError as error:
-        raise Fault(LINK_LOST, f"{url}: {error.strerror or error}") from error
-
-
-def _why_unheard(link: Link) -> str:
-    if link.garbled:
-        return f"; {link.garbled} frames from there could not be read, or are not signed with the key"
-    return f"; {link.trouble}" if link.trouble else ""

@@ -180,7 +180,7 @@ def test_a_vehicle_far_from_home_does_not_start(controllers, hangar):
 
 def test_a_vehicle_that_is_never_there_is_a_lost_link(controllers):
     made = controllers(one_drone())
-    code, said = made.run("fleet.py", "--patience", "0.5", "--link", "alpha=udpin:127.0.0.1:0")
+    code, said = made.run("fleet.py", "--patience", "0.5", "--connect", "alpha=udpin:127.0.0.1:0")
     assert code == 5
     assert "no vehicle at" in said
 
@@ -247,7 +247,7 @@ def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
 
 def test_stop_before_there_is_a_vehicle_ends_the_program(controllers):
     made = controllers(one_drone())
-    with made.start("fleet.py", "--link", "alpha=udpin:127.0.0.1:0") as process:
+    with made.start("fleet.py", "--connect", "alpha=udpin:127.0.0.1:0") as process:
         assert any("waits for a vehicle" in line for line in process.stderr)
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=30)

@@ -140,14 +140,14 @@ def test_one_of_several_robots_does_not_start_alone(controllers):
     made = controllers(two_drones())
     code, said = made.run("robot_beta.py", "--dry-run")
     assert code == 2
-    assert "waits for 'alpha'" in said
+    assert "needs 'alpha'" in said
 
 
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["--link", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
-        (["--link", "udpin:127.0.0.1:1"], "which robot"),
+        (["--connect", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
+        (["--connect", "udpin:127.0.0.1:1"], "which robot"),
         (["--speedup", "-1"], "must be positive"),
     ],
 )

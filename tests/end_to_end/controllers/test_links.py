@@ -78,13 +78,13 @@ def test_what_cannot_be_sent_is_lost_and_the_link_says_why():
 def test_a_controller_says_that_its_peer_has_hung_up(controllers):
     made = controllers(UP_AND_DOWN)
     with hangs_up_after(0.5) as url:
-        code, said = made.run("fleet.py", "--link", f"alpha={url}", patience=20.0)
+        code, said = made.run("fleet.py", "--connect", f"alpha={url}", patience=20.0)
     assert code == 5
     assert "the vehicle's side has closed the connection" in said
 
 
 def test_a_port_that_cannot_be_opened_is_a_lost_link(controllers):
-    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--link", "tcp:127.0.0.1:1")
+    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--connect", "tcp:127.0.0.1:1")
     assert code == 5
     assert "'alpha': tcp:127.0.0.1:1: Connection refused" in said
 
@@ -93,9 +93,9 @@ def test_a_port_that_cannot_be_opened_is_a_lost_link(controllers):
     "url", ["tcp:nowhere", "udpin:127.0.0.1:99999", "udpout::14550", "/dev/ttyUSB0,fast", ",57600"]
 )
 def test_a_url_that_is_none_is_a_usage_error(controllers, url):
-    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--link", url)
+    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--connect", url)
     assert code == 2
-    assert f"--link {url}: is not" in said
+    assert f"--connect {url}: is not" in said
 
 
 def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar):
@@ -113,6 +113,7 @@ def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar
             stranger.sendto(NOISE, ("127.0.0.1", port))
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
-    assert "frames from the link could not be read" in said
+    assert "frames on the link that were not used: " in said
+    assert "unreadable (" in said
     (counted,) = made.box("alpha", "counted")
     assert counted["frames"]["unreadable"] > 0

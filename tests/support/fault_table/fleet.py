@@ -112,7 +112,7 @@ class Fleet:
         return replay(program, read_logs([self.logs], partial=True), partial=True)
 
 
-CONNECT = {"generated": "--link", "interpreted": "--connect"}
+CONNECT = {"generated": "--connect", "interpreted": "--connect"}
 
 
 @cache
