@@ -46,5 +46,5 @@ def section(title: str, *inside: str, note: str = "") -> str:
 
 
 def folded(title: str, inside: str) -> str:
-    """Return what is shown when somebody asks for it, and on paper."""
+    """Return what is shown, on paper too, when somebody has asked for it."""
     return element("details", None, element("summary", None, text(title)), inside) if inside else ""
