@@ -19,6 +19,11 @@ CORE_COMMANDS = frozenset(
         "convert",
         "diff",
         "migrate",
+        "bus",
+        "sitl",
+        "report",
+        "control",
+        "run",
         "plugin",
         "metamodel",
     }
