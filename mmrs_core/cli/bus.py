@@ -165,7 +165,7 @@ def state(
 
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
-        answers = states_of(mission, run, endpoints, seconds)
+        answers = states_of(mission, run, endpoints, seconds, robots or ())
     except OSError as error:
         raise LinkLostError(str(error)) from error
     names = {digest(robot): robot for robot in robots or ()}

@@ -261,8 +261,10 @@ class Node:
             self._tell_changed()
 
     def close(self) -> None:
-        """Leave the bus; robots that have not ended are lost to the others."""
+        """Leave the bus, once; robots that have not ended are lost to the others."""
         with self._changed:
+            if self._closed:
+                return
             until = self._now() + FAREWELL_SECONDS
             while self._farewells and self._threaded and self._now() < until:
                 self._changed.wait(0.05)

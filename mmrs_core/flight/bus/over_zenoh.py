@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import json
 import threading
+import time
 import uuid
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
@@ -86,10 +87,7 @@ class ZenohCarrier:
             OSError: it cannot be opened, or its configuration is not readable.
         """
         self._station = station
-        try:
-            self._session = zenoh.open(configuration(self._endpoints))
-        except zenoh.ZError as error:
-            raise OSError(f"bus: cannot be opened: {error}") from error
+        self._session = _opened(self._endpoints)
         self._worker.start()
         watched = self._session.liveliness().declare_subscriber(
             f"{self._prefix}/*/here/*", self._later(self._see), history=True
@@ -143,11 +141,11 @@ class ZenohCarrier:
                 self._session.put(self._key(robot, "state"), shown)
 
     def close(self) -> None:
-        """Close the session."""
+        """Close the session; idempotent."""
         for robot in list(self._tokens):
             self.vanish(robot)
-        for each in self._declared:
-            each.undeclare()
+        while self._declared:
+            self._declared.pop().undeclare()
         with self._closing:
             session, self._session = self._session, None
         if session is not None:
@@ -238,12 +236,35 @@ def _insert(config: Any, name: str, value: object) -> None:
     config.insert_json5(name, json.dumps(value))
 
 
-def states_of(mission: str, run: str, endpoints: Endpoints, seconds: float) -> Mapping[str, str]:
-    """Return the state of slots of all robots that answer in time, by digest of the robot's name."""
-    with zenoh.open(configuration(endpoints)) as session:
-        key = f"mmrs/{digest(mission)}/{digest(run)}/*/state"
-        found = {}
-        for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
-            if reply.ok is not None:
-                found[str(reply.ok.key_expr).split("/")[3]] = reply.ok.payload.to_string()
-        return found
+def states_of(
+    mission: str, run: str, endpoints: Endpoints, seconds: float, robots: Sequence[str] = ()
+) -> dict[str, str]:
+    """Return the state of slots as JSON, by digest of the robot's name.
+
+    Args:
+        mission, run: of the robots.
+        endpoints: how they are reached.
+        seconds: for which they are asked; less where all that are wanted have answered.
+        robots: that are wanted; none: whoever answers.
+
+    Raises:
+        OSError: the bus cannot be opened.
+    """
+    key, found = f"mmrs/{digest(mission)}/{digest(run)}/*/state", dict[str, str]()
+    wanted = {digest(robot) for robot in robots}
+    until = time.monotonic() + seconds
+    with _opened(endpoints) as session:
+        while time.monotonic() < until and not (wanted and wanted <= set(found)):
+            # Peers may not be in touch yet: what they keep is asked for again and again.
+            for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
+                if reply.ok is not None:
+                    found[str(reply.ok.key_expr).split("/")[3]] = reply.ok.payload.to_string()
+            time.sleep(0.05)
+    return found
+
+
+def _opened(endpoints: Endpoints) -> Any:
+    try:
+        return zenoh.open(configuration(endpoints))
+    except zenoh.ZError as error:
+        raise OSError(f"bus: cannot be opened: {error}") from error

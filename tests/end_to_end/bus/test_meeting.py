@@ -1,0 +1,73 @@
+"""Beginning together: nobody begins before all are ready, and then all at one instant."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from mmrs_core.flight.bus import begin_together
+
+NAMES = ("a", "b", "c")
+
+
+class Ready:
+    """A robot that is ready and waits for the others, in a thread."""
+
+    def __init__(self, node, robot: str, ahead: float = 0.0) -> None:
+        self.begun = self.found = None
+        self.missing: list[str] = []
+        self._node, self._robot, self._ahead = node, robot, ahead
+        self.thread = threading.Thread(target=self._run)
+        self.thread.start()
+
+    def _run(self) -> None:
+        clock = lambda: time.monotonic() + self._ahead  # noqa: E731
+        self.found = begin_together(self._node, self._robot, "run-0", NAMES, self.missing.append, clock)
+        self.begun = time.monotonic()
+
+
+def test_robots_of_several_processes_begin_at_one_instant(ends):
+    ready = [Ready(ends.open(robot), robot) for robot in NAMES]
+    for each in ready:
+        each.thread.join(20.0)
+    instants = [each.begun for each in ready]
+    skews = [each.found.skew for each in ready]
+    assert max(instants) - min(instants) < 0.25
+    assert max(instants) - min(instants) <= 2 * max(skews) + 0.05
+
+
+def test_clocks_that_differ_are_measured(ends):
+    ready = [
+        Ready(ends.open(robot), robot, ahead)
+        for robot, ahead in zip(NAMES, (0.0, 1000.0, -50.0), strict=True)
+    ]
+    for each in ready:
+        each.thread.join(20.0)
+    assert ready[1].found.offset == pytest.approx(-1000.0, abs=0.2)
+    assert ready[2].found.offset == pytest.approx(50.0, abs=0.2)
+    instants = [each.begun for each in ready]
+    assert max(instants) - min(instants) < 0.25
+
+
+def test_nobody_begins_before_all_are_ready_and_each_is_told_who_is(ends):
+    first = [Ready(ends.open(robot), robot) for robot in NAMES[:2]]
+    time.sleep(1.5)
+    assert [each.begun for each in first] == [None, None]
+    assert any("2 of 3 are ready: 'a', 'b'" in why for why in first[1].missing)
+    last = Ready(ends.open("c"), "c")
+    for each in (*first, last):
+        each.thread.join(20.0)
+        assert each.begun is not None
+
+
+def test_waiting_for_the_others_can_be_ended(ends):
+    class Tired(Exception):  # noqa: N818
+        pass
+
+    def guard(why: str) -> None:
+        raise Tired
+
+    with pytest.raises(Tired):
+        begin_together(ends.open("b"), "b", "run-0", NAMES, guard)

@@ -1,0 +1,100 @@
+"""Who is there: a robot that is killed, frozen or has ended is noticed, and how soon."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import bus_walking
+import pytest
+from bus_walking import RUN, exchange
+
+from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.runtime.slots import shared_bus
+
+SCRIPT = Path(bus_walking.__file__)
+LEASE = 1.5
+
+
+@pytest.fixture
+def watcher(ends, tmp_path):
+    """Return the bus of robot 'b', and the endpoint at which it listens."""
+    made = exchange()
+    endpoint = f"tcp/127.0.0.1:{ends.ports['b']}"
+    carrier = ZenohCarrier("m", RUN, ("a", "b"), Endpoints((endpoint,)))
+    bus = shared_bus(made, ["b"], RUN, tmp_path / "b", carrier)
+    yield bus, endpoint
+    bus.close()
+
+
+@pytest.fixture
+def walker(watcher, tmp_path):
+    """Return the process of robot 'a', which waits for 'b' for ever."""
+    command = [sys.executable, str(SCRIPT), "exchange", "a", str(tmp_path / "a"), "--connect", watcher[1]]
+    process = subprocess.Popen(command)
+    yield process
+    process.send_signal(signal.SIGCONT)
+    process.kill()
+    process.wait()
+
+
+@pytest.fixture
+def seen(watcher, walker, until):
+    bus, _ = watcher
+    until(lambda: not bus.node.missing(["a"]))
+    return bus, walker
+
+
+def test_a_robot_that_has_never_come_is_missing_and_not_lost(watcher):
+    bus, _ = watcher
+    assert bus.node.missing(["a"]) == ("a",)
+    assert bus.lost(["a"]) == ()
+
+
+def test_a_killed_robot_is_noticed_at_once(seen, until):
+    bus, walker = seen
+    walker.kill()
+    assert until(lambda: bus.lost(["a"])) < 0.5
+
+
+def test_whoever_waits_is_woken_when_a_robot_is_killed(seen, until):
+    bus, walker = seen
+    told = []
+    bus.on_change(lambda: told.append(bus.lost(["a"])))
+    walker.kill()
+    until(lambda: ("a",) in told, 2.0)
+
+
+def test_a_frozen_robot_is_noticed_within_the_lease_and_again_when_it_wakes(seen, until):
+    bus, walker = seen
+    os.kill(walker.pid, signal.SIGSTOP)
+    assert until(lambda: bus.lost(["a"])) < 2 * LEASE
+    os.kill(walker.pid, signal.SIGCONT)
+    until(lambda: not bus.lost(["a"]))
+
+
+def test_a_robot_that_has_ended_needs_no_answer(ends, until, notify):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    b.leave("b")
+    b.close()
+    until(lambda: a.lost(["b"]))
+    assert notify(a, "a", "b")
+
+
+def test_a_robot_that_is_killed_has_not_ended_and_its_answer_is_awaited(ends, until, notify):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    b.close()
+    until(lambda: a.lost(["b"]))
+    assert not notify(a, "a", "b", seconds=1.0)
+
+
+def test_nothing_of_another_run_is_heard(ends, notify):
+    a, other = ends.open("a"), ends.open("b", run="another")
+    assert not notify(a, "a", "b", seconds=1.0)
+    assert a.missing(["b"]) == ("b",)
+    assert not other.state(("b", "go")).active

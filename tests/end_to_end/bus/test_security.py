@@ -1,0 +1,108 @@
+"""The bus with certificates: who has none is not heard, and nobody speaks for another."""
+
+from __future__ import annotations
+
+import json
+import stat
+import time
+
+import pytest
+
+from mmrs_core.cli.running import run_command
+from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+
+LONG_ENOUGH = 1.5
+
+
+@pytest.fixture
+def secured(ends, until):
+    """Return ends with certificates, those of 'a' and 'b' open and in touch."""
+    ends.certify()
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    return ends, a, b
+
+
+def test_robots_with_certificates_notify_each_other(secured, notify):
+    _, a, b = secured
+    assert notify(a, "a", "b")
+    assert notify(b, "b", "a")
+    assert b.state(("b", "go")).active
+
+
+def test_a_third_robot_reaches_both(secured, until, notify):
+    ends, a, b = secured
+    c = ends.open("c")
+    until(lambda: not c.missing(["a", "b"]) and not a.missing(["c"]) and not b.missing(["c"]))
+    assert notify(c, "c", "a")
+    assert notify(c, "c", "b")
+
+
+def test_a_peer_without_certificate_is_neither_heard_nor_seen(secured, notify):
+    ends, a, _ = secured
+    stranger = ends.open("c", certificate="observer", listens=False)
+    ends.keys = None
+    ways = tuple(f"tls/127.0.0.1:{ends.ports[robot]}" for robot in ("a", "b"))
+    carrier = ZenohCarrier("mission", "run-0", ("a", "b", "c"), Endpoints((), ways))
+    bare = type(a)([stranger._members["c"]], "run-0", carrier=carrier)
+    try:
+        time.sleep(LONG_ENOUGH)
+        assert set(bare.missing(["a", "b"])) == {"a", "b"}
+        assert not notify(bare, "c", "a", seconds=LONG_ENOUGH)
+        assert a.missing(["c"]) == ("c",)
+    finally:
+        bare.close()
+
+
+def test_a_certificate_does_not_speak_for_another_robot(secured, until, notify):
+    ends, a, b = secured
+    b.close()
+    until(lambda: a.lost(["b"]))
+    forger = ends.open("b", certificate="c", listens=False)
+    until(lambda: not forger.missing(["a"]))
+    assert not notify(forger, "b", "a", seconds=LONG_ENOUGH)
+    assert not a.state(("a", "go")).active
+    assert a.missing(["b"]) == ("b",), "its sign of life was believed"
+
+
+def test_an_observer_sees_slots_and_cannot_set_them(secured, notify, capsys):
+    ends, a, _ = secured
+    assert notify(a, "a", "b")
+    ways = ends.endpoints("c", "observer").connect
+    arguments = ["bus", "state", "mission", "--config", str(ends.keys / "observer" / "bus.json5"), "--json"]
+    assert (
+        run_command(
+            [*arguments, *(word for way in ways for word in ("--connect", way)), "--robot", "b"], "mmrs"
+        )
+        == 0
+    )
+    assert json.loads(capsys.readouterr().out)["slots"]["b"]["go"]["active"]
+    observer = ends.open("c", certificate="observer", listens=False)
+    assert not notify(observer, "c", "a", seconds=LONG_ENOUGH)
+
+
+def test_keys_are_readable_by_their_owner_only_and_kept_when_a_robot_is_added(tmp_path, capsys):
+    folder = tmp_path / "keys"
+    assert run_command(["bus", "keys", str(folder), "--robot", "a", "--robot", "ground=b,c"], "mmrs") == 0
+    key = folder / "a" / "key.pem"
+    before = key.read_bytes()
+    assert stat.S_IMODE(key.stat().st_mode) == 0o600
+    again = ["bus", "keys", str(folder), "--robot", "a", "--robot", "ground=b,c", "--robot", "d"]
+    assert run_command(again, "mmrs") == 0
+    assert key.read_bytes() == before
+    known = json.loads((folder / "a" / "bus.json5").read_text())["access_control"]["subjects"]
+    names = [name for subject in known for name in subject["cert_common_names"]]
+    assert names == ["a", "ground", "d", "observer"]
+
+
+@pytest.mark.parametrize("name", ["../x", "a/b", "observer", ""])
+def test_a_name_that_is_no_folder_is_refused(tmp_path, capsys, name):
+    assert run_command(["bus", "keys", str(tmp_path / "keys"), "--robot", name], "mmrs") == 2
+
+
+def test_a_robot_with_two_certificates_is_refused(tmp_path, capsys):
+    assert (
+        run_command(["bus", "keys", str(tmp_path / "keys"), "--robot", "a", "--robot", "ground=b,a"], "mmrs")
+        == 2
+    )
+    assert "given twice" in capsys.readouterr().err
