@@ -117,7 +117,7 @@ class ZenohCarrier:
     def appear(self, robot: str) -> None:
         """Answer for a robot, and tell that it is there."""
         self._own.add(robot)
-        serve, show = self._later(self._serve), self._later(self._show)
+        serve, show = self._later(self._serve), self._later(lambda query: self._show(robot, query))
         self._declared.append(self._session.declare_queryable(self._key(robot, "from", None), serve))
         self._declared.append(self._session.declare_queryable(self._key(robot, "state"), show))
         here = f"{self._key(robot, 'here')}/{self._start}"
@@ -174,11 +174,11 @@ class ZenohCarrier:
             text = "" if len(content) > LONGEST else content.decode("utf-8", "replace")
             query.reply(query.key_expr, self._station.serve(robot, asker, text))
 
-    def _show(self, query: Any) -> None:
+    def _show(self, robot: str, query: Any) -> None:
+        """Answer a query for states; its key may stand for those of many robots."""
         with query:
-            robot = self._names.get(str(query.key_expr).removeprefix(f"{self._prefix}/").split("/")[0])
-            if robot in self._own and self._station is not None:
-                query.reply(query.key_expr, self._station.shown(robot))
+            if self._station is not None:
+                query.reply(self._key(robot, "state"), self._station.shown(robot))
 
     def _see(self, sample: Any) -> None:
         robot, _, start = str(sample.key_expr).removeprefix(f"{self._prefix}/").split("/")
