@@ -82,7 +82,9 @@ class MavlinkBackend:
         self._policies: Sequence[Policy] = ()
         self._watch = self._new_watch()
         self._alone = self._wanted = policy_for(LINK_LOST, robot)
-        self._worker = Worker(f"robot {robot.id!a}", self._look, self._idle, self._halt)
+        self._worker = Worker(
+            f"robot {robot.id!a}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
+        )
         self._worker.changed = equipment.wake
         equipment.link.guard = self._worker.guard
         self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
@@ -93,7 +95,7 @@ class MavlinkBackend:
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
         self._response = ""
-        self._watched = self._was_paused = False
+        self._watched = False
         self._seen: VehicleFault | None = None
         self._ready = False
 
@@ -190,21 +192,16 @@ class MavlinkBackend:
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
-        self._was_paused = False
         self._worker.pause()
         self._with.link.wake()
 
     def resume(self, now: float) -> None:
         """Go on."""
-        self._was_paused = self._worker.halted
         self._worker.resume()
 
     def paused(self, now: float) -> bool:
-        """Return whether the vehicle stands, and has not been seen to go on."""
-        if self._worker.halted:
-            return True
-        goes_on = self._worker.done or self._with.vehicle.state().mode != modes.HOLD
-        return self._was_paused and not goes_on
+        """Return whether the vehicle stands, and has not gone on."""
+        return self._worker.halted
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""

@@ -51,7 +51,12 @@ class Worker:
     """
 
     def __init__(
-        self, name: str, watch: Callable[[], None], idle: Callable[[], None], halt: Callable[[], None]
+        self,
+        name: str,
+        watch: Callable[[], None],
+        idle: Callable[[], None],
+        halt: Callable[[], None],
+        go_on: Callable[[], None],
     ) -> None:
         """Start the thread; it has nothing to do yet.
 
@@ -60,10 +65,11 @@ class Worker:
             watch: looked at in every wait of a job; raises a Fault.
             idle: looked at while there is no job; raises a Fault.
             halt: brings the vehicle to a halt and returns when it stands.
+            go_on: has the vehicle be steered again after that.
         """
         self.fault: Fault | None = None
         self.changed: Callable[[], None] = lambda: None
-        self._watch, self._idle, self._halt = watch, idle, halt
+        self._watch, self._idle, self._halt, self._go_on = watch, idle, halt, go_on
         self._news = threading.Condition()
         self._job: Job | None = None
         self._newest = 0
@@ -94,14 +100,14 @@ class Worker:
 
     @property
     def halted(self) -> bool:
-        """Return whether the vehicle was told to pause, and stands."""
-        return self._holds and self._halted
+        """Return whether the vehicle stands, and has not gone on yet."""
+        return self._halted
 
     def pause(self) -> None:
         """Halt in the middle of the job."""
         with self._news:
             if not self._holds:
-                self._holds, self._halted = True, False
+                self._holds = True
                 self._newest += 1
                 self._news.notify_all()
 
@@ -147,6 +153,8 @@ class Worker:
             return lambda: None
         if self._holds:
             return self._idle if self._halted else self._come_to_a_halt
+        if self._halted:
+            return self._carry_on
         return self._idle if self._done or self._job is None else self._work
 
     def _attempt(self, task: Callable[[], None]) -> None:
@@ -172,6 +180,13 @@ class Worker:
         self._halt()
         with self._news:
             self._halted = True
+        self.changed()
+
+    def _carry_on(self) -> None:
+        self._go_on()
+        with self._news:
+            self._halted = False
+            self._newest += 1
         self.changed()
 
     def _fail(self, fault: Fault) -> None:

@@ -16,7 +16,7 @@ class Yard:
 
     def __init__(self):
         self.did, self.news, self.trouble = [], threading.Event(), None
-        self.worker = Worker("of a test", self.watch, self.watch, lambda: self.did.append("halted"))
+        self.worker = Worker("of a test", self.watch, self.watch, self.do("halted"), self.do("went on"))
         self.worker.changed = self.news.set
 
     def watch(self):
@@ -75,7 +75,7 @@ def test_a_pause_halts_and_the_interrupted_part_is_begun_again(yard):
     assert not yard.worker.done
     yard.worker.resume()
     yard.until(lambda: yard.worker.done)
-    assert yard.did == ["before", "under way", "halted", "under way", "after"]
+    assert yard.did == ["before", "under way", "halted", "went on", "under way", "after"]
 
 
 def test_a_job_given_while_it_pauses_waits(yard):
@@ -86,7 +86,7 @@ def test_a_job_given_while_it_pauses_waits(yard):
     assert yard.did == ["halted"]
     yard.worker.resume()
     yard.until(lambda: yard.worker.done)
-    assert yard.did == ["halted", "later"]
+    assert yard.did == ["halted", "went on", "later"]
 
 
 def test_a_fault_ends_the_job_and_stays(yard):
