@@ -10,6 +10,7 @@ _MODULES = (
     "backends",
     "constraints",
     "declared",
+    "device_wirings",
     "metamodels",
     "missions",
     "move_kinds",
@@ -22,6 +23,7 @@ pytest.register_assert_rewrite(*(f"{__name__}.{module}" for module in _MODULES))
 
 from mmrs_core.testing.conformance.backends import BackendConformance  # noqa: E402
 from mmrs_core.testing.conformance.constraints import Case, ConstraintConformance  # noqa: E402
+from mmrs_core.testing.conformance.device_wirings import DeviceWiringConformance  # noqa: E402
 from mmrs_core.testing.conformance.metamodels import MetamodelConformance  # noqa: E402
 from mmrs_core.testing.conformance.missions import MissionConformance  # noqa: E402
 from mmrs_core.testing.conformance.move_kinds import MoveKindConformance  # noqa: E402
@@ -34,6 +36,7 @@ __all__ = [
     "BackendConformance",
     "Case",
     "ConstraintConformance",
+    "DeviceWiringConformance",
     "MetamodelConformance",
     "MissionConformance",
     "MoveKindConformance",

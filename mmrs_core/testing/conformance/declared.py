@@ -19,6 +19,19 @@ def declared(plugin: object, sort: str) -> tuple[Any, ...]:
     return tuple(hook()) if hook is not None else ()
 
 
+SORTS = (
+    "rule",
+    "constraint",
+    "robot_kind",
+    "move_kind",
+    "device_action",
+    "target",
+    "backend",
+    "map_symbol",
+)
+"""What tests may have as arguments: once for each that a plug-in declares."""
+
+
 class Conformance:
     """A plug-in whose contributions are tested.
 
@@ -52,12 +65,12 @@ class Conformance:
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Run a test once for each descriptor of the sort that one of its arguments is named after."""
-        for sort in ("rule", "constraint", "robot_kind", "move_kind", "target", "backend", "map_symbol"):
+        for sort in SORTS:
             if sort in metafunc.fixturenames:
                 items = declared(self.plugin, f"{sort}s")
                 metafunc.parametrize(sort, items, ids=[_label(item) for item in items])
 
 
 def _label(item: Any) -> str:
-    named = (getattr(item, name, "") for name in ("code", "name"))
+    named = (getattr(item, name, "") for name in ("code", "name", "property"))
     return next(filter(None, named), "") or str(item.metaclass[1])

@@ -1,0 +1,69 @@
+"""Laws for wirings of devices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+from mmrs_core.behaviour.program import Action
+from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wiring
+from mmrs_core.generation.render import render
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
+from mmrs_core.mavlink.wiring import wiring_of
+from mmrs_core.scene import Device
+from mmrs_core.testing.conformance.declared import Conformance, declared
+from mmrs_core.testing.programs import go_to, program, quad, robot_program, take_off, target_input
+from mmrs_core.testing.small_programs import use
+
+
+class DeviceWiringConformance(Conformance):
+    """Every wiring does what its device can do, says why not otherwise, and reaches vehicles.
+
+    Attributes:
+        devices: by the wiring's property, a device that has it, with the name of an action that it can do.
+    """
+
+    devices: ClassVar[Mapping[str, tuple[Device, str]]] = {}
+
+    def test_there_is_a_device_for_each_wiring_and_no_other(self) -> None:
+        """A plug-in whose wirings are tested has some, and none is left out."""
+        properties = {each.property for each in declared(self.plugin, "device_actions")}
+        assert properties
+        assert set(self.devices) == properties
+
+    def test_it_is_named_and_described_for_people(self, device_action: DeviceWiring) -> None:
+        """The property begins with a word of the plug-in's, the description is one line."""
+        first, dot, rest = device_action.property.partition(".")
+        assert first
+        assert dot
+        assert rest
+        assert device_action.description
+        assert "\n" not in device_action.description
+
+    def test_it_says_how_an_action_is_done(self, device_action: DeviceWiring) -> None:
+        """The commands have at most seven finite parameters, and seconds."""
+        device, name = self.devices[device_action.property]
+        assert not isinstance(self._wired(device_action, device, use(device.id, name)), Unwired)
+
+    def test_it_says_why_an_action_cannot_be_done(self, device_action: DeviceWiring) -> None:
+        """An action that nobody has heard of raises nothing, nor does a property that makes no sense."""
+        device, _ = self.devices[device_action.property]
+        nonsense = replace(device, properties=dict.fromkeys(device.properties, "\u2603 nonsense"))
+        for each in (device, nonsense):
+            found = self._wired(device_action, each, use(each.id, "somersault"))
+            assert not isinstance(found, Unwired) or found.reason
+
+    def test_it_reaches_controllers(self, device_action: DeviceWiring) -> None:
+        """A generated controller has the device act."""
+        device, name = self.devices[device_action.property]
+        acts = replace(go_to("a", (0.0, 9.0, 5.0)), after=(use(device.id, name),))
+        type = replace(quad(), devices={device.id: device})
+        given = target_input(program(robot_program("alpha", [take_off("up", 5.0), acts])), [type])
+        files = render(MAVLINK_PYTHON, replace(given, device_actions={device_action.property: device_action}))
+        assert f'("{device.id}", "{name}", ' in files[0].content.decode("utf-8")
+
+    @staticmethod
+    def _wired(wiring: DeviceWiring, device: Device, action: Action) -> Wiring:
+        type = replace(quad(), devices={device.id: device})
+        return wiring_of(action, type, {wiring.property: wiring})
