@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from fault_table.blows import DRILLS
 from fault_table.fleet import EXECUTIONS
+from fault_table.journeys import JOURNEYS
 from fault_table.orders import ORDERS
 from fault_table.rows import ROWS
 from fault_table.trial import batches, fly
@@ -41,8 +42,10 @@ def outcomes(executions, speedup, pattern, folder):
                 speedup=speedup,
                 blow=drill.blow,
                 until=drill.until,
-                arguments=drill.arguments,
+                arguments=drill.arguments.get(execution, ()),
             )
+        for number, journey in enumerate(each for each in JOURNEYS if re.search(pattern, each.name)):
+            yield journey.fly(execution, folder / f"{execution}-journey-{number}")
 
 
 def cells(outcome):

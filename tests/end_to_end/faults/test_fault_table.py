@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from fault_table.blows import DRILLS
 from fault_table.fleet import EXECUTIONS
+from fault_table.journeys import JOURNEYS
 from fault_table.orders import ORDERS
 from fault_table.rows import ROWS
 from fault_table.trial import batches, fly
@@ -53,7 +54,12 @@ def test_everything_that_goes_wrong_is_answered_as_declared(others, row):
 
 def drilled(drill, execution, folder) -> None:
     outcomes = fly(
-        drill.rows, execution, folder, blow=drill.blow, until=drill.until, arguments=drill.arguments
+        drill.rows,
+        execution,
+        folder,
+        blow=drill.blow,
+        until=drill.until,
+        arguments=drill.arguments.get(execution, ()),
     )
     assert [(outcome.title, outcome.problems) for outcome in outcomes if outcome.problems] == []
 
@@ -69,6 +75,19 @@ def test_robots_come_to_a_declared_end_whatever_happens_to_their_process(drill, 
 @pytest.mark.parametrize("drill", [drill for drill in DRILLS if not drill.fast], ids=lambda drill: drill.name)
 def test_robots_come_to_a_declared_end_in_every_drill(drill, execution, tmp_path):
     drilled(drill, execution, tmp_path)
+
+
+@pytest.mark.parametrize("execution", EXECUTIONS)
+@pytest.mark.parametrize("journey", [each for each in JOURNEYS if each.fast], ids=lambda each: each.name)
+def test_robots_of_several_processes_come_to_a_declared_end(journey, execution, tmp_path):
+    assert journey.fly(execution, tmp_path).problems == []
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("execution", EXECUTIONS)
+@pytest.mark.parametrize("journey", [each for each in JOURNEYS if not each.fast], ids=lambda each: each.name)
+def test_every_journey_of_several_processes_comes_to_a_declared_end(journey, execution, tmp_path):
+    assert journey.fly(execution, tmp_path).problems == []
 
 
 def test_titles_tell_rows_apart():

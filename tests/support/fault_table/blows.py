@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
-from fault_table.fleet import Fleet, wait_for
+from fault_table.fleet import EXECUTIONS, Fleet, wait_for
 from fault_table.process import Process
 from fault_table.row import Row, leave_alone
+from fault_table.rows import SILENCE
 from fault_table.trial import Blow
 
 AT = "at its place"
@@ -29,15 +30,19 @@ class Drill:
         rows: its robots.
         blow: what happens to it.
         until: when, after all robots are at their places; None: at once.
-        arguments: of the process.
+        arguments: of the process, by execution.
     """
 
     name: str
     rows: tuple[Row, ...]
     blow: Blow
     until: Blow | None = None
-    arguments: tuple[str, ...] = ()
+    arguments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     fast: bool = False
+
+
+def _both(*arguments: str) -> Mapping[str, tuple[str, ...]]:
+    return dict.fromkeys(EXECUTIONS, arguments)
 
 
 def _kill(fleet: Fleet, process: Process) -> None:
@@ -62,8 +67,8 @@ def _injected(fleet: Fleet, process: Process) -> None:
     wait_for(lambda: any("begins" in line for line in process.said) or not process.running(), 20.0)
 
 
-def _injection(name: str, rows: tuple[Row, ...], faults: str, *more: str, fast: bool = False) -> Drill:
-    return Drill(name, rows, _nothing, _injected, ("--inject", faults, *more), fast)
+def _injection(name: str, rows: tuple[Row, ...], faults: str, *, fast: bool = False) -> Drill:
+    return Drill(name, rows, _nothing, _injected, _both("--inject", faults), fast)
 
 
 def _link_lost(
@@ -74,7 +79,17 @@ def _link_lost(
     within: float | None = None,
 ) -> tuple[Row, ...]:
     return tuple(
-        Row(fault, AT, ("LINK_LOST", response, after), leave_alone, event, ends, within=within, stay=STAY)
+        Row(
+            fault,
+            AT,
+            ("LINK_LOST", response, after),
+            leave_alone,
+            event,
+            ends,
+            within=within,
+            least=SILENCE,
+            stay=STAY,
+        )
         for response, ends in cases
     )
 
@@ -101,7 +116,12 @@ def _interruption(how: str, ends: str) -> Drill:
     within = None if how == "hold" else 5.0
     row = Row(f"Ctrl-C, --on-stop {how}", AT, None, leave_alone, "STOPPED", ends, within=within, stay=STAY)
     return Drill(
-        f"interrupted, --on-stop {how}", (row, row), _interrupt, None, ("--on-stop", how), how == "return"
+        f"interrupted, --on-stop {how}",
+        (row, row),
+        _interrupt,
+        None,
+        _both("--on-stop", how),
+        how == "return",
     )
 
 
@@ -138,12 +158,15 @@ DRILLS: tuple[Drill, ...] = (
         _link_lost("process frozen for 4 s", UNHARMED, 30.0),
         f"freeze@{INJECTED_AT}+4",
     ),
-    _injection(
+    Drill(
         "poor link",
         _link_lost("a tenth of all lost, doubled, late or damaged", UNHARMED, 30.0),
-        POOR,
-        "--tries",
-        "12",
+        _nothing,
+        _injected,
+        {
+            "generated": ("--tries", "12", "--inject", POOR),
+            "interpreted": ("--backend-option", "tries=12", "--inject", POOR),
+        },
     ),
     *(_interruption(how, ends) for how, ends in (("hold", "holds"), ("return", "home"), ("land", "here"))),
 )

@@ -82,9 +82,8 @@ class Fleet:
 
     def start(self, *arguments: str, robot: str = "") -> Process:
         """Start a process for all robots, or for one of them; give it these arguments beside the usual."""
-        connect = CONNECT[self.execution]
         chosen = [link for name, link in self._links.items() if robot in ("", name)]
-        links = [word for link in chosen for word in (connect, link)]
+        links = [word for link in chosen for word in ("--connect", link)]
         usual = ["--log", str(self.logs), "--speedup", str(self.speedup)]
         process = Process([*self._program(robot), *links, *usual, *arguments], self.folder)
         self._processes.append(process)
@@ -136,8 +135,17 @@ def mmrs(*arguments: str) -> str:
 
 
 def free_port() -> int:
-    """Return a port that nobody uses."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+    """Return a UDP port that nobody uses."""
+    return _free(socket.SOCK_DGRAM)
+
+
+def free_tcp_port() -> int:
+    """Return a TCP port that nobody uses."""
+    return _free(socket.SOCK_STREAM)
+
+
+def _free(kind: socket.SocketKind) -> int:
+    with socket.socket(socket.AF_INET, kind) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 

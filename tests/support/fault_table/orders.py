@@ -38,7 +38,7 @@ def _rows() -> list[Row]:
         down = state == "charging"
         rows.append(_row("hold", state, "", "home" if down else "holds"))
         rows.append(_row("return", state, "ORDERED", "home"))
-        rows.append(_row("land", state, "ORDERED", "home" if down else "here"))
+        rows.append(_row("land", state, "ORDERED", "home" if down or state == "climbing" else "here"))
         rows.append(_row("stop", state, "STOPPED", "home" if down else "holds"))
         if state != "waiting":
             rows.append(_row("hold", state, "", "done", resumes=12.0))

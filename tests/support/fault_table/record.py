@@ -53,23 +53,30 @@ MOMENTS: Mapping[str, Moment] = {
 
 @dataclass(frozen=True, slots=True)
 class Struck:
-    """When and where a vehicle was when something went wrong: seconds, metres from home."""
+    """When and where a vehicle was when something went wrong: seconds, metres from home.
+
+    Attributes:
+        modes, commands: how many changes of mode and commands it had had by then.
+    """
 
     time: float
     place: tuple[float, float, float]
+    modes: int
+    commands: int
 
 
 def struck(vehicle: SimulatedVehicle) -> Struck:
     """Return where a vehicle is now."""
-    return Struck(vehicle.autopilot.time, vehicle.autopilot.body.position)
+    pilot = vehicle.autopilot
+    return Struck(pilot.time, pilot.body.position, len(pilot.modes), len(pilot.history))
 
 
 def answered(vehicle: SimulatedVehicle, since: Struck) -> float | None:
     """Return the seconds until the vehicle first did something else: a new mode, a command, a set-point."""
     pilot = vehicle.autopilot
-    times = [time for time, _ in pilot.modes if time > since.time]
-    times += [time for time, _, _ in pilot.history if time > since.time]
-    return min(times) - since.time if times else None
+    times = [time for time, _ in pilot.modes[since.modes :]]
+    times += [time for time, *_ in pilot.history[since.commands :]]
+    return max(0.0, min(times) - since.time) if times else None
 
 
 def ending(vehicle: SimulatedVehicle, since: Struck) -> str:
@@ -102,9 +109,8 @@ def story(vehicle: SimulatedVehicle, since: Struck) -> str:
     """Return what a vehicle did from then on, in words."""
     pilot = vehicle.autopilot
     modes = [
-        f"{NAMES.get(mode, mode)} after {time - since.time:.1f} s"
-        for time, mode in pilot.modes
-        if time > since.time
+        f"{NAMES.get(mode, mode)} after {max(0.0, time - since.time):.1f} s"
+        for time, mode in pilot.modes[since.modes :]
     ]
     north, east, up = pilot.body.position
     end = WORDS[ending(vehicle, since)]

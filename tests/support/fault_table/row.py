@@ -27,6 +27,7 @@ class Row:
         event: that ends the step log; empty: none may; several are separated by ``|``.
         ends: where the vehicle comes to rest, as `record.ending` says; ``done``: as if nothing had been.
         within: seconds of the run until the vehicle must answer; None: it need not do anything new.
+        least: real seconds that it may take all the same: networks do not become faster with the run.
         mends: undoes the fault after so many seconds of the run.
         order: is given instead of a fault; resumes: seconds of the run after which ``resume`` follows.
         fast: whether it is among those that are always tested.
@@ -43,6 +44,7 @@ class Row:
     event: str
     ends: str
     within: float | None = 5.0
+    least: float = 0.0
     program: str = "tour"
     stay: float = 20.0
     settings: Mapping[str, object] = field(default_factory=dict)

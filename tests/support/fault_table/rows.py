@@ -9,6 +9,9 @@ from fault_table.row import Row, leave_alone
 from mmrs_core.sitl import SimulatedVehicle
 
 PHOTO = 2000
+SILENCE = 2.5
+"""Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
+
 AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", "climbing"
 
 Strike = Callable[[SimulatedVehicle], object]
@@ -84,6 +87,7 @@ def _link_rows() -> list[Row]:
             "LINK_LOST",
             ends,
             within=12.0,
+            least=SILENCE,
             fast=response == "RETURN" and during == LEG,
         )
         for during, response, ends in lost

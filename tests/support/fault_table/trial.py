@@ -84,6 +84,8 @@ def _end(fleet: Fleet, process: Process) -> list[str]:
     if process.running():
         process.signal(signal.SIGINT)
     problems = [] if process.end(30.0) is not None else ["the process does not end when it is interrupted"]
+    if not fleet.logs.exists():
+        return [*problems, "there are no logs"]
     return problems + [f"the logs do not replay: {each}" for each in fleet.replayed().complaints]
 
 

@@ -52,8 +52,11 @@ class Watch:
     def strike(self) -> None:
         """Make it happen."""
         self._target = self._vehicle.autopilot.body.target
+        before = struck(self._vehicle)
         self._row.strike(self._victim)
-        self._struck = struck(self._vehicle)
+        after = struck(self._vehicle)
+        # A restart changes the mode by itself, which is no answer; a fence's own action is one.
+        self._struck = after if self._row.event == "VEHICLE_RESTARTED" else before
         if self._row.order:
             self._give(self._row.order)
 
@@ -93,9 +96,10 @@ class Watch:
             problems.append(f"does not end as wanted: {self._row.rest}")
         if self._row.hands_off:
             self._check_hands_off(self._struck.time)
-        within = self._row.within
-        if within is not None and (self.outcome.answered is None or self.outcome.answered > within):
-            problems.append(f"answered after {self.outcome.answered}, not {within} s")
+        if self._row.within is not None:
+            limit = max(self._row.within, self._row.least * self._fleet.speedup)
+            if self.outcome.answered is None or self.outcome.answered > limit:
+                problems.append(f"answered after {self.outcome.answered}, not {limit} s")
 
     def heard(self, said: list[str]) -> None:
         """Keep what the process has said, where that is all there is."""

@@ -1,0 +1,159 @@
+"""The part of the fault table about several processes, one after the other or at the same time."""
+
+from __future__ import annotations
+
+import json
+import signal
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import dist
+from pathlib import Path
+
+from fault_table.fleet import Fleet, free_tcp_port, wait_for
+from fault_table.project import OUT, TOUR, Pad
+from fault_table.record import MOMENTS, answered, ending, story, struck
+from fault_table.row import Outcome
+from mmrs_core.sitl import SimulatedVehicle
+
+AT, AUTO = "at its place", "on a mission (AUTO)"
+AROUND = 2.0
+"""Metres from a place that a vehicle which passes it without a stop may be."""
+
+
+def _reached(fleet: Fleet, robot: str, moment: str) -> bool:
+    return wait_for(lambda: MOMENTS[moment](fleet.vehicles[robot].autopilot), 30.0)
+
+
+def _visited(vehicle: SimulatedVehicle) -> list[str]:
+    """Return the places of the tour that a vehicle was never at, by its own track."""
+    track = [place for _, *place in vehicle.autopilot.track]
+    return [str(place) for place in (OUT, *TOUR) if min(dist(place, each) for each in track) > AROUND]
+
+
+def _finish(outcome: Outcome, fleet: Fleet, robot: str) -> None:
+    """Judge a robot that should have carried out its whole program, in the end."""
+    steps, result = fleet.steps(robot), fleet.replayed()
+    outcome.line = json.dumps(steps[-1]) if steps else ""
+    if not steps or (steps[-1]["label"], steps[-1]["move"]) != ("end", "stop"):
+        outcome.problems.append(f"does not come to the end of its program: {outcome.line}")
+    outcome.problems += [f"the logs do not replay: {each}" for each in result.complaints]
+    outcome.problems += [f"was never at {place}" for place in _visited(fleet.vehicles[robot])]
+    if outcome.problems:
+        outcome.problems.append("said: " + " | ".join(fleet.process.said[-12:]))
+
+
+def new_battery(execution: str, folder: Path, response: str, moment: str) -> Outcome:
+    """Fly until the battery is low, change it, and go on with ``--resume``."""
+    policy = ("BATTERY_LOW", response, None)
+    outcome = Outcome(f"battery low {moment}, changed, resumed", execution, f"BATTERY_LOW → {response}")
+    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], execution) as fleet:
+        vehicle = fleet.vehicles["r0"]
+        first = fleet.start()
+        _reached(fleet, "r0", moment)
+        since = struck(vehicle)
+        vehicle.faults.set_battery(0.15)
+        code = first.end(30.0)
+        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        outcome.happened = story(vehicle, since)
+        if code != 1:
+            outcome.problems.append(f"the exit code for a battery that is low is {code}, not 1")
+        vehicle.faults.set_battery(1.0)
+        vehicle.autopilot.body.position = (0.0, 0.0, 0.0)  # somebody carries it home
+        again = struck(vehicle)
+        second = fleet.start("--resume")
+        code = second.end(40.0)
+        outcome.happened += "; then, with a new battery: " + story(vehicle, again)
+        if code != 0:
+            outcome.problems.append(f"the exit code after the new battery is {code}, not 0")
+        _finish(outcome, fleet, "r0")
+    return outcome
+
+
+def killed_and_resumed(execution: str, folder: Path, response: str, moment: str) -> Outcome:
+    """Kill the process in the air, let the vehicle do what it does by itself, and go on with ``--resume``."""
+    policy = ("LINK_LOST", response, 5.0)
+    outcome = Outcome(f"process killed {moment}, resumed", execution, f"LINK_LOST → {response} after 5 s")
+    with Fleet(folder, [Pad("r0", policies=(policy,), stay=5.0)], execution) as fleet:
+        vehicle = fleet.vehicles["r0"]
+        first = fleet.start()
+        _reached(fleet, "r0", moment)
+        since = struck(vehicle)
+        first.signal(signal.SIGKILL)
+        first.end()
+        wait_for(lambda: ending(vehicle, since) == "home", 15.0)
+        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        outcome.happened = story(vehicle, since)
+        again = struck(vehicle)
+        if (code := fleet.start("--resume").end(40.0)) != 0:
+            outcome.problems.append(f"the exit code after the resumption is {code}, not 0")
+        outcome.happened += "; then, resumed: " + story(vehicle, again)
+        _finish(outcome, fleet, "r0")
+    return outcome
+
+
+def peer(execution: str, folder: Path, number: int, response: str, ends: str) -> Outcome:
+    """Have two robots in two processes over the bus, and kill or freeze the one that the other waits for."""
+    word = "killed" if number == signal.SIGKILL else "frozen"
+    outcome = Outcome(f"peer's process {word}", execution, f"PEER_LOST → {response} after 5 s")
+    pads = [
+        Pad("r0", "wait", (("PEER_LOST", response, 5.0),)),
+        Pad("g0", "give", (), 200.0, gives="r0"),
+    ]
+    with Fleet(folder, pads, execution) as fleet:
+        vehicle, endpoint = fleet.vehicles["r0"], f"tcp/127.0.0.1:{free_tcp_port()}"
+        waiting = fleet.start("--bus-listen", endpoint, robot="r0")
+        giving = fleet.start("--bus-connect", endpoint, robot="g0")
+        _reached(fleet, "r0", AT)
+        _reached(fleet, "g0", AT)
+        since, begun = struck(vehicle), time.monotonic()
+        giving.signal(number)
+        if not wait_for(
+            lambda: ending(vehicle, since) == ends and fleet.steps("r0")[-1]["label"] == "fault", 20.0
+        ):
+            outcome.problems.append(f"does not end as wanted: {ends}")
+        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        outcome.happened = story(vehicle, since) + f"; {time.monotonic() - begun:.1f} s of real time"
+        steps = fleet.steps("r0")
+        outcome.line = json.dumps(steps[-1])
+        if not str(steps[-1]["detail"]).startswith("PEER_LOST"):
+            outcome.problems.append("the step log does not say PEER_LOST")
+        waiting.signal(signal.SIGINT)
+        waiting.end(10.0)
+        outcome.problems += [f"the logs do not replay: {each}" for each in fleet.replayed().complaints]
+        if outcome.problems:
+            outcome.problems.append("said: " + " | ".join(waiting.said[-12:]))
+    return outcome
+
+
+@dataclass(frozen=True, slots=True)
+class Journey:
+    """A story with several processes: execution and folder to what became of it."""
+
+    name: str
+    fly: Callable[[str, Path], Outcome]
+    fast: bool = False
+
+
+def _journeys() -> tuple[Journey, ...]:
+    made = []
+    for response, moment in (("RETURN", AUTO), ("EMERGENCY_AREA", AT)):
+        fly = lambda e, f, r=response, m=moment: new_battery(e, f, r, m)  # noqa: E731
+        made.append(Journey(f"battery changed, {response}, {moment}", fly, response == "RETURN"))
+    for moment in (AUTO, AT):
+        fly = lambda e, f, m=moment: killed_and_resumed(e, f, "RETURN", m)  # noqa: E731
+        made.append(Journey(f"killed and resumed, {moment}", fly))
+    for number, response, ends in (
+        (signal.SIGKILL, "RETURN", "home"),
+        (signal.SIGKILL, "EMERGENCY_AREA", "meadow"),
+        (signal.SIGSTOP, "RETURN", "home"),
+        (signal.SIGSTOP, "LAND", "here"),
+    ):
+        fly = lambda e, f, n=number, r=response, d=ends: peer(e, f, n, r, d)  # noqa: E731
+        made.append(
+            Journey(f"peer {signal.Signals(number).name}, {response}", fly, response == "EMERGENCY_AREA")
+        )
+    return tuple(made)
+
+
+JOURNEYS = _journeys()
