@@ -12,8 +12,9 @@ import numpy as np
 from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
+from mmrs_core.cli.flights.away import away_of, without
 from mmrs_core.cli.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
-from mmrs_core.cli.flights.planned import Planned
+from mmrs_core.cli.flights.planned import Planned, legs_of
 from mmrs_core.cli.flights.thinning import pieces, thinned
 from mmrs_core.cli.flights.values import Flight, Flown, Track
 from mmrs_core.cli.preview.from_run import (
@@ -29,6 +30,7 @@ from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Name, Position
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
+_Piece = tuple[tuple[float, ...], tuple[Position, ...]]
 _STILL = 0.3
 _STAYING = 3.0
 """Metres from the middle within which a robot that is to stay is taken to stay."""
@@ -95,17 +97,18 @@ class _Shown:
         self._program, self._flown, self._kinds, self._shots = program, flown, kinds, shots
         self._moves = {move.id: move for move in program.moves}
         self._track, self.tolerance = thinned(flown.track)
+        self._away = away_of(flown, legs_of(program, flown.records, flown.end, kinds))
 
     def over(self, plan: RobotPicture) -> RobotPicture:
         """Return the robot's picture over that of its plan."""
-        flown, moves = self._flown, self._moves
+        flown = self._flown
         legs = sorted((*self._legs(), *self._between_moves()), key=lambda leg: leg.begin)
         way = sum(dist(a, b) for piece in pieces(self._track) for a, b in pairwise(piece.tolist()))
         known = (("way", length(way)),) if len(self._track.times) else (("way", "not known"),)
         return replace(
             plan,
             legs=tuple(legs),
-            bars=(*bars_of_records(moves, flown.records, self._kinds), *self._after_fault()),
+            bars=tuple(sorted(self._bars(), key=lambda bar: bar.begin)),
             heights=tuple(zip(self._track.times.tolist(), self._track.positions[:, 2].tolist(), strict=True)),
             planned=tuple(leg.points for leg in plan.legs if not leg.stays),
             planned_heights=plan.heights,
@@ -127,7 +130,7 @@ class _Shown:
 
     def _leg(self, move: Move, begin: float, end: float, acted: tuple[Position, ...]) -> Iterator[Leg]:
         kind, moves = kind_of_leg(move, self._kinds), f"move {move.id}"
-        for times, points in _stretches(self._track, begin, end):
+        for times, points in self._pieces(begin, end):
             reach = _reach(points)
             if move.is_a(_HOLD) and reach < _STAYING:
                 yield Leg("hold", points[:1], times[0], times[-1], move.task, actions=acted, moves=moves)
@@ -137,10 +140,15 @@ class _Shown:
                 )
             acted = ()
 
+    def _pieces(self, begin: float, end: float) -> Iterator[_Piece]:
+        for since, until in without((begin, end), self._away):
+            yield from _stretches(self._track, since, until)
+
     def _between_moves(self) -> Iterator[Leg]:
         """Yield the ways that belong to no move: what policies, people and autopilots did."""
         records = self._flown.records
-        busy = [(a.time, b.time) for a, b in pairwise(records) if a.label == "begin"]
+        moving = [(a.time, b.time) for a, b in pairwise(records) if a.label == "begin"]
+        busy = [part for move in moving for part in without(move, self._away)]
         since = 0.0
         for begin, end in (*busy, (self._flown.end, self._flown.end)):
             for times, points in _stretches(self._track, since, begin):
@@ -148,6 +156,17 @@ class _Shown:
                     note = "not in the plan"
                     yield Leg("response", points, times[0], times[-1], note=note, times=times)
             since = max(since, end)
+
+    def _bars(self) -> Iterator[Bar]:
+        """Yield what the robot spent its time on, by the log; what a policy did meanwhile goes before."""
+        for bar in bars_of_records(self._moves, self._flown.records, self._kinds):
+            for begin, end in without((bar.begin, bar.end), self._away):
+                yield replace(bar, begin=begin, end=end)
+        last = self._flown.records[-1].time if self._flown.records else 0.0
+        for begin, end in self._away:
+            if begin < last:
+                yield Bar("response", begin, min(end, last))
+        yield from self._after_fault()
 
     def _after_fault(self) -> Iterator[Bar]:
         last = self._flown.records[-1] if self._flown.records else None
@@ -187,9 +206,7 @@ def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
     return acts
 
 
-def _stretches(
-    track: Track, begin: float, end: float
-) -> Iterator[tuple[tuple[float, ...], tuple[Position, ...]]]:
+def _stretches(track: Track, begin: float, end: float) -> Iterator[_Piece]:
     """Yield times and positions of what is known of a stretch of time, one for each piece between gaps."""
     if not len(track.times) or end < begin:
         return

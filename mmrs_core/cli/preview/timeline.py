@@ -131,7 +131,7 @@ def stretches(bars: Iterable[Bar]) -> Iterator[tuple[str, float, float]]:
     """Yield (task, begin, end) of each stretch of bars that serves one task without a longer stop."""
     task, begin, end = "", 0.0, 0.0
     for bar in bars:
-        if bar.kind in ("recharge", "wait", "choice") and task:
+        if bar.kind in ("recharge", "wait", "choice", "response") and task:
             yield task, begin, end
             task = ""
         if bar.kind != "work":

@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mmrs_core.behaviour.program import BEHAVIOUR
+from mmrs_core.cli.flights.away import away_of, without
+from mmrs_core.cli.flights.nearest import nearest
 from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.planned import PlannedLeg
 from mmrs_core.cli.flights.values import Flown
-from mmrs_core.cli.report.nearest import nearest
 from mmrs_core.cli.report.values import Deviation, Spread
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
 
-AWAY = frozenset({"RETURN", "LAND", "EMERGENCY_AREA", "SURFACE", "STOP_THRUST"})
-"""Responses by which a robot leaves its way; it is on it again once it is near it again."""
-BACK = 2.0
-"""Metres from the planned way within which a robot that was away is back on it."""
 _ON_GROUND = tuple((BEHAVIOUR, name) for name in ("Start", "Stop", "Recharge"))
 
 
@@ -54,38 +50,21 @@ def deviation_of(
 
 
 def deviations_over_time(flown: Flown, legs: Sequence[PlannedLeg]) -> list[tuple[Floats, Floats]]:
-    """Return (times, metres sideways) of each planned way, for a chart."""
+    """Return (times, metres sideways) of each piece of a planned way, for a chart."""
     return [(times, np.hypot(off[:, 0], off[:, 1])) for _, times, off, _ in _by_leg(flown, legs)]
 
 
 def _by_leg(flown: Flown, legs: Sequence[PlannedLeg]) -> Iterator[tuple[str, Floats, Floats, Floats]]:
-    """Yield (move, times, offsets, positions) of each leg that fixes are on."""
-    track = flown.track
-    left = [e.time for e in flown.of_kind("decision") if e.content.get("response") in AWAY]
+    """Yield (move, times, offsets, positions) of each piece of a leg that fixes are on."""
+    track, away = flown.track, away_of(flown, legs)
     for leg in legs:
         if not leg.way or any(leg.move.is_a(kind) for kind in _ON_GROUND):
             continue
-        inside = slice(*np.searchsorted(track.times, [leg.begin, leg.end], side="left"))
-        times, positions = track.times[inside], track.positions[inside]
-        if not len(times):
-            continue
-        off = positions - nearest(positions, np.array(leg.way))[0]
-        on = _on_way(times, off, [time for time in left if leg.begin <= time <= leg.end])
-        if on.any():
-            yield leg.move.id, times[on], off[on], positions[on]
-
-
-def _on_way(times: Floats, off: Floats, left: Sequence[float]) -> NDArray[np.bool_]:
-    on = np.ones(len(times), dtype=bool)
-    away = np.linalg.norm(off, axis=1) > BACK
-    for time in left:
-        after = np.flatnonzero((times >= time) & away)
-        if len(after):
-            back = np.flatnonzero(~away[after[0] :])
-            until = int(after[0] + back[0]) if len(back) else len(times)
-            on[after[0] : until] = False
-            on[(times >= time) & (times <= times[after[0]])] = False
-    return on
+        for begin, end in without((leg.begin, leg.end), away):
+            inside = slice(*np.searchsorted(track.times, [begin, end], side="left"))
+            times, positions = track.times[inside], track.positions[inside]
+            if len(times):
+                yield leg.move.id, times, positions - nearest(positions, np.array(leg.way))[0], positions
 
 
 def _spread(values: Floats) -> Spread:

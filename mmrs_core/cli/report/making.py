@@ -11,6 +11,7 @@ import numpy as np
 
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.replay import Outcome, ReplayResult, replay
+from mmrs_core.cli.flights.away import AWAY
 from mmrs_core.cli.flights.fixes import Zero, zero_of
 from mmrs_core.cli.flights.photos import shots_in
 from mmrs_core.cli.flights.places import Places
@@ -18,7 +19,7 @@ from mmrs_core.cli.flights.planned import Planned, PlannedLeg, legs_of
 from mmrs_core.cli.flights.thinning import pieces
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.cli.report.approaches import approaches_of
-from mmrs_core.cli.report.deviations import AWAY, deviation_of
+from mmrs_core.cli.report.deviations import deviation_of
 from mmrs_core.cli.report.durations import move_reports, wait_reports
 from mmrs_core.cli.report.energies import energy_of
 from mmrs_core.cli.report.events import events_of, injected_by, readings_of

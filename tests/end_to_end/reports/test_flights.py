@@ -37,7 +37,6 @@ def flown(tmp_path_factory):
     code = folder / "code"
     wanted = ("--target", "mavlink-python", "-o", str(code))
     assert run(["generate", str(folder / "behaviour.xmi"), *wanted]) == 0
-    connect = "--connect" if "--connect" in (code / "mmrs_flight/options.py").read_text() else "--link"
     for name, word, answer in ANSWERS:
         path = code / name
         path.write_text(path.read_text("ascii").replace(word, answer), "ascii")
@@ -45,7 +44,7 @@ def flown(tmp_path_factory):
     for robot, home in HOMES.items():
         port = free_port()
         vehicles.append(SimulatedVehicle(port, Settings("copter", *home), speedup=20.0))
-        links += [connect, f"{robot}=udpin:127.0.0.1:{port}"]
+        links += ["--connect", f"{robot}=udpin:127.0.0.1:{port}"]
     for vehicle in vehicles:
         vehicle.start()
     try:

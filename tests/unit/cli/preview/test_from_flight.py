@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.planned import Planned
 from mmrs_core.cli.flights.values import Flight, Flown, Track
@@ -99,6 +100,25 @@ def test_a_way_that_no_move_says_is_not_in_the_plan(shown, run):
     assert alpha.legs[-1].points[-1] == (0.0, 0.0, 0.0)
     assert (alpha.bars[-1].kind, alpha.bars[-1].end) == ("response", last.time + 30.0)
     assert [mark.kind for mark in alpha.marks] == ["fault"]
+
+
+def test_time_at_home_for_a_battery_is_not_work(shown, run):
+    records = [record for record in run.records if record.robot == "alpha"]
+    begun = next(r.time for r in records if (r.label, r.move) == ("begin", "a3"))
+    pause = 100.0
+    later = tuple(replace(r, time=r.time + pause) if r.time > begun + 1.0 else r for r in records)
+    samples = [(s.time, *s.position) for s in run.tracks["alpha"]]
+    before = [row for row in samples if row[0] <= begun]
+    home = [(begun + 30.0, 0.0, 0.0, 0.0), (begun + 80.0, 0.0, 0.0, 0.0), (begun + pause, *before[-1][1:])]
+    after = [(time + pause, *position) for time, *position in samples if time > begun]
+    low = Entry("r", "alpha", begun + 0.5, "", "decision", {"what": "BATTERY_LOW", "response": "RETURN"})
+    alpha = shown(
+        alpha={"records": later, "track": track_of([*before, *home, *after]), "entries": (low,)}
+    ).robots[0]
+    away = next(bar for bar in alpha.bars if bar.kind == "response")
+    assert (away.begin, away.end) == (begun + 0.5, begun + pause)
+    assert not any(bar.kind == "work" and bar.begin < away.end and bar.end > away.begin for bar in alpha.bars)
+    assert [leg.kind for leg in alpha.legs if leg.begin < away.end and leg.end > away.begin] == ["response"]
 
 
 def test_a_robot_of_which_nobody_knows_where_it_was_is_said_to_be_one(shown):
