@@ -142,7 +142,9 @@ def test_a_box_that_a_robot_rotated_is_read_whole(tmp_path):
     writer.close()
     (box,) = black_boxes([tmp_path])
     assert len(box.parts) > 5
-    assert [entry.content["text"] for entry in box.entries(pytest.fail)] == [f"number {n}" for n in range(200)]
+    assert [entry.content["text"] for entry in box.entries(pytest.fail)] == [
+        f"number {n}" for n in range(200)
+    ]
 
 
 def test_what_a_robot_wrote_after_its_power_came_back_is_read(tmp_path):

@@ -27,7 +27,11 @@ def test_a_last_line_that_was_cut_off_is_told(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "what"),
-    [(b"\0\0\0\0", "zero bytes, as power loss leaves them"), (b"nonsense}", "not JSON"), (b"[]", "list: not")],
+    [
+        (b"\0\0\0\0", "zero bytes, as power loss leaves them"),
+        (b"nonsense}", "not JSON"),
+        (b"[]", "list: not"),
+    ],
 )
 def test_lines_that_are_no_steps_are_told_and_the_rest_is_used(tmp_path, text, what):
     first, last = (to_line(STEPS[i]).encode() for i in (0, 2))
