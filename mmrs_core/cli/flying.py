@@ -11,7 +11,7 @@ from types import FrameType
 
 import typer
 
-from mmrs_core.behaviour.log import LogWriter, log_name, read_logs
+from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_log, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.steps import StepRecord
@@ -32,6 +32,12 @@ from mmrs_core.runtime.orders import STOP, Orders
 
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 FAILED = 1
+_CAME_DOWN = {
+    "RETURN": "came home",
+    "EMERGENCY_AREA": "went to an emergency area",
+    "LAND": "landed where it was",
+    "SURFACE": "came up where it was",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +97,8 @@ class Result:
             word = "broken off" if robot in ending.suspended else "fault"
             say(f"  {word} of '{robot}': {fault}")
         for robot in ending.suspended:
-            say(f"  '{robot}' came home for its battery; --resume goes on where it stopped")
+            way = _CAME_DOWN[ending.responses[robot]]
+            say(f"  '{robot}' {way} for its battery; --resume goes on where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
         for robot in ending.unconfirmed:
@@ -210,6 +217,7 @@ def _resumed(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[S
         InvalidModelError: if they are not logs of this behaviour.
     """
     found = [path for robot in here if (path := wishes.folder / log_name(robot)).exists()]
+    _refuse_others(program, wishes)
     if not wishes.resume:
         if found:
             raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
@@ -222,6 +230,16 @@ def _resumed(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[S
         raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
+
+
+def _refuse_others(program: Program, wishes: Wishes) -> None:
+    """Refuse a folder with logs of another run, or of another behaviour."""
+    known = {log_name(robot.id) for robot in program.robots}
+    for path in sorted(wishes.folder.glob(f"*{SUFFIX}")) if wishes.folder.is_dir() else ():
+        records = read_log(path, partial=True)
+        strange = path.name not in known or any(each.run != wishes.run for each in records[:1])
+        if strange and not (wishes.resume and path.name in known):
+            raise typer.BadParameter(f"--log {path}: is of another run; choose another folder")
 
 
 @contextmanager

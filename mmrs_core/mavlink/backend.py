@@ -6,10 +6,12 @@ from importlib.util import find_spec
 
 from mmrs_core.contributions.execution import Backend, BackendFactory, BackendInput
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.mavlink.backend_options import link_options
 
 
 def _connect(given: BackendInput) -> Backend:
     """Return a robot at the end of its link, which is first listened to when the robot gets ready."""
+    link_options(given.options)
     if given.live is None:
         raise UnsupportedError("backend 'mavlink': drives robots in real time; 'mmrs run' does that")
     if find_spec("pymavlink") is None:

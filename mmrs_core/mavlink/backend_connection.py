@@ -169,6 +169,7 @@ def _equipment(
         acceptance=options.acceptance,
         travel=program.travel,
         home_tolerance=inf if live.resumed else options.home_tolerance,
+        tell=live.say,
     )
     context = context_of(given.robot, input, geographic=False)
     home = given.robot.home or (0.0, 0.0, 0.0)
@@ -177,7 +178,7 @@ def _equipment(
         geographic = isinstance(program.home, Geographic)
         link.observe(Recording(box, fleet.clock, vehicle.state, geographic=geographic))
         fleet.rehearsal.record(
-            given.robot.id, lambda text, content: box.write("injected", name=text, **content)
+            given.robot.id, lambda text, content: box.write("injected", fault=text, **content)
         )
     fleet.users.add(given.robot.id)
     fleet.rehearsal.attend(given.robot.id, link)

@@ -292,4 +292,5 @@ class MavlinkBackend:
 
     def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
         self.note(kind, {"name": name, "content": dict(content)})
-        self._with.say(f"{kind} {name!r}: {dict(content)}")
+        named = f" '{name}'" if name else ""
+        self._with.say(f"{kind}{named}: {', '.join(f'{key} {value}' for key, value in content.items())}")

@@ -90,6 +90,7 @@ class Ending:
         time: seconds of the run's clock.
         steps: how many were made.
         suspended: robots whose programs were broken off, to be resumed with a full battery.
+        responses: to faults, by robot.
     """
 
     outcome: Outcome
@@ -99,6 +100,7 @@ class Ending:
     time: float
     steps: int
     suspended: tuple[str, ...] = ()
+    responses: Mapping[str, str] = field(default_factory=dict)
 
 
 def interpret(

@@ -26,7 +26,8 @@ TO_AND_FRO = program(
 class BackendConformance(Conformance):
     """Every simulated backend moves one robot, one movement at a time, and stops it from any state.
 
-    A backend that drives real robots runs at the clock's own pace, and is tested with them.
+    A backend that drives real robots runs at the world's pace, and is tested with them; here, only what it
+    refuses before it reaches out for one.
 
     Attributes:
         behaviour: whose first robot is driven, all its moves one after another.
