@@ -90,7 +90,7 @@ def places_of(folder: Path, *, robot: str = "", move: str = "", task: str = "") 
 
 def _listing(file: Path) -> tuple[Path, Manifest, Recorded]:
     """Return the folder, the manifest that lists a file, and what it says of it."""
-    absolute = file.absolute()
+    absolute = file.resolve()
     for folder in absolute.parents[:LEVELS]:
         for path in sorted(folder.glob(f"*{ENDING}")):
             manifest = read_manifest(path)

@@ -13,6 +13,9 @@ from mmrs_core.errors import MmrsError, UnreadableError
 PART = "_"
 """What the names of files begin with that other templates of the folder include or extend."""
 
+HIDDEN = "."
+"""What the names of files and folders begin with that are left alone, such as ``.git``."""
+
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
@@ -45,15 +48,20 @@ def overrides_in(folder: Path, target: Target, others: Collection[str] = ()) -> 
     """
     if not folder.is_dir():
         raise UnreadableError(f"{folder}: there is no such folder of templates")
-    strange = sorted(each.name for each in folder.iterdir() if each.name not in {target.name, *others})
+    names = (each.name for each in folder.iterdir() if not each.name.startswith(HIDDEN))
+    strange = sorted(name for name in names if name not in {target.name, *others})
     if strange:
         known = ", ".join(sorted({target.name, *others}))
         raise MmrsError(f"{folder / strange[0]}: no target is called so; known are {known}")
     own = folder / target.name
-    files = sorted(path for path in own.rglob("*") if path.is_file())
+    files = sorted(path for path in own.rglob("*") if path.is_file() and not _is_hidden(path, own))
     return Overrides(
         own, {path.relative_to(own).as_posix(): sha256(path.read_bytes()).hexdigest() for path in files}
     )
+
+
+def _is_hidden(path: Path, folder: Path) -> bool:
+    return any(part.startswith(HIDDEN) for part in path.relative_to(folder).parts)
 
 
 def check_known(overrides: Overrides, target: Target, specs: Iterable[FileSpec]) -> None:

@@ -12,6 +12,7 @@ import pytest
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
 from mmrs_core.testing.programs import target_input, two_drones
@@ -72,6 +73,17 @@ class TargetConformance(Conformance):
         with pytest.raises(UnsupportedError) as refusal:
             render(target, replace(given, program=changed))
         assert any(robot.id in each and moves[1].id in each for each in refusal.value.elements)
+
+    def test_the_lines_that_serve_a_step_are_there(self, target: Target) -> None:
+        """What templates say by the tag ``serves`` is about robots and moves of the behaviour."""
+        given = self._input(target)
+        *files, manifest = render(target, given)
+        lines = {file.path: len(file.content.splitlines()) for file in files}
+        moves = {(robot.id, move.id) for robot in given.program.robots for move in robot.moves}
+        robots = {(robot.id, "") for robot in given.program.robots}
+        for entry in manifest_in(manifest.content).trace:
+            assert entry.first <= entry.last <= lines[entry.file]
+            assert (entry.step.robot, entry.step.move) in moves | robots
 
     def test_what_it_says_of_its_capabilities_is_about_what_it_expresses(self, target: Target) -> None:
         """The words of a target are for elements that it expresses, or whose absence is no loss."""

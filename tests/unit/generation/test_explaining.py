@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -82,6 +83,14 @@ def test_a_file_that_nobody_generated_is_unreadable(folder):
     (folder / "mine.txt").write_text("x\n")
     with pytest.raises(UnreadableError, match="no manifest"):
         explain(folder / "mine.txt", 1)
+
+
+def test_a_file_is_found_by_whatever_way_leads_to_it(folder, monkeypatch, tmp_path_factory):
+    link = tmp_path_factory.mktemp("elsewhere") / "link"
+    link.symlink_to(folder)
+    monkeypatch.chdir(folder / "mmrs_flight")
+    ways = (folder / "mmrs_flight" / ".." / "fleet.py", link / "fleet.py", Path("..") / "fleet.py")
+    assert [explain(way, 1).target for way in ways] == ["mavlink-python"] * 3
 
 
 def test_a_folder_without_a_manifest_is_unreadable(tmp_path):

@@ -98,6 +98,12 @@ def test_a_folder_of_another_target_is_left_alone(target, mine):
     assert made(target, mine, others=["other"])["card.txt"] == 'head\n"alpha"\n'
 
 
+def test_hidden_files_are_left_alone(target, mine):
+    (mine / ".git").mkdir()
+    (mine / "cards" / ".gitignore").write_text("*~", "utf-8")
+    assert json.loads(made(target, mine)["cards.manifest.json"])["overrides"] == {}
+
+
 def test_a_folder_that_is_not_there_is_unreadable(target, mine):
     with pytest.raises(UnreadableError, match="no such folder"):
         made(target, mine / "nowhere")
