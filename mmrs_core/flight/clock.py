@@ -6,16 +6,22 @@ import time
 
 
 class Clock:
-    """Seconds of the run, counted from its creation."""
+    """Seconds of the run."""
 
-    def __init__(self, speedup: float = 1.0) -> None:
-        """Start at zero; `speedup` seconds of the run pass in a second of real time."""
+    def __init__(self, speedup: float = 1.0, start: float = 0.0) -> None:
+        """Start to count.
+
+        Args:
+            speedup: seconds of the run that pass in a second of real time.
+            start: seconds of the run that have passed already.
+        """
         self.speedup = speedup
+        self._start = start
         self._zero = time.monotonic()
 
     def now(self) -> float:
-        """Return the seconds since the run began."""
-        return (time.monotonic() - self._zero) * self.speedup
+        """Return the seconds since the run began; jumps of the clock on the wall do not count."""
+        return self._start + (time.monotonic() - self._zero) * self.speedup
 
     def real(self, seconds: float) -> float:
         """Return how many real seconds so many seconds of the run are."""

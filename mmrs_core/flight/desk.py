@@ -12,6 +12,7 @@ from .conditions import Condition
 from .log import Log
 from .objects import Locator
 from .slots import Slots
+from .vehicle import State
 
 Say = Callable[[str], None]
 
@@ -24,6 +25,7 @@ class Desk:
         conditions: by identifier; locators: by description of the object.
         stop: set when the robot is to stop.
         say: tells people what goes on.
+        know: adds to what the vehicle tells of itself what people have answered.
         dry: whether there is no vehicle.
     """
 
@@ -35,4 +37,5 @@ class Desk:
     locators: Mapping[str, Locator]
     stop: threading.Event
     say: Say
+    know: Callable[[State], State] = lambda state: state
     dry: bool = False

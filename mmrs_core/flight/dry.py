@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from .clock import Clock
 from .missions import Item
+from .modes import GUIDED, HOLD, LAND, SURFACE
 from .places import at_height, bearing, distance
 from .program import Geographic, Look, Place
 from .vehicle import State
@@ -25,6 +26,8 @@ class DryVehicle:
         self._home = home
         self._guard = guard
         self._items: Sequence[Item] = ()
+        self._mode = GUIDED
+        self._armed = False
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Do nothing: there is no link to lose."""
@@ -35,15 +38,18 @@ class DryVehicle:
 
     def take_off(self, height: float) -> None:
         """Climb to a height above home."""
-        self.rest(abs(height - self._here.height) / CLIMB)
-        self._here = at_height(self._here, height)
+        self._mode, self._armed = GUIDED, True
+        self._climb(height)
 
     def land(self) -> None:
         """Descend to the height of home."""
-        self.take_off(self._home.height)
+        self._mode = LAND
+        self._climb(self._home.height)
+        self._armed = False
 
     def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
         """Be at a place after the time that the way takes."""
+        self._mode = GUIDED
         self.rest(distance(self._here, place) / (speed or CRUISE))
         self._here = place
 
@@ -62,7 +68,10 @@ class DryVehicle:
         """Stay for so many seconds."""
         until = self._clock.now() + seconds
         while (left := until - self._clock.now()) > 0:
+            before = self._clock.now()
             self._guard()
+            # A hold is obeyed inside the guard, and is no part of the time that something takes.
+            until += self._clock.now() - before
             time.sleep(min(self._clock.real(left), 0.1))
         self._guard()
 
@@ -74,10 +83,20 @@ class DryVehicle:
 
     def hold(self) -> bool:
         """Stay."""
+        self._mode = HOLD
+        self._guard()
         return False
+
+    def carry_on(self) -> None:
+        """Be ready."""
+        self._mode = GUIDED
+
+    def check(self) -> None:
+        """Do nothing: nobody takes over what is not there."""
 
     def surface(self) -> None:
         """Be at the surface."""
+        self._mode = SURFACE
         self._here = at_height(self._here, 0.0)
 
     def disarm(self) -> None:
@@ -88,4 +107,11 @@ class DryVehicle:
 
     def state(self) -> State:
         """Return where the vehicle would be, with a full battery."""
-        return State(self._clock.now(), self._here, 0.0, bearing(self._home, self._here), 1.0)
+        heading = bearing(self._home, self._here)
+        return State(
+            self._clock.now(), self._here, 0.0, heading, 1.0, self._mode, armed=self._armed, wind=0.0
+        )
+
+    def _climb(self, height: float) -> None:
+        self.rest(abs(height - self._here.height) / CLIMB)
+        self._here = at_height(self._here, height)

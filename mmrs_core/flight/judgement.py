@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from .conditions import Condition
+from .conditions import Condition, is_standard, standard
 from .objects import Locator
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 
@@ -19,15 +19,24 @@ class Judgement:
 
     def faults(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is missing for these robots."""
-        choices = {s.then.condition for r in robots for s in r.steps if isinstance(s.then, Choose)}
         objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
         return [
-            *(
-                f"conditions.py decides nothing for {name!a}"
-                for name in sorted(choices - set(self.conditions))
-            ),
+            *(fault for name in sorted(_asked(robots)) if (fault := self._undecided(name))),
             *(f"objects.py finds nothing for {name!a}" for name in sorted(objects - set(self.locators))),
         ]
+
+    def decides(self, robots: Sequence[Robot]) -> dict[str, Condition]:
+        """Return what decides each choice of these robots: the user's function, or a standard condition."""
+        return {name: self.conditions.get(name) or standard(name) for name in _asked(robots)}
+
+    def _undecided(self, name: str) -> str:
+        if name in self.conditions or is_standard(name):
+            return ""
+        return f"conditions.py decides nothing for {name!a}"
+
+
+def _asked(robots: Sequence[Robot]) -> set[str]:
+    return {step.then.condition for robot in robots for step in robot.steps if isinstance(step.then, Choose)}
 
 
 def _objects(movement: Movement) -> list[str]:

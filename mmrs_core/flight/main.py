@@ -8,14 +8,23 @@ import threading
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 
+from .bus import Recorded
 from .conditions import Condition
+from .control import Control
+from .crews import Crews
+from .ending import FAILED, INTERRUPTED, LINK, OK
+from .injection import Rehearsal
 from .judgement import Judgement
+from .log import read
 from .objects import Locator
 from .options import Options, options_of, parser_for
+from .ports import Port
 from .program import Robot
 from .radios import Radios
-from .session import FAILED, INTERRUPTED, LINK, OK, Shared, run_robot
-from .slots import LocalSlots, Slots, shared_slots, strangers_of
+from .resuming import slots_of
+from .screen import say
+from .session import Shared, run_robot
+from .slots import LocalSlots, Slots, recorded_of, shared_slots, strangers_of
 
 
 def main(
@@ -38,11 +47,22 @@ def main(
     for fault in judgement.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
-        slots = _slots(parser, robots, options, stack)
         stop = threading.Event()
+        shared = Shared(
+            options=options,
+            slots=_slots(parser, robots, options, stack),
+            judgement=judgement,
+            decides=judgement.decides(robots),
+            rehearsal=(rehearsal := Rehearsal(options.inject, options.clock, say)),
+            radios=_radios(options, rehearsal),
+            crews=(crews := Crews([robot.id for robot in robots])),
+            stop=stop,
+        )
+        stack.callback(rehearsal.close)
+        rehearsal.start()
+        _open_control(options, crews, stack)
         _stop_on_signals(stop)
-        radios = Radios(options.clock, options.reach.signer, options.reach.retries)
-        codes = _run_all(robots, Shared(options, slots, judgement, radios, stop))
+        codes = _run_all(robots, shared)
     return next((code for code in (INTERRUPTED, LINK, FAILED) if code in codes), OK)
 
 
@@ -73,7 +93,7 @@ def _slots(
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
         carrier = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached)
         try:
-            bus = shared_slots(robots, options.run, options.log, carrier)
+            bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))
         except OSError as error:
             parser.error(f"--log {options.log}: {error.strerror or error}")
         except ValueError as error:
@@ -82,7 +102,35 @@ def _slots(
         return bus
     if strangers := strangers_of(robots):
         parser.error(f"needs {', '.join(map(ascii, strangers))}: run fleet.py, or every program with --bus")
-    return LocalSlots(robots, options.run)
+    slots = LocalSlots(robots, options.run)
+    if options.resume:
+        slots.restore(*slots_of(robots, [step for robot in robots for step in read(options.log / robot.log)]))
+    return slots
+
+
+def _recorded(robots: Sequence[Robot], options: Options) -> dict[str, Recorded]:
+    """Return what the logs say of robots that are started again."""
+    if not options.resume:
+        return {}
+    return {robot.id: recorded_of(robot, read(options.log / robot.log)) for robot in robots}
+
+
+def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
+    reach = options.reach
+
+    def wrap(port: Port, url: str) -> Port:
+        return rehearsal.wrap(port, reach.sharers(url))
+
+    return Radios(options.clock, reach.signer, reach.retries, wrap)
+
+
+def _open_control(options: Options, crews: Crews, stack: ExitStack) -> None:
+    try:
+        control = Control(options.log, options.run, crews.inboxes, crews.status)
+    except OSError as error:
+        say(f"{options.log}: no orders can be given while this runs: {error.strerror or error}")
+        return
+    stack.callback(control.close)
 
 
 def _stop_on_signals(stop: threading.Event) -> None:

@@ -9,7 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from .clock import Clock
+from .faults import Fault
+from .injection import HELP, Injections, injections
 from .link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
+from .log import read
 from .ports import address_of, split_system
 from .program import Robot
 from .signing import Signer, signer_for
@@ -17,6 +20,7 @@ from .signing import Signer, signer_for
 FIRST_PORT = 14_550
 PORT_STEP = 10
 DRY_SPEEDUP = 500.0
+FIRST_RUN = "run-0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,10 @@ class Reach:
     patience: float
     retries: Retries
     signer: Signer | None
+
+    def sharers(self, url: str) -> list[str]:
+        """Return the robots that are reached by a url."""
+        return [robot for robot, each in self.urls.items() if each == url]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,37 +78,47 @@ class Options:
     Attributes:
         log: folder for the logs.
         run: identifier of the run.
+        resume: whether to go on where the logs end.
         on_stop: ``hold``, ``return`` or ``land``.
+        battery_patience: real seconds to wait for a changed battery when no other robot works.
         fence: whether to upload it.
+        inject: faults to be made on purpose.
     """
 
     log: Path
     run: str
+    resume: bool
     clock: Clock
     dry: bool
     on_stop: str
+    battery_patience: float
     fence: bool
     tolerances: Tolerances
     reach: Reach
     bus: Bus
+    inject: Injections
 
 
 def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     """Return the parser of the command line that runs these robots."""
     parser = argparse.ArgumentParser(
         description=f"Flies {', '.join(ascii(robot.id) for robot in robots)}.",
-        epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped.",
+        epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped."
+        " While it runs: python -m mmrs_flight.control ORDER --log FOLDER.",
     )
     _add_reach(parser)
     add = parser.add_argument
     add("--log", type=Path, default=Path("logs"), help="folder for the logs; must not hold any yet")
-    add("--run", default="run-0", help="identifier of this run, in the logs")
+    add("--run", help=f"identifier of this run, in the logs; default {FIRST_RUN}")
+    add("--resume", action="store_true", help="go on where the logs in --log end, as with a new battery")
     add("--dry-run", action="store_true", help="no link: go through the program with a vehicle made up")
     add("--speedup", type=float, default=None, help="how much faster than real time the vehicles run")
     add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
+    add("--battery-patience", type=float, default=0.0, metavar="SECONDS", help=_PATIENCE)
     add("--no-fence", action="store_true", help="do not upload the fence")
     add("--acceptance", type=float, help="metres from a place that count as there; else by the travel mode")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
+    add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
@@ -119,23 +137,30 @@ def options_of(
         arguments: as on the command line; None: those of this process.
     """
     given = parser.parse_args(arguments)
-    taken = [str(given.log / robot.log) for robot in robots if (given.log / robot.log).exists()]
-    if taken:
-        parser.error(f"{taken[0]}: there is a log already; choose another --log")
+    run, start = _run(parser, robots, given)
     speedup = given.speedup or (DRY_SPEEDUP if given.dry_run else 1.0)
     if speedup <= 0:
         parser.error("--speedup must be positive")
+    reach = _reach(parser, robots, given)
     return Options(
-        given.log,
-        given.run,
-        Clock(speedup),
-        given.dry_run,
-        given.on_stop,
-        not given.no_fence,
-        Tolerances(given.acceptance, given.home_tolerance),
-        _reach(parser, robots, given),
-        _bus(given),
+        log=given.log,
+        run=run,
+        resume=given.resume,
+        clock=Clock(speedup, start),
+        dry=given.dry_run,
+        on_stop=given.on_stop,
+        battery_patience=given.battery_patience,
+        fence=not given.no_fence,
+        tolerances=Tolerances(given.acceptance, given.home_tolerance),
+        reach=reach,
+        bus=_bus(given),
+        inject=_inject(parser, reach, given),
     )
+
+
+_PATIENCE = (
+    "how long to wait for the order resume when a robot has come home for its battery and no other works"
+)
 
 
 def _add_reach(parser: argparse.ArgumentParser) -> None:
@@ -145,15 +170,33 @@ def _add_reach(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="[ROBOT=]URL[@SYSTEM]",
-        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD, and the MAVLink system of the"
-        " vehicle where several share a link;"
+        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or DEVICE,BAUD, and the vehicle's MAVLink"
+        " system, without which it is whichever speaks first; robots may share a URL;"
         f" default udpin:127.0.0.1:{FIRST_PORT} for the first robot, {PORT_STEP} more for each further one",
     )
     add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
     add("--tries", type=int, default=TRIES, help="how often to send at most what a vehicle does not answer")
-    add("--answer-seconds", type=float, default=ANSWER_SECONDS, help="how long to wait for an answer")
-    add("--item-seconds", type=float, default=ITEM_SECONDS, help="how long to wait for a mission's item")
+    add("--answer-seconds", type=float, default=ANSWER_SECONDS, help="to wait for an answer each time")
+    add("--item-seconds", type=float, default=ITEM_SECONDS, help="to wait for an item of a mission")
     add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
+
+
+def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> tuple[str, float]:
+    """Return the identifier of the run, and how many seconds of it have passed."""
+    taken = [given.log / robot.log for robot in robots if (given.log / robot.log).exists()]
+    if taken and not given.resume:
+        parser.error(f"{taken[0]}: there is a log already; choose another --log, or go on with --resume")
+    if given.resume and not taken:
+        parser.error(f"--resume: there is no log of these robots in {given.log}")
+    try:
+        steps = [step for path in taken for step in read(path)]
+    except Fault as fault:
+        parser.error(f"--resume: {fault}")
+    runs = sorted({str(step["run"]) for step in steps})
+    if len(runs) > 1 or (runs and given.run and runs != [given.run]):
+        parser.error(f"--resume: the logs are of run {', '.join(map(ascii, runs))}")
+    start = max((float(step["time"]) for step in steps), default=0.0)
+    return (runs[0] if runs else given.run or FIRST_RUN), start
 
 
 def _reach(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:
@@ -161,35 +204,35 @@ def _reach(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any)
         parser.error("--tries must be at least 1")
     if min(given.answer_seconds, given.item_seconds) <= 0:
         parser.error("--answer-seconds and --item-seconds must be positive")
-    found = _links(parser, robots, given.connect)
+    links, signer = _links(parser, robots, given.connect), _signer(parser, given.signing_key)
     return Reach(
-        {robot: url for robot, (url, _) in found.items()},
-        {robot: system for robot, (_, system) in found.items()},
+        {robot: url for robot, (url, _) in links.items()},
+        {robot: system for robot, (_, system) in links.items()},
         given.patience,
         Retries(given.tries, given.answer_seconds, given.item_seconds),
-        _signer(parser, given.signing_key),
+        signer,
     )
 
 
 def _links(
-    parser: argparse.ArgumentParser, robots: Sequence[Robot], links: Sequence[str]
+    parser: argparse.ArgumentParser, robots: Sequence[Robot], texts: Sequence[str]
 ) -> dict[str, tuple[str, int]]:
-    found = {
+    links = {
         robot.id: (f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * index}", 0)
         for index, robot in enumerate(robots)
     }
-    for link in links:
-        robot, separator, text = link.rpartition("=")
-        if separator and robot not in found:
-            parser.error(f"--connect {link}: there is no robot {robot!a}")
+    for text in texts:
+        robot, separator, reached = text.rpartition("=")
+        if separator and robot not in links:
+            parser.error(f"--connect {text}: there is no robot {robot!a}")
         if not separator and len(robots) > 1:
-            parser.error(f"--connect {link}: which robot? say ROBOT={link}")
-        found[robot or robots[0].id] = _link(parser, text)
-    taken = [each for each in found.values() if each[1]]
+            parser.error(f"--connect {text}: which robot? say ROBOT={text}")
+        links[robot or robots[0].id] = _link(parser, reached)
+    taken = [each for each in links.values() if each[1]]
     for url, system in taken:
         if taken.count((url, system)) > 1:
             parser.error(f"--connect {url}@{system}: is given to two robots")
-    return found
+    return links
 
 
 def _link(parser: argparse.ArgumentParser, text: str) -> tuple[str, int]:
@@ -208,6 +251,13 @@ def _signer(parser: argparse.ArgumentParser, path: Path | None) -> Signer | None
         return signer_for(path)
     except (OSError, ValueError) as error:
         parser.error(str(error))
+
+
+def _inject(parser: argparse.ArgumentParser, reach: Reach, given: Any) -> Injections:
+    try:
+        return injections(given.inject, reach.urls, dry=given.dry_run)
+    except ValueError as error:
+        parser.error(f"--inject {error}")
 
 
 def _bus(given: Any) -> Bus:

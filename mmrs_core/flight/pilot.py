@@ -2,41 +2,31 @@
 
 from __future__ import annotations
 
-from .commands import Unanswered
+from collections.abc import Sequence
+from functools import partial
+
 from .desk import Desk
-from .faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, Fault
+from .doing import Doing
+from .faults import BATTERY_LOW, Fault, Refused
 from .journal import Journal
 from .missions import Item
+from .obedience import Obedience
 from .objects import look_at, place_of
-from .places import ends_of
-from .program import (
-    Action,
-    GoTo,
-    Hold,
-    Land,
-    Look,
-    Measure,
-    NoEffect,
-    Notify,
-    Operate,
-    Place,
-    Recharge,
-    Report,
-    Robot,
-    Step,
-    TakeOff,
-    Then,
-    Turn,
-)
+from .places import at_height, distance, ends_of
+from .program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from .recording import fix
-from .responses import policy_for
+from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
 from .uploads import Flight, fence_of, mission_of, rally_of
 from .vehicle import Vehicle
 from .waits import Waits
+from .watch import Watch
 
 FULL = 0.99
 RECHARGE_FACTOR = 3.0
 """How many times as long as expected charging may take."""
+
+STARTS = 3
+"""How often a vehicle may start anew while it is set up."""
 
 
 class Pilot:
@@ -48,61 +38,130 @@ class Pilot:
         track: the places it has passed in the air or on its way, with the moves that ended there.
     """
 
-    def __init__(self, robot: Robot, vehicle: Vehicle, desk: Desk) -> None:
-        """Take a program, a vehicle and what is needed to work."""
+    def __init__(
+        self,
+        robot: Robot,
+        vehicle: Vehicle,
+        desk: Desk,
+        watch: Watch,
+        obedience: Obedience,
+        *,
+        fence: bool = True,
+    ) -> None:
+        """Take a program, a vehicle and what is needed to work; `fence`: whether to upload it."""
         self.journal = Journal(robot, vehicle, desk)
         self.waits = Waits(robot, vehicle, desk, self.journal)
         self.track: list[tuple[str, Place]] = []
+        self._doing = Doing(robot, vehicle, desk, self.journal, self.waits)
         self._robot = robot
         self._vehicle = vehicle
         self._desk = desk
+        self._watch = watch
+        self._obedience = obedience
+        self._fence = fence
         self._steps = {step.move: step for step in robot.steps}
         self._flights: dict[str, Flight] = {}
 
-    def fly(self, fence: bool = True) -> None:
-        """Carry out the whole program.
+    def fly(self) -> None:
+        """Carry out the program, from the beginning or from where its log ends.
 
         Raises:
             Fault: it cannot be carried out to its end.
         """
-        self._prepare(fence)
-        step: Step | None = self._steps[self._robot.start]
+        if self._desk.log.steps and self._vehicle.state().armed:
+            self._vehicle.carry_on()
+        self._prepare()
+        if self._desk.log.steps:
+            self._take_up_again()
+        step: Step | None = self._steps[self.journal.move]
         while step is not None:
-            self.journal.move = step.move
             step = self._perform(step)
         self._vehicle.finish()
 
-    def _prepare(self, fence: bool) -> None:
+    def _prepare(self) -> None:
+        """Set the vehicle up; again where it has started anew meanwhile."""
         mission, self._flights = mission_of(self._robot)
-        polygons: tuple[Item, ...] = fence_of(self._robot) if fence else ()
-        self._vehicle.answer_lost_link(policy_for(LINK_LOST, self._robot).response)
-        self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+        polygons: tuple[Item, ...] = fence_of(self._robot) if self._fence else ()
+        for _ in range(STARTS):
+            self._watch.renew()
+            self.waits.tell_vehicle()
+            self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+            if not self._watch.restarted:
+                break
+        else:
+            raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
 
+    def _take_up_again(self) -> None:
+        """Be where the interrupted leg began, by the way that the robot came in this sortie."""
+        records = self._desk.log.steps
+        self.track = track_of(self._robot, records)
+        step = self._steps[self.journal.move]
+        self._desk.say(f"{self._robot.id!a}: goes on with {step.move!a}")
+        self.journal.decide("resume", f"its log ends at {step.move}", "goes the way it came")
+        if not self.track or self._is_down(step):
+            return
+        self._watch.moving = True
+        for place in self._way_to_work():
+            self._go(place, self._robot.cruise, None, through=False)
+        for action in still_on(self._robot, records):
+            self._doing.operate(action)
+
+    def _is_down(self, step: Step) -> bool:
+        """Return whether the robot stands where it was to land."""
+        state = self._vehicle.state()
+        here = at_height(state.place, self.track[-1][1].height)
+        return (
+            isinstance(step.movement, Land)
+            and not state.armed
+            and distance(here, self.track[-1][1]) < OFF_ITS_WAY
+        )
+
+    def _way_to_work(self) -> Sequence[Place]:
+        places = [place for _, place in self.track]
+        state = self._vehicle.state()
+        if not state.armed:
+            if self._robot.vehicle == "copter":
+                self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
+            return places
+        self._vehicle.carry_on()
+        return rest_of_way(places, state.place, self._next_place())
+
+    def _next_place(self) -> Place | None:
+        movement = self._steps[self.journal.move].movement
+        return (
+            place_of(movement.at, self._desk.locators, self._vehicle.state())
+            if isinstance(movement, GoTo)
+            else None
+        )
+
     def _perform(self, step: Step) -> Step | None:
         self._tell(step)
-        for index, action in enumerate(step.before):
-            self._act(action, f"pre:{index}")
-        flight = self._flights.get(step.move)
-        if flight is None:
-            self.journal.write("begin")
+        at = self.journal.progress
+        for index in range(at.before, len(step.before)):
+            self._doing.act(step.before[index], f"pre:{index}")
+        flight = self._flights.get(step.move) if not at.begun else None
+        if at.ended:
+            pass
+        elif flight is None:
+            if not at.begun:
+                self.journal.write("begin")
             self._carry_out(step)
             self.journal.write("end")
         else:
             step = self._run(flight)
-        for index, action in enumerate(step.after):
-            self._act(action, f"post:{index}")
+        for index in range(self.journal.progress.after, len(step.after)):
+            self._doing.act(step.after[index], f"post:{index}")
         return self._steps[self.waits.leave(step.then)] if step.then is not None else None
 
     def _carry_out(self, step: Step) -> None:
         movement = step.movement
         if isinstance(movement, TakeOff):
-            self.track = []
-            self._vehicle.take_off(movement.height)
-            self._passed(self._vehicle.state().place)
+            self._take_off(movement.height)
         elif isinstance(movement, Land):
-            self._vehicle.land()
+            self._obedience.repeat(self._vehicle.land)
+            self._watch.moving = False
         elif isinstance(movement, GoTo):
             self._go_to(movement, isinstance(step.then, Then) and step.then.fluid)
         elif isinstance(movement, Recharge):
@@ -110,44 +169,65 @@ class Pilot:
         elif isinstance(movement, Hold):
             self._vehicle.rest(movement.seconds)
         elif isinstance(movement, Turn) and (look := self._look(movement.look)) is not None:
-            self._vehicle.turn(look)
+            self._obedience.repeat(partial(self._vehicle.turn, look))
+
+    def _take_off(self, height: float) -> None:
+        self._begin_sortie()
+        self._obedience.repeat(partial(self._vehicle.take_off, height))
+        self._passed(self._vehicle.state().place)
+
+    def _begin_sortie(self) -> None:
+        """Leave the ground; a vehicle that has started anew there, as with a new battery, is set up again."""
+        self.track = []
+        if self._watch.restarted:
+            self._prepare()
+        self._watch.renew()
+        self._watch.moving = True
 
     def _look(self, look: Look | None) -> Look | None:
         return look_at(look, self._desk.locators, self._vehicle.state())
 
     def _go_to(self, movement: GoTo, fluid: bool) -> None:
-        here = self._vehicle.state().place
         if not self.track:
-            self._passed(here)
+            self._begin_sortie()
+            self._passed(self._vehicle.state().place)
+        here = self._vehicle.state().place
         target = place_of(movement.at, self._desk.locators, self._vehicle.state())
         look = self._look(movement.look)
         ends = ends_of(here, target, movement.legs, movement.distance)
         for place in ends:
-            last = place == ends[-1]
-            self._vehicle.go_to(place, movement.speed, look, fluid and last)
+            self._go(place, movement.speed, look, through=fluid and place == ends[-1])
             self._passed(place)
 
+    def _go(self, place: Place, speed: float | None, look: Look | None, *, through: bool) -> None:
+        self._obedience.repeat(partial(self._vehicle.go_to, place, speed, look, through))
+
     def _run(self, flight: Flight) -> Step:
+        if not self.track:
+            self._begin_sortie()
         moves = flight.run.moves
         self.journal.write("begin")
+        following = flight.first
 
         def reached(seq: int) -> None:
-            move = flight.ends.get(seq)
-            if move is None:
-                return
-            movement = self._steps[move].movement
-            assert isinstance(movement, GoTo)
-            self._passed(place_of(movement.at, {}, self._vehicle.state()))
-            self.journal.write("end")
-            if move != moves[-1]:
-                following = moves[moves.index(move) + 1]
-                self.journal.write("take", following)
-                self.journal.move = following
-                self._tell(self._steps[following])
-                self.journal.write("begin")
+            nonlocal following
+            following = seq + 1
+            if seq in flight.ends:
+                self._pass_waypoint(flight.ends[seq], moves)
 
-        self._vehicle.fly(flight.first, flight.last, reached)
+        self._obedience.repeat(lambda: self._vehicle.fly(following, flight.last, reached))
         return self._steps[moves[-1]]
+
+    def _pass_waypoint(self, move: str, moves: tuple[str, ...]) -> None:
+        movement = self._steps[move].movement
+        assert isinstance(movement, GoTo)
+        self._passed(place_of(movement.at, {}, self._vehicle.state()))
+        self.journal.write("end")
+        if move != moves[-1]:
+            following = moves[moves.index(move) + 1]
+            self.journal.write("take", following)
+            self._tell(self._steps[following])
+            self.journal.write("begin")
 
     def _passed(self, place: Place) -> None:
         if self._desk.dry:
@@ -156,6 +236,7 @@ class Pilot:
 
     def _recharge(self, seconds: float) -> None:
         self.track = []
+        self._watch.moving = False
         self._vehicle.finish()
         begun = self._desk.clock.now()
         self._vehicle.rest(seconds)
@@ -168,43 +249,6 @@ class Pilot:
             self._vehicle.rest(min(5.0, seconds or 5.0))
         if left is None:
             self._desk.say(f"{self._robot.id!a} has charged for {seconds:.0f} s; nobody knows how far")
-
-    def _act(self, action: Action, detail: str) -> None:
-        if isinstance(action, Notify):
-            self._notify(action, detail)
-            return
-        try:
-            self._do(action)
-        except Unanswered as error:
-            self.waits.raise_unless_carried_on(Fault(DEVICE_SILENT, str(error)))
-        self.journal.write("act", detail)
-
-    def _do(self, action: Action) -> None:
-        if isinstance(action, Operate):
-            self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
-            for command, params in action.more:
-                self._vehicle.operate(command, params)
-            self._vehicle.rest(action.seconds)
-        elif isinstance(action, Measure):
-            found = self._vehicle.measure(action.value)
-            self._vehicle.rest(action.seconds)
-            self.journal.record("measured", action.value, {"device": action.device, "result": found})
-        elif isinstance(action, Report):
-            self._desk.say(f"{self._robot.id!a} reports {action.name!a} {dict(action.pairs)!a}")
-            self.journal.record("reported", action.name, dict(action.pairs))
-        elif isinstance(action, NoEffect):
-            self._desk.say(f"{self._robot.id!a} has no way to do {action.name!a}: {action.why}")
-
-    def _notify(self, action: Notify, detail: str) -> None:
-        sign = "+" if action.active else "-"
-        slots = sign + " ".join(f"{robot}.{slot}" for robot, slot in action.slots)
-        self._desk.slots.notify(
-            self._robot.id,
-            action.slots,
-            action.active,
-            lambda lamport: self.journal.write("ntf", detail, slots, lamport),
-            self.waits.delivery(),
-        )
 
     def _tell(self, step: Step) -> None:
         serves = f" for task {step.task!a}" if step.task else ""

@@ -274,6 +274,9 @@ class Robot:
         start: the first move.
         slots: its own; senders: robots that activate each of them; resets: robots that deactivate it.
         reserve: part of the energy that must be left.
+        endurance: seconds that a full battery lasts at the type's mean power; None where nobody knows.
+        cruise: metres per second at which the robot goes back; None: the vehicle's own.
+        descent: metres per second at which it comes down; None where nobody knows.
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
         mission: name of it; fleet: all robots of it, this one included.
@@ -291,6 +294,9 @@ class Robot:
     resets: tuple[tuple[str, tuple[str, ...]], ...] = ()
     policies: tuple[Policy, ...] = ()
     reserve: float = 0.2
+    endurance: float | None = None
+    cruise: float | None = None
+    descent: float | None = None
     runs: tuple[Run, ...] = ()
     fence: tuple[tuple[Place, ...], ...] = ()
     rally: tuple[Place, ...] = ()

@@ -2,45 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
+from .energy import way_back
 from .faults import (
     BATTERY_LOW,
     LINK_LOST,
-    STOPPED,
+    POSITION_LOST,
     TAKEN_OVER,
-    Fault,
 )
 from .program import Place, Policy, Robot
 from .vehicle import Vehicle
 
 CONTINUE = "CONTINUE"
 HOLD = "HOLD"
+LAND = "LAND"
 NOTHING = "NOTHING"
+RETURN = "RETURN"
 
-DEFAULTS: Mapping[str, str] = {LINK_LOST: "RETURN", BATTERY_LOW: "RETURN", TAKEN_OVER: NOTHING}
+DEFAULTS: Mapping[str, str] = {LINK_LOST: RETURN, BATTERY_LOW: RETURN, TAKEN_OVER: NOTHING}
 """Responses where no policy says anything; to anything else, robots hold."""
+
+NEEDS_POSITION = frozenset({RETURN, "EMERGENCY_AREA", HOLD})
+"""Responses that nobody can carry out who does not know where it is."""
+
+Movement = Callable[[], None]
+Repeat = Callable[[Movement], None]
 
 
 def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy:
     """Return what a robot does about an event: by the wait's policies, its own, or the defaults."""
+    if event == TAKEN_OVER:
+        return Policy(event, NOTHING)
     for policy in (*first, *robot.policies):
         if policy.event == event:
             return policy
     return Policy(event, DEFAULTS.get(event, HOLD))
 
 
+def response_to(event: str, robot: Robot, first: Sequence[Policy] = ()) -> str:
+    """Return how a robot responds to an event, or what comes nearest to it that can be done then.
+
+    Without a position there is no way back and, for what flies, no staying either: it comes down.
+    """
+    response = policy_for(event, robot, first).response
+    if event == POSITION_LOST and robot.vehicle == "copter" and response in NEEDS_POSITION:
+        return LAND
+    return response
+
+
 def respond(
-    response: str, fault: Fault, robot: Robot, vehicle: Vehicle, track: Sequence[tuple[str, Place]]
+    response: str, robot: Robot, vehicle: Vehicle, track: list[tuple[str, Place]], repeat: Repeat
 ) -> bool:
     """Carry out a response.
 
     Args:
         response: as in policies, or ``NOTHING``.
-        fault: what it is a response to.
         robot: whose program it was.
         vehicle: its vehicle.
-        track: the places it has passed, with the moves that ended there.
+        track: the places it has passed, with the moves that ended there; what it has gone back is
+            taken off, so that another response begins where this one was left.
+        repeat: carries out a movement, again if it was held in the middle of it.
 
     Returns:
         Whether the vehicle now holds and somebody must watch it.
@@ -48,43 +71,32 @@ def respond(
     Raises:
         Fault: the response cannot be carried out either.
     """
-    if fault.event == LINK_LOST or response == NOTHING:
+    if response == NOTHING:
         return False
-    if response == "RETURN":
-        _go_back(robot, vehicle, track)
-    elif response == "EMERGENCY_AREA":
-        _escape(robot, vehicle, track)
-    elif response == "LAND":
-        _come_down(robot, vehicle)
+    if response in (RETURN, "EMERGENCY_AREA"):
+        return _go_back(response, robot, vehicle, track, repeat)
+    if response == LAND:
+        repeat(partial(_come_down, robot, vehicle))
     elif response == "SURFACE":
-        vehicle.surface()
+        repeat(vehicle.surface)
     elif response == "STOP_THRUST":
         vehicle.disarm()
     else:
-        return vehicle.hold() and fault.event != STOPPED
+        return vehicle.hold()
     return False
 
 
-def _go_back(robot: Robot, vehicle: Vehicle, track: Sequence[tuple[str, Place]]) -> None:
-    for _, place in reversed(track):
-        vehicle.go_to(place, None, None, True)
-    if track:
-        _come_down(robot, vehicle)
-    else:
-        vehicle.hold()
-
-
-def _escape(robot: Robot, vehicle: Vehicle, track: Sequence[tuple[str, Place]]) -> None:
-    escapes = dict(robot.escapes)
-    for move, place in reversed(track):
-        vehicle.go_to(place, None, None, True)
-        if move in escapes:
-            vehicle.go_to(escapes[move], None, None, False)
-            break
-    if track:
-        _come_down(robot, vehicle)
-    else:
-        vehicle.hold()
+def _go_back(
+    response: str, robot: Robot, vehicle: Vehicle, track: list[tuple[str, Place]], repeat: Repeat
+) -> bool:
+    if not track and not (robot.vehicle == "copter" and vehicle.state().armed):
+        return vehicle.hold()
+    for place in tuple(way_back(robot, response, track)):
+        repeat(partial(vehicle.go_to, place, robot.cruise, None, True))
+        if track[-1][1] == place and len(track) > 1:
+            track.pop()
+    repeat(partial(_come_down, robot, vehicle))
+    return False
 
 
 def _come_down(robot: Robot, vehicle: Vehicle) -> None:

@@ -3,37 +3,41 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from platform import python_version
 from traceback import format_exception
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from . import recording
 from .ardupilot import MavlinkVehicle
 from .blackbox import BlackBox, black_box_path
+from .conditions import Condition
+from .crews import Crews
 from .desk import Desk
 from .dry import DryVehicle
-from .faults import CRASHED, LINK_LOST, STOPPED, TAKEN_OVER, Fault
+from .ending import CODES, FAILED, OK, Crew, Ending
+from .faults import CRASHED, Fault, Refused
+from .injection import Rehearsal
 from .judgement import Judgement
 from .link import Link
 from .log import Log
+from .obedience import Obedience, Ordered
 from .options import Options
 from .pilot import Pilot
 from .program import Geographic, Robot
 from .radios import Radios
-from .responses import policy_for, respond
+from .recording import Recording
+from .resuming import progress_of
 from .screen import say
 from .slots import Slots
 from .vehicle import Vehicle
 from .watch import Watch
 
-OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
-WATCH_SECONDS = 0.5
-CODES = {STOPPED: INTERRUPTED, LINK_LOST: LINK}
+GLANCE_SECONDS = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +47,10 @@ class Shared:
     options: Options
     slots: Slots
     judgement: Judgement
+    decides: Mapping[str, Condition]
     radios: Radios
+    rehearsal: Rehearsal
+    crews: Crews
     stop: threading.Event
 
 
@@ -51,133 +58,156 @@ def run_robot(robot: Robot, shared: Shared) -> int:
     """Run one robot's program to its end, or to the end that its policies say; return the exit code."""
     try:
         with ExitStack() as stack:
-            stack.callback(shared.slots.leave, robot.id)
-            return _open(robot, shared, stack).run(shared.options.fence)
+            stack.callback(shared.crews.dismiss, robot.id)
+            session = _open(robot, shared, stack)
+            code, over = session.run() if session is not None else (OK, True)
+            if over:
+                shared.slots.leave(robot.id)
+            return code
+    except Ordered as order:
+        shared.slots.leave(robot.id)
+        order.receipt.confirm("there was no vehicle yet")
+        say(f"{robot.id!a}: {order}")
+        return CODES[order.event]
     except Fault as fault:
+        shared.slots.leave(robot.id)
         say(f"{robot.id!a}: {fault}")
         return CODES.get(fault.event, FAILED)
 
 
-@dataclass(frozen=True, slots=True)
 class Session:
-    """A robot with all that it needs: its pilot and vehicle, and who watches them.
+    """A robot with all that it needs, until its program has ended for good."""
 
-    Attributes:
-        link: None in a dry run.
-        on_stop: the response when somebody asks the robot to stop.
-    """
+    def __init__(self, crew: Crew, shared: Shared) -> None:
+        """Begin nothing yet."""
+        self._crew = crew
+        self._shared = shared
 
-    robot: Robot
-    vehicle: Vehicle
-    link: Link | None
-    watch: Watch
-    desk: Desk
-    pilot: Pilot
-    on_stop: str
+    def run(self) -> tuple[int, bool]:
+        """Carry the program out, after changes of batteries, too.
 
-    def run(self, fence: bool) -> int:
-        """Carry the program out, with or without a fence; return the exit code."""
-        code = self._carry_out(fence)
-        if self.link is not None and self.link.dropped:
-            self._tell_dropped(self.link.dropped)
-        return code
+        Returns:
+            The exit code, and whether the program is over: one that is only suspended is not.
+        """
+        crew = self._crew
+        while True:
+            ending = Ending(crew, lambda: self._shared.slots.leave(crew.robot.id))
+            code = self._carry_out(ending)
+            if not ending.suspended or not self._goes_on():
+                break
+        if crew.link is not None and crew.link.dropped:
+            crew.desk.box.write("counted", frames=crew.link.dropped)
+        if crew.link is not None and crew.link.garbled:
+            crew.say(f"frames on the link that were not used: {_counts(crew.link.dropped)}")
+        return code, not ending.suspended
 
-    def _carry_out(self, fence: bool) -> int:
+    def _carry_out(self, ending: Ending) -> int:
         try:
-            self.pilot.fly(fence)
+            self._crew.pilot.fly()
         except Fault as fault:
-            return self._end_early(fault)
+            return ending.end(fault)
         except Exception as error:
             say("".join(format_exception(error)))
-            return self._end_early(Fault(CRASHED, f"the program itself fails: {error!r}"))
-        say(f"{self.robot.id!a}: done")
+            return ending.end(Fault(CRASHED, f"the program itself fails: {error!r}"))
+        self._crew.say("done")
         return OK
 
-    def _end_early(self, fault: Fault) -> int:
-        response = self._response_to(fault)
-        say(f"{self.robot.id!a}: {fault.event}: {fault}; response: {response}")
-        self.pilot.journal.decide(fault.event, str(fault), response)
-        self.watch.relax()
-        try:
-            self.pilot.journal.fail(fault.event)
-        except Fault as error:
-            say(f"{self.robot.id!a}: the fault is not in the log: {error}")
-        self.desk.slots.leave(self.robot.id)
-        try:
-            if respond(response, fault, self.robot, self.vehicle, self.pilot.track):
-                self._watch_over()
-        except Fault as error:
-            say(f"{self.robot.id!a}: cannot carry out {response}: {error}; take over by hand")
-            return CODES.get(error.event, FAILED)
-        say(f"{self.robot.id!a}: stopped" if fault.event == STOPPED else f"{self.robot.id!a}: ended early")
-        return CODES.get(fault.event, FAILED)
-
-    def _watch_over(self) -> None:
-        """Stay with a vehicle that holds until somebody stops the program or takes over.
-
-        Raises:
-            Fault: the link is lost.
-        """
-        say(f"{self.robot.id!a}: holds; interrupt to end")
-        try:
-            while not self.desk.stop.is_set():
-                self.vehicle.rest(WATCH_SECONDS)
-        except Fault as fault:
-            if fault.event != TAKEN_OVER:
-                raise
-            say(f"{self.robot.id!a}: {fault}")
-
-    def _tell_dropped(self, dropped: Mapping[str, int]) -> None:
-        shown = ", ".join(f"{reason} ({frames})" for reason, frames in sorted(dropped.items()))
-        say(f"{self.robot.id!a}: frames on the link that were not used: {shown}")
-        self.desk.box.write("counted", frames=dropped)
-
-    def _response_to(self, fault: Fault) -> str:
-        if fault.event == STOPPED:
-            return self.on_stop.upper()
-        return policy_for(fault.event, self.robot, self.pilot.waits.policies).response
+    def _goes_on(self) -> bool:
+        """Return whether the robot, which came home for its battery, was told to go on; if so, let it."""
+        crew, shared = self._crew, self._shared
+        crew.watch.silence, crew.obedience.hands_off = True, True
+        crew.watch.let_go()
+        shared.crews.suspend(crew.robot.id)
+        patience = time.monotonic() + shared.options.battery_patience
+        crew.say("came home for its battery: change it, then order resume, or start again with --resume")
+        while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
+            try:
+                if crew.obedience.awaits_resume():
+                    crew.obedience.hands_off = False
+                    crew.watch.tighten()
+                    shared.crews.engage(crew.robot.id)
+                    return True
+            except Ordered as order:
+                order.receipt.confirm("it stands on the ground")
+                return False
+            if shared.stop.wait(GLANCE_SECONDS):
+                return False
+        return False
 
 
-def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session:
-    options, judgement = shared.options, shared.judgement
-    log = Log(options.log / robot.log, options.run, robot.id)
+def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
+    """Return a robot at work; None where its log says that there is nothing left to do.
+
+    Raises:
+        Fault: its log or its link cannot be opened, or its program has ended otherwise.
+    """
+    options = shared.options
+    log = Log(options.log / robot.log, options.run, robot.id, resume=options.resume)
     stack.callback(log.close)
-    box = BlackBox(
-        black_box_path(options.log / robot.log),
-        options.run,
-        robot.id,
-        options.clock.now,
-        mark={"dry_run": True} if options.dry else {},
-    )
-    stack.callback(box.close)
-    desk = Desk(
-        options.clock,
-        shared.slots,
-        log,
-        box,
-        judgement.conditions,
-        judgement.locators,
-        shared.stop,
-        say,
-        options.dry,
-    )
+    over = progress_of(robot, log.steps).over
+    if over.startswith("it has ended"):
+        raise Refused(f"cannot go on: {over}")
+    if over:
+        say(f"{robot.id!a}: {over}")
+        return None
+    box = _box(robot, options, stack)
+    shared.rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
+    stack.callback(shared.rehearsal.forget, robot.id)
+    crew = _crew(robot, shared, log, box, stack)
+    shared.crews.man(robot.id, crew.vehicle.state, crew.pilot.journal)
+    return Session(crew, shared)
+
+
+def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStack) -> Crew:
+    options, inbox = shared.options, shared.crews.inboxes[robot.id]
     watch = Watch(robot, options.clock, shared.stop)
-    link = None if options.dry else _link(robot, shared, watch, stack)
-    vehicle = _vehicle(robot, options, watch, link)
+    obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!a}: {line}"))
+
+    def guard() -> None:
+        watch.check()
+        obedience.check()
+
+    link = None if options.dry else _link(robot, shared, guard, stack)
+    vehicle = _vehicle(robot, options, guard, link)
+    desk = Desk(
+        clock=options.clock,
+        slots=shared.slots,
+        log=log,
+        box=box,
+        conditions=shared.decides,
+        locators=shared.judgement.locators,
+        stop=shared.stop,
+        say=say,
+        know=lambda state: replace(state, answers=inbox.answers),
+        dry=options.dry,
+    )
     box.write("start", **_facts(robot, options, link))
-    if link is not None:
+    obedience.begin(vehicle)
+    if link is not None and isinstance(vehicle, MavlinkVehicle):
+        watch.begin(link, vehicle)
         geographic = isinstance(robot.home, Geographic)
-        link.observe(recording.Recording(box, options.clock, vehicle.state, geographic=geographic))
-    pilot = Pilot(robot, vehicle, desk)
+        link.observe(Recording(box, options.clock, vehicle.state, geographic=geographic))
+        shared.rehearsal.attend(robot.id, link)
+        shared.crews.wake[robot.id] = link.wake
+    pilot = Pilot(robot, vehicle, desk, watch, obedience, fence=options.fence)
     watch.current = lambda: pilot.waits.policies
-    return Session(robot, vehicle, link, watch, desk, pilot, options.on_stop)
+    watch.track = lambda: pilot.track
+    watch.decide = pilot.journal.decide
+    return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
 
 
-def _vehicle(robot: Robot, options: Options, watch: Watch, link: Link | None) -> Vehicle:
+def _box(robot: Robot, options: Options, stack: ExitStack) -> BlackBox:
+    path, mark = black_box_path(options.log / robot.log), {"dry_run": True} if options.dry else {}
+    box = BlackBox(path, options.run, robot.id, options.clock.now, mark=mark)
+    stack.callback(box.close)
+    return box
+
+
+def _vehicle(robot: Robot, options: Options, guard: Callable[[], None], link: Link | None) -> Vehicle:
     if link is None:
-        return DryVehicle(options.clock, robot.home, watch.check)
+        return DryVehicle(options.clock, robot.home, guard)
     near = options.tolerances
-    vehicle = MavlinkVehicle(
+    return MavlinkVehicle(
         link,
         robot.vehicle,
         robot.home,
@@ -186,19 +216,21 @@ def _vehicle(robot: Robot, options: Options, watch: Watch, link: Link | None) ->
         home_tolerance=near.home,
         tell=lambda line: say(f"{robot.id!a}: {line}"),
     )
-    watch.begin(link, vehicle)
-    return vehicle
 
 
-def _link(robot: Robot, shared: Shared, watch: Watch, stack: ExitStack) -> Link:
-    reach, clock = shared.options.reach, shared.options.clock
+def _link(robot: Robot, shared: Shared, guard: Callable[[], None], stack: ExitStack) -> Link:
+    options, reach = shared.options, shared.options.reach
     url, system = reach.urls[robot.id], reach.systems[robot.id]
     link = shared.radios.open(url, system)
     stack.callback(link.close)
-    link.guard = watch.check
+    link.guard = guard
     say(f"{robot.id!a}: waits for {f'system {system}' if system else 'a vehicle'} at {url}")
-    shared.radios.meet(link, url, reach.patience * clock.speedup)
+    shared.radios.meet(link, url, reach.patience * options.clock.speedup)
     return link
+
+
+def _counts(dropped: Mapping[str, int]) -> str:
+    return ", ".join(f"{reason} ({frames})" for reason, frames in sorted(dropped.items()))
 
 
 def _facts(robot: Robot, options: Options, link: Link | None) -> dict[str, object]:

@@ -70,6 +70,7 @@ class Telemetry:
             self.heading() or 0.0,
             self.energy(),
             wind=None if wind is None else wind[0],
+            wind_from=None if wind is None else wind[1],
             detected=self._detections.names,
         )
 

@@ -18,11 +18,11 @@ class State:
         time: seconds of the run. place: where it is. speed: metres per second.
         heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
             None where the vehicle does not say.
+        wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
+        detected: names of what the vehicle has detected so far.
+        answers: what the operator has answered so far, by question.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
-        wind: metres per second, or None where the vehicle does not say.
-        detected: names of what the vehicle has told that it detected.
-        answers: what people have answered so far, by question.
     """
 
     time: float
@@ -33,15 +33,21 @@ class State:
     mode: str = ""
     armed: bool = False
     wind: float | None = None
+    wind_from: float | None = None
     detected: frozenset[str] = frozenset()
     answers: Mapping[str, bool] = field(default_factory=dict)
+
+    @property
+    def charge(self) -> float | None:
+        """Return the part of the battery that is left, as the standard conditions call it."""
+        return self.energy
 
 
 class Vehicle(Protocol):
     """What a robot's program needs of a vehicle."""
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
-        """Have the vehicle respond so by itself when it no longer hears the ground."""
+        """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""
         ...
 
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
@@ -49,7 +55,7 @@ class Vehicle(Protocol):
         ...
 
     def take_off(self, height: float) -> None:
-        """Climb to a height above home."""
+        """Climb to a height above home, or go on climbing to it."""
         ...
 
     def land(self) -> None:
@@ -82,6 +88,18 @@ class Vehicle(Protocol):
 
     def hold(self) -> bool:
         """Halt and stay, and return when it does; say whether it must be watched from then on."""
+        ...
+
+    def carry_on(self) -> None:
+        """Be ready to move again after a hold; what flies stays where it is."""
+        ...
+
+    def check(self) -> None:
+        """Make sure, without waiting, that nobody else has taken the vehicle over.
+
+        Raises:
+            Fault: somebody has.
+        """
         ...
 
     def surface(self) -> None:

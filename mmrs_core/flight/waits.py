@@ -1,10 +1,11 @@
-"""Waits for other robots: for slots to be set, and for notifications to be answered."""
+"""Waits for other robots and for people: for slots, for owners of slots, for answers to questions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
 
+from .conditions import question_of
 from .desk import Desk
 from .faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from .journal import Journal
@@ -30,6 +31,7 @@ class Waits:
         self._vehicle = vehicle
         self._desk = desk
         self._journal = journal
+        self._borne: set[str] = set()
 
     def leave(self, then: Then | Choose) -> str:
         """Return the move that comes next, once the robot may go on to it.
@@ -52,7 +54,7 @@ class Waits:
 
         def check(silent: tuple[str, ...]) -> None:
             self._vehicle.rest(0.0)
-            if self._desk.clock.now() - begun > self._patience(PEER_LOST, PEER_SECONDS):
+            if self._desk.clock.now() - begun > self.patience(PEER_LOST, PEER_SECONDS):
                 shown = ", ".join(map(ascii, silent))
                 self.raise_unless_carried_on(Fault(PEER_LOST, f"no answer from {shown}"))
 
@@ -62,16 +64,30 @@ class Waits:
         """Raise a fault, or only say it where a policy has the robot carry on."""
         if policy_for(fault.event, self._robot, self.policies).response != CONTINUE:
             raise fault
+        if str(fault) in self._borne:
+            return
+        self._borne.add(str(fault))
         self._journal.decide(fault.event, str(fault), CONTINUE)
         self._desk.say(f"{self._robot.id!a} carries on although {fault}")
 
+    def patience(self, event: str, usual: float) -> float:
+        """Return for how many seconds the robot bears an event; `usual` where policies do not say."""
+        policy = policy_for(event, self._robot, self.policies)
+        return usual if policy.after is None else policy.after
+
+    def tell_vehicle(self) -> None:
+        """Tell the vehicle what it must do without us, here."""
+        policy = policy_for(LINK_LOST, self._robot, self.policies)
+        self._vehicle.answer_lost_link(policy.response, policy.after)
+
     def _follow(self, policies: tuple[Policy, ...]) -> None:
         """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
-        before = policy_for(LINK_LOST, self._robot, self.policies).response
-        after = policy_for(LINK_LOST, self._robot, policies).response
+        before = policy_for(LINK_LOST, self._robot, self.policies)
+        after = policy_for(LINK_LOST, self._robot, policies)
         self.policies = policies
+        self._borne.clear()
         if after != before:
-            self._vehicle.answer_lost_link(after)
+            self.tell_vehicle()
 
     def _choose(self, then: Choose) -> str:
         self._await(then.waits, None)
@@ -86,25 +102,24 @@ class Waits:
         told = False
         while (holds := self._asked(condition)) is None:
             if not told:
-                self._desk.say(f"{self._robot.id!a} waits until {condition!a} can be decided")
                 told = True
+                self._tell_undecided(condition)
             self._check_patience(condition, begun)
-            self._vehicle.rest(GLANCE_SECONDS)
+            self._vehicle.rest(self._desk.clock.patience(0.0, GLANCE_SECONDS))
         return holds
+
+    def _tell_undecided(self, condition: str) -> None:
+        question = question_of(condition)
+        words = f"waits for an answer to {question!a}" if question else f"waits until {condition!a} is known"
+        self._desk.say(f"{self._robot.id!a} {words}")
+        self._journal.decide("CHOICE", condition, words)
 
     def _asked(self, condition: str) -> bool | None:
         try:
-            holds = self._desk.conditions[condition](self._vehicle.state())
+            holds = self._desk.conditions[condition](self._desk.know(self._vehicle.state()))
         except Exception as error:
             raise Fault(CONDITION_FAILED, f"condition {condition!a} fails: {error!r}") from error
         return None if holds is None else bool(holds)
-
-    def _check_patience(self, shown: str, begun: float) -> None:
-        if self._desk.stop.is_set():
-            raise Stopped()
-        limit = self._patience(WAIT_TOO_LONG, inf)
-        if self._desk.clock.now() - begun > limit:
-            self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {shown}"))
 
     def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
         slots, clock = self._desk.slots, self._desk.clock
@@ -124,10 +139,17 @@ class Waits:
             self._journal.waited(names, clock.now() - begun)
 
     def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
-        now, shown = self._desk.clock.now(), ", ".join(map(ascii, names))
+        shown = ", ".join(map(ascii, names))
         self._check_patience(shown, begun)
-        if now - alone > self._patience(PEER_LOST, PEER_SECONDS):
+        if self._desk.clock.now() - alone > self.patience(PEER_LOST, PEER_SECONDS):
             self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
+
+    def _check_patience(self, what: str, begun: float) -> None:
+        if self._desk.stop.is_set():
+            raise Stopped()
+        limit = self.patience(WAIT_TOO_LONG, inf)
+        if self._desk.clock.now() - begun > limit:
+            self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {what}"))
 
     def _orphaned(self, names: tuple[str, ...]) -> bool:
         slots, senders = self._desk.slots, dict(self._robot.senders)
@@ -136,7 +158,3 @@ class Waits:
             if alone and not slots.take(self._robot.id, (name,), lambda lamport: None):
                 return True
         return False
-
-    def _patience(self, event: str, usual: float) -> float:
-        policy = policy_for(event, self._robot, self.policies)
-        return usual if policy.after is None else policy.after

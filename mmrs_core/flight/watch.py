@@ -3,43 +3,98 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
+from . import modes
 from .ardupilot import MavlinkVehicle
 from .clock import Clock
-from .faults import BATTERY_LOW, LINK_LOST, Fault, Stopped
+from .energy import COMES_DOWN, Reserve, Track
+from .faults import BATTERY_LOW, LINK_LOST, POSITION_LOST, TAKEN_OVER, VEHICLE_RESTARTED, Fault, Stopped
 from .link import Link
 from .program import Policy, Robot
 from .responses import CONTINUE, policy_for
+from .signs import Signs
 
 SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0
+LASTING = {POSITION_LOST: 2.0}
+"""Seconds that something must last before it counts, where policies do not say; else none."""
+
+CAUSE_SECONDS = 1.5
+"""For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
+
+Decide = Callable[[str, str, str], None]
 
 
 class Watch:
-    """Raises what ends a robot's program: a stop, a lost link, a low battery.
+    """Raises what ends a robot's program: a stop, a lost link, a pilot, whatever policies name.
 
     Attributes:
         current: the policies of the wait that the robot is in.
+        track: the places that the robot has passed in this sortie.
+        decide: is told what was decided without ending the program: event, reason, response.
+        moving: whether the robot is under way; one that stands on the ground may start anew.
+        silence: whether the vehicle may be silent, as while its battery is changed.
     """
 
     def __init__(self, robot: Robot, clock: Clock, stop: threading.Event) -> None:
         """Watch for a stop only, until there is a vehicle."""
         self.current: Callable[[], Sequence[Policy]] = lambda: ()
+        self.track: Callable[[], Track] = lambda: ()
+        self.decide: Decide = lambda event, why, response: None
+        self.moving = True
+        self.silence = False
         self._robot = robot
         self._clock = clock
         self._stop = stop
+        self._reserve = Reserve(robot)
         self._link: Link | None = None
         self._vehicle: MavlinkVehicle | None = None
-        self._relaxed = False
+        self._signs: Signs | None = None
+        self._heeded: frozenset[str] | None = None
+        self._hands_off = False
+        self._looking = False
+        self._since: dict[str, float] = {}
+        self._borne: set[str] = set()
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
-        """Watch link and battery, too."""
-        self._link, self._vehicle = link, vehicle
+        """Watch link and vehicle, too."""
+        self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
 
-    def relax(self) -> None:
-        """Watch the link only: the robot is already ending its program."""
-        self._relaxed = True
+    def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
+        """Heed less from now on: the robot already responds to something.
+
+        Args:
+            handled: the events that it has responded to; None: heed none any more.
+            response: what it does; what this cannot be carried out with, or would end by, is heeded,
+                and always the link and who has the vehicle.
+        """
+        heeded = {POSITION_LOST, VEHICLE_RESTARTED} if handled is not None else set()
+        if handled is not None and response not in COMES_DOWN:
+            heeded.add(BATTERY_LOW)
+        self._heeded = frozenset(heeded - set(handled or ()))
+
+    def let_go(self) -> None:
+        """Heed nothing but the link from now on: somebody else has the vehicle."""
+        self._heeded, self._hands_off = frozenset(), True
+
+    def tighten(self) -> None:
+        """Heed everything again: the robot goes on with its program."""
+        self._heeded, self._hands_off, self.silence = None, False, False
+        self.renew()
+
+    def renew(self) -> None:
+        """Forget what was: the vehicle is set up, or has another battery."""
+        self._since.clear()
+        self._borne.clear()
+        self._reserve.begin()
+        if self._signs is not None:
+            self._signs.renew()
+
+    @property
+    def restarted(self) -> bool:
+        """Return whether the vehicle has started anew since `renew`."""
+        return self._signs is not None and self._signs.restarted
 
     def check(self) -> None:
         """Raise what should end a wait.
@@ -47,20 +102,83 @@ class Watch:
         Raises:
             Fault: something should.
         """
-        if self._stop.is_set() and not self._relaxed:
+        if self._stop.is_set() and self._heeded is None:
             raise Stopped()
-        if self._link is None or self._vehicle is None:
+        if self._link is None or self._vehicle is None or self._signs is None or self._looking:
             return
         self._check_link(self._link)
-        if self._relaxed or not self._vehicle.running_low(self._robot.reserve):
+        if self._hands_off:
             return
-        if policy_for(BATTERY_LOW, self._robot, self.current()).response != CONTINUE:
-            raise Fault(BATTERY_LOW, f"less than {self._robot.reserve:.0%} of the energy is left")
+        for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
+            self._weigh(event, why)
+        self._check_pilot(self._vehicle, self._link, self._signs)
+
+    def _low(self) -> str:
+        assert self._vehicle is not None
+        response = policy_for(BATTERY_LOW, self._robot, self.current()).response
+        return self._reserve.low(self._vehicle.state(), response, self.track())
+
+    def _weigh(self, event: str, why: str) -> None:
+        """Raise a fault for what has lasted long enough and must not be borne."""
+        if not why:
+            self._since.pop(event, None)
+            self._borne.discard(event)
+            return
+        if event in self._borne or not self._heeds(event):
+            return
+        policy = policy_for(event, self._robot, self.current())
+        limit = LASTING.get(event, 0.0) if policy.after is None else policy.after
+        since = self._since.setdefault(event, self._clock.now())
+        if self._clock.now() - since < limit:
+            return
+        if policy.response != CONTINUE:
+            raise Fault(event, why)
+        self._borne.add(event)
+        self.decide(event, why, CONTINUE)
+
+    def _heeds(self, event: str) -> bool:
+        return self._heeded is None or event in self._heeded
 
     def _check_link(self, link: Link) -> None:
         policy = policy_for(LINK_LOST, self._robot, self.current())
+        if self.silence or policy.response == CONTINUE:
+            return
         limit = SILENCE_SECONDS if policy.after is None else policy.after
         silent = link.silent_for()
-        if silent > self._clock.patience(limit, LEAST_SILENCE) and policy.response != CONTINUE:
+        if silent > self._clock.patience(limit, LEAST_SILENCE):
             why = f" ({link.trouble})" if link.trouble else ""
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
+
+    def _check_pilot(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> None:
+        """Raise a fault where the vehicle has left its mode: by its own failsafe, or by a pilot."""
+        left = _left(vehicle)
+        if left is None:
+            return
+        if vehicle.telemetry.mode() not in modes.of_failsafes(link, self._robot.vehicle):
+            raise left
+        self._looking = True
+        try:
+            found = link.wait(lambda: self._cause(vehicle, signs), self._clock.patience(CAUSE_SECONDS))
+        finally:
+            self._looking = False
+        if found is None:
+            raise Fault(TAKEN_OVER, f"{left}")
+        raise Fault(found[0], f"{found[1]}; {left}")
+
+    def _cause(self, vehicle: MavlinkVehicle, signs: Signs) -> tuple[str, str] | None:
+        """Return the event that the vehicle's own failsafe answers, if it is one that policies answer."""
+        left = _left(vehicle)
+        told = [(left.event, str(left))] if left is not None and left.event != TAKEN_OVER else []
+        found = next(((event, why) for event, why in (*signs.seen(moving=self.moving), *told) if why), None)
+        if found is None or not self._heeds(found[0]):
+            return None
+        return None if policy_for(found[0], self._robot, self.current()).response == CONTINUE else found
+
+
+def _left(vehicle: MavlinkVehicle) -> Fault | None:
+    """Return why the vehicle is no longer in the mode that it should be in; None if it is."""
+    try:
+        vehicle.check()
+    except Fault as fault:
+        return fault
+    return None

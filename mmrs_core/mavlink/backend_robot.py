@@ -229,6 +229,7 @@ class MavlinkBackend:
         watch = Watch(self._robot, self._with.clock, threading.Event())
         watch.begin(self._with.link, self._with.vehicle)
         watch.current = lambda: self._policies
+        watch.track = lambda: self._moves.track
         return watch
 
     def _look(self) -> None:
@@ -273,8 +274,8 @@ class MavlinkBackend:
         self.note("start", content)
 
     def _respond(self, response: str) -> None:
-        fault = VehicleFault("", "")
-        self._watched = respond(response, fault, self._robot, self._with.vehicle, self._moves.track)
+        track = self._moves.track
+        self._watched = respond(response, self._robot, self._with.vehicle, track, lambda movement: movement())
 
     def _pass(self, move: str) -> None:
         self._passed.add(move)

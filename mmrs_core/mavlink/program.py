@@ -12,6 +12,7 @@ from mmrs_core.contributions.targets import TargetInput, TracedStep
 from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.earth import metres
 from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
@@ -23,7 +24,7 @@ from mmrs_core.mavlink.safety import (
     policies_of,
     refuges,
 )
-from mmrs_core.mavlink.vehicles import manner_of
+from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of, manner_of
 from mmrs_core.scene import Point, Policy
 
 
@@ -187,6 +188,7 @@ def _head(
     yield "resets", senders_of(robot, program, active=False)
     yield "policies", tuple(_policy(policy) for policy in policies_of(robot, input))
     yield "reserve", program.reserve
+    yield from _endurance(context)
     manner = manner_of(robot, program.position_error)
     names = ("acceptance", "radius", "margin")
     how = tuple((name, getattr(manner, name)) for name in names)
@@ -195,6 +197,21 @@ def _head(
     yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
     yield "escapes", tuple(_escapes(context, input, points, clearance))
+
+
+def _endurance(context: RobotContext) -> Iterator[tuple[str, object]]:
+    """Yield what the robot's type says of how long it lasts, and how fast it goes back and comes down."""
+    if context.type is None or (capability := capability_of(context.robot, context.type)) is None:
+        return
+    slowest, fastest = capability.speed
+    cruise = max(slowest, TRAVEL_FACTORS.get(context.robot.travel_mode, 0.75) * fastest)
+    for name, value in (
+        ("endurance", capability.lifetime),
+        ("cruise", metres(cruise)),
+        ("descent", capability.descent_rate if context.vehicle.flies else None),
+    ):
+        if value is not None:
+            yield name, value
 
 
 def _run(run: Run, robot: RobotProgram) -> Call:

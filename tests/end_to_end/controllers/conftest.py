@@ -57,6 +57,10 @@ class Controllers:
         lines = map(json.loads, text.splitlines())
         return [line for line in lines if not kinds or line["kind"] in kinds]
 
+    def steps(self, robot: str) -> list[dict]:
+        """Return the lines of a robot's log."""
+        return list(map(json.loads, (self.logs / f"{robot}.jsonl").read_text("ascii").splitlines()))
+
     def replayed(self, *, partial: bool = False) -> ReplayResult:
         return replay(self.program, read_logs([self.logs]), partial=partial)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 from mmrs_core.scene import Policy
@@ -23,14 +24,25 @@ def two_sorties(*policies: Policy, charge: float = 20.0):
     return replace(made, reserve=0.0)
 
 
+def run_and_empty(made, vehicle, links):
+    """Run the fleet; the battery is empty as soon as the robot has landed."""
+    with made.start("fleet.py", *links) as process:
+        while not (take_offs(vehicle) and not vehicle.autopilot.armed):
+            assert process.poll() is None
+            time.sleep(0.01)
+        vehicle.faults.set_battery(0.0)
+        _, said = process.communicate(timeout=60)
+    return process.returncode, said
+
+
 def take_offs(vehicle) -> int:
     return sum(command == TAKE_OFF for _, command, _ in vehicle.autopilot.history)
 
 
 def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, hangar):
-    made = controllers(two_sorties())
-    vehicles, links = hangar(made.program, energy=2.0, recharge=1e9, falls=False)
-    code, said = made.run("fleet.py", *links)
+    made = controllers(two_sorties(charge=60.0))
+    vehicles, links = hangar(made.program, recharge=1e9, falls=False)
+    code, said = run_and_empty(made, vehicles["alpha"], links)
     assert code == 1, said
     assert "BATTERY_LOW: after" in said
     assert "of charging the battery is at 0%" in said
@@ -47,15 +59,12 @@ def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
 
 
 def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
-    made = controllers(two_sorties(charge=20.0))
-    vehicles, links = hangar(made.program, energy=2.0, recharge=40.0, falls=False)
-    code, said = made.run("fleet.py", *links)
+    made = controllers(two_sorties(charge=60.0))
+    vehicles, links = hangar(made.program, recharge=120.0, falls=False)
+    code, said = run_and_empty(made, vehicles["alpha"], links)
     assert code == 0, said
-    landed, left = (
-        max(seconds for seconds, *_ in vehicles["alpha"].autopilot.track if seconds < 30.0),
-        max(seconds for seconds, command, _ in vehicles["alpha"].autopilot.history if command == TAKE_OFF),
-    )
-    assert left - landed > 38.0
+    begun, ended, *_ = (step["time"] for step in made.steps("alpha") if step["move"] == "charge")
+    assert ended - begun > 100.0
 
 
 def test_a_robot_that_does_not_know_its_battery_says_so_and_charges_as_long_as_expected(controllers, hangar):

@@ -21,6 +21,7 @@ from mmrs_core.testing.programs import (
 
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE = 17
+LOITER = 5
 
 
 def one_drone(*policies: Policy, hold: float = 60.0, **robot):
@@ -109,11 +110,16 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         wait_for(at_work(vehicles["alpha"]))
-        vehicles["alpha"].autopilot.set_mode(0)
-        _, said = process.communicate(timeout=90)
+        vehicles["alpha"].faults.take_stick("loiter")
+        assert any("hands off" in line for line in process.stderr)
+        heard = len(vehicles["alpha"].received)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "TAKEN_OVER" in said
-    assert vehicles["alpha"].autopilot.mode == 0
+    assert vehicles["alpha"].received[heard:] == []
+    assert vehicles["alpha"].autopilot.mode == LOITER
+    assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
 
 
 def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
@@ -150,11 +156,13 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
     with made.start("fleet.py", *links) as process:
         assert any("holds; interrupt to end" in line for line in process.stderr)
-        vehicles["alpha"].autopilot.set_mode(0)
+        vehicles["alpha"].faults.take_stick("loiter")
+        assert any("hands off" in line for line in process.stderr)
+        process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 1, said
-    assert "somebody else has taken over" in said
     assert "cannot carry out" not in said
+    assert vehicles["alpha"].autopilot.mode == LOITER
 
 
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
@@ -204,10 +212,11 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         wait_for(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
-        vehicles["alpha"].autopilot.set_mode(0)
-        _, said = process.communicate(timeout=90)
+        vehicles["alpha"].faults.take_stick("loiter")
+        assert any("'beta': ended early" in line for line in process.stderr)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "'beta': PEER_LOST" in said
     assert not vehicles["beta"].autopilot.armed
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
 
@@ -232,7 +241,7 @@ def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
 
 def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
     made = controllers(one_drone(hold=5.0))
-    actions = made.folder / "mmrs_flight/pilot.py"
+    actions = made.folder / "mmrs_flight/doing.py"
     broken = actions.read_text("utf-8").replace("self._vehicle.operate(", "self._vehicle.no_such_word(")
     actions.write_text(broken, "utf-8")
     vehicles, links = hangar(made.program)

@@ -1,0 +1,89 @@
+"""The robots of a process: their inboxes, what is to be said of each, and which of them still work."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+
+from .blackbox import plain
+from .journal import Journal
+from .orders import Inbox, Receipt
+from .vehicle import State
+
+WAITS = "waits for its vehicle"
+WORKS = "works"
+SUSPENDED = "waits for its battery"
+ENDED = "has ended"
+
+
+class Crews:
+    """Keeps account of the robots of one process; any thread may ask.
+
+    Attributes:
+        inboxes: by robot.
+        wake: by robot, what ends the present wait at once.
+    """
+
+    def __init__(self, robots: Sequence[str]) -> None:
+        """Have all of them wait for their vehicles."""
+        self.wake: dict[str, Callable[[], None]] = {}
+        self.inboxes = {robot: self._inbox(robot) for robot in robots}
+        self._phases = dict.fromkeys(robots, WAITS)
+        self._manned: dict[str, tuple[Callable[[], State], Journal]] = {}
+        self._lock = threading.Lock()
+
+    def man(self, robot: str, state: Callable[[], State], journal: Journal) -> None:
+        """Have a robot work: with a vehicle, and somebody who writes down what it does."""
+        self._manned[robot] = (state, journal)
+        self.engage(robot)
+
+    def engage(self, robot: str) -> None:
+        """Have a robot work, or work again."""
+        self._enter(robot, WORKS)
+
+    def suspend(self, robot: str) -> None:
+        """Have a robot wait for its battery."""
+        self._enter(robot, SUSPENDED)
+
+    def dismiss(self, robot: str) -> None:
+        """Have a robot work no more; whatever it is told is refused."""
+        self._enter(robot, ENDED)
+        self.inboxes[robot].close("its program has ended")
+
+    def others_work(self, robot: str) -> bool:
+        """Return whether another robot has not yet ended, and does not wait for its battery."""
+        with self._lock:
+            return any(phase in (WAITS, WORKS) for other, phase in self._phases.items() if other != robot)
+
+    def status(self, robot: str) -> Mapping[str, object]:
+        """Return what there is to say of a robot, as JSON has it."""
+        phase = self._phases[robot]
+        if robot not in self._manned:
+            return {"phase": phase}
+        told, journal = self._manned[robot]
+        state = told()
+        found = {
+            "phase": phase,
+            "move": journal.move,
+            "mode": state.mode,
+            "armed": state.armed,
+            "energy": state.energy,
+            "place": state.place,
+            "speed": round(state.speed, 2),
+        }
+        return {name: plain(value) for name, value in found.items()}
+
+    def _enter(self, robot: str, phase: str) -> None:
+        with self._lock:
+            self._phases[robot] = phase
+
+    def _inbox(self, robot: str) -> Inbox:
+        def arrived() -> None:
+            if robot in self.wake:
+                self.wake[robot]()
+
+        def answered(receipt: Receipt) -> None:
+            if robot in self._manned:
+                self._manned[robot][1].ordered(receipt)
+
+        return Inbox(robot, arrived=arrived, answered=answered)
