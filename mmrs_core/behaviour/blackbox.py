@@ -7,21 +7,16 @@ cannot be read is told, and the rest is used. Lines are read one by one, so that
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from typing import IO
 
-from mmrs_core.behaviour.log import SUFFIX
 from mmrs_core.errors import UnreadableError
 
-BOX = ".blackbox"
-BOX_SUFFIX = ".ndjson"
 LONGEST_LINE = 1_000_000
 
-_PART = re.compile(rf"(?P<stem>.+){re.escape(BOX)}(?:\.(?P<number>\d+))?{re.escape(BOX_SUFFIX)}")
 _OWN = frozenset({"run", "robot", "time", "wall", "kind"})
 
 
@@ -60,47 +55,6 @@ class Damage:
 Tell = Callable[[Damage], None]
 
 
-@dataclass(frozen=True, slots=True)
-class BlackBox:
-    """The box of one robot.
-
-    Attributes:
-        stem: of its files, which is that of the robot's log.
-        parts: oldest first.
-        missing: what of it is not there, for people; empty if nothing seems to be.
-    """
-
-    stem: str
-    parts: tuple[Path, ...]
-    missing: tuple[str, ...] = ()
-
-    def entries(self, tell: Tell) -> Iterator[Entry]:
-        """Yield every entry that can be read, in the order of the lines; tell what cannot be.
-
-        Raises:
-            UnreadableError: if a part cannot be opened.
-        """
-        for part in self.parts:
-            yield from entries_of(part, tell)
-
-
-def black_boxes(paths: Iterable[Path]) -> tuple[BlackBox, ...]:
-    """Return the boxes that paths lead to, by stem; none where there are none.
-
-    Args:
-        paths: folders; logs, whose boxes lie beside them; or any part of a box, which stands for all.
-    """
-    stems: dict[tuple[Path, str], None] = {}
-    for path in paths:
-        if path.is_dir():
-            found = sorted(path.glob(f"*{BOX}*{BOX_SUFFIX}"))
-            stems |= {(path, stem): None for part in found if (stem := _stem(part))}
-        elif stem := _stem(path) or (path.stem if path.suffix == SUFFIX else ""):
-            stems[(path.parent, stem)] = None
-    boxes = (_box(folder, stem) for folder, stem in stems)
-    return tuple(box for box in boxes if box.parts)
-
-
 def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
     """Yield the entries of one file; tell what cannot be read.
 
@@ -117,49 +71,6 @@ def entries_of(path: Path, tell: Tell) -> Iterator[Entry]:
                     tell(Damage(path.name, number, fault))
     except OSError as error:
         raise UnreadableError(f"{path}: cannot be read as a black box: {error.strerror or error}") from error
-
-
-def is_part(path: Path) -> bool:
-    """Return whether a path is called as parts of black boxes are."""
-    return bool(_stem(path))
-
-
-def _stem(path: Path) -> str:
-    found = _PART.fullmatch(path.name)
-    return found["stem"] if found else ""
-
-
-def _box(folder: Path, stem: str) -> BlackBox:
-    numbered: dict[int, Path] = {}
-    current: list[Path] = []
-    for path in folder.glob(f"*{BOX}*{BOX_SUFFIX}"):
-        found = _PART.fullmatch(path.name)
-        if found and found["stem"] == stem:
-            if found["number"]:
-                numbered[int(found["number"])] = path
-            else:
-                current.append(path)
-    parts = (*(numbered[number] for number in sorted(numbered)), *current)
-    return BlackBox(stem, parts, tuple(_missing(stem, numbered, bool(current))))
-
-
-def _missing(stem: str, numbered: Iterable[int], current: bool) -> Iterator[str]:
-    numbers = sorted(numbered)
-    absent = sorted(set(range(1, numbers[-1])) - set(numbers)) if numbers else []
-    for first, last in _stretches(absent):
-        which = f"part {first}" if first == last else f"parts {first} to {last}"
-        yield f"{stem}{BOX}: {which} of {numbers[-1]} {'is' if first == last else 'are'} missing"
-    if numbers and not current:
-        yield f"{stem}{BOX}: its last part, {stem}{BOX}{BOX_SUFFIX}, is missing"
-
-
-def _stretches(numbers: list[int]) -> Iterator[tuple[int, int]]:
-    first = None
-    for i, number in enumerate(numbers):
-        first = number if first is None else first
-        if i + 1 == len(numbers) or numbers[i + 1] != number + 1:
-            yield first, number
-            first = None
 
 
 def _lines(file: IO[bytes]) -> Iterator[bytes]:

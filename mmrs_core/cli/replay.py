@@ -33,7 +33,7 @@ def replay(
 
     Black boxes beside the logs are read, too: what is damaged or missing of them is told.
     """
-    from mmrs_core.behaviour.blackbox import black_boxes, is_part
+    from mmrs_core.behaviour.box_files import black_boxes, is_part
     from mmrs_core.behaviour.log import read_logs
     from mmrs_core.behaviour.replay import Outcome
     from mmrs_core.behaviour.replay import replay as replayed
@@ -81,8 +81,7 @@ def _say_steps(flight: Flight, program: Program) -> None:
     from mmrs_core.cli.tables import table
 
     rows = [
-        (clock(step.time), step.robot, place(step.where), step.words)
-        for step in steps_of(flight, program)
+        (clock(step.time), step.robot, place(step.where), step.words) for step in steps_of(flight, program)
     ]
     for line in table(("time", "robot", "where", "step"), rows):
         say(line)

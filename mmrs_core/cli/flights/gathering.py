@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mmrs_core.behaviour.blackbox import BlackBox, Damage, Entry, black_boxes, number_of
+from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
+from mmrs_core.behaviour.box_files import BlackBox, black_boxes
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.behaviour.steps import StepRecord

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from mmrs_core.behaviour.blackbox import BOX, BOX_SUFFIX, black_boxes
+from mmrs_core.behaviour.box_files import BOX, BOX_SUFFIX, black_boxes
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.cli.flights.fixes import zero_of

@@ -15,8 +15,9 @@ from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.flights.away import away_of, without
 from mmrs_core.cli.flights.photos import SIMULATED, UNCONFIRMED, Shot, shots_in
 from mmrs_core.cli.flights.planned import Planned, legs_of
+from mmrs_core.cli.flights.stretches import Piece, stretches_of
 from mmrs_core.cli.flights.thinning import pieces, thinned
-from mmrs_core.cli.flights.values import Flight, Flown, Track
+from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.cli.preview.from_run import (
     Surroundings,
     bars_of_records,
@@ -30,7 +31,6 @@ from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.scene import Name, Position
 
 _HOLD = (BEHAVIOUR, "HoldPosition")
-_Piece = tuple[tuple[float, ...], tuple[Position, ...]]
 _STILL = 0.3
 _STAYING = 3.0
 """Metres from the middle within which a robot that is to stay is taken to stay."""
@@ -140,9 +140,9 @@ class _Shown:
                 )
             acted = ()
 
-    def _pieces(self, begin: float, end: float) -> Iterator[_Piece]:
+    def _pieces(self, begin: float, end: float) -> Iterator[Piece]:
         for since, until in without((begin, end), self._away):
-            yield from _stretches(self._track, since, until)
+            yield from stretches_of(self._track, since, until)
 
     def _between_moves(self) -> Iterator[Leg]:
         """Yield the ways that belong to no move: what policies, people and autopilots did."""
@@ -151,7 +151,7 @@ class _Shown:
         busy = [part for move in moving for part in without(move, self._away)]
         since = 0.0
         for begin, end in (*busy, (self._flown.end, self._flown.end)):
-            for times, points in _stretches(self._track, since, begin):
+            for times, points in stretches_of(self._track, since, begin):
                 if _reach(points) > _LONGEST_UNNAMED:
                     note = "not in the plan"
                     yield Leg("response", points, times[0], times[-1], note=note, times=times)
@@ -204,29 +204,6 @@ def _acts(records: Iterable[StepRecord]) -> dict[tuple[str, int], list[float]]:
         elif record.label in ("take", "choose"):
             before = []
     return acts
-
-
-def _stretches(track: Track, begin: float, end: float) -> Iterator[_Piece]:
-    """Yield times and positions of what is known of a stretch of time, one for each piece between gaps."""
-    if not len(track.times) or end < begin:
-        return
-    first, last = np.searchsorted(track.times, begin, side="right"), np.searchsorted(track.times, end)
-    times, broken = track.times[first:last].tolist(), track.broken[first:last].tolist()
-    points: list[Position] = [(east, north, up) for east, north, up in track.positions[first:last].tolist()]
-    at_begin, at_end = track.at(begin), track.at(end)
-    if at_begin is not None:
-        times.insert(0, begin)
-        points.insert(0, at_begin)
-        broken.insert(0, bool(track.broken[first - 1]) if first else False)
-    if at_end is not None:
-        times.append(end)
-        points.append(at_end)
-        broken.append(False)
-    since = 0
-    for i in range(len(times)):
-        if broken[i] or i + 1 == len(times):
-            yield tuple(times[since : i + 1]), tuple(points[since : i + 1])
-            since = i + 1
 
 
 def _reach(points: Sequence[Position]) -> float:

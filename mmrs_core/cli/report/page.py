@@ -16,7 +16,7 @@ from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.timeline import timeline_markup
-from mmrs_core.cli.report import sections
+from mmrs_core.cli.report import measures, sections
 from mmrs_core.cli.report.charts import battery_chart, off_way_chart
 from mmrs_core.cli.report.deviations import deviations_over_time
 from mmrs_core.cli.report.energies import planned_levels
@@ -87,16 +87,16 @@ def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
     yield sections.events(report)
     yield section("Who did what, and who waited for whom", _wide(timeline_markup(picture)))
     yield section("Heights above the origin", _wide(profile_markup(picture)), note="Dashed grey: as planned.")
-    yield sections.deviations(report)
-    yield sections.approaches(report)
-    yield sections.energies(report)
+    yield measures.deviations(report)
+    yield measures.approaches(report)
+    yield measures.energies(report)
     yield sections.waits(report)
     legs = given.legs()
     for index, robot in enumerate(picture.robots):
         yield _robot(index, robot.name, report, given, picture, legs[robot.name])
-    yield sections.photos(report)
-    yield sections.readings(report)
-    yield sections.links(report)
+    yield measures.photos(report)
+    yield measures.readings(report)
+    yield measures.links(report)
     yield sections.moves(report)
     yield sections.unknown(report)
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.blackbox import LONGEST_LINE, black_boxes, entries_of, is_part
+from mmrs_core.behaviour.blackbox import LONGEST_LINE, entries_of
+from mmrs_core.behaviour.box_files import black_boxes, is_part
 from mmrs_core.errors import UnreadableError
 from mmrs_core.flight.blackbox import BlackBox as Writer
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from mmrs_core.behaviour.blackbox import black_boxes
+from mmrs_core.behaviour.box_files import black_boxes
 from mmrs_core.cli.flights.gathering import read_flight
 from mmrs_core.cli.flights.recording import write_boxes
 from mmrs_core.cli.protection import ProtectedError
