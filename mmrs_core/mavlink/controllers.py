@@ -101,9 +101,9 @@ def _impossible(policy: Policy, where: str, context: RobotContext) -> Iterator[s
     if event == "LINK_LOST" and response not in vehicle.alone:
         yield f"{where}: policy {event}: no {vehicle.name} does {response} by itself"
     elif response not in vehicle.responses:
-        yield f"{where}: policy {event}: no {vehicle.name} can {response}"
+        yield f"{where}: policy {event}: no {vehicle.name} can answer it by {response}"
     elif event == "POSITION_LOST" and response in FINDING_ITS_WAY:
-        yield f"{where}: policy {event}: without its position, nobody can {response}"
+        yield f"{where}: policy {event}: without its position, nobody can answer it by {response}"
 
 
 MAVLINK_PYTHON = Target(

@@ -341,3 +341,44 @@ def test_the_number_of_a_gimbal_is_passed_on():
     assert b"gimbal=True, device=3" in render(MAVLINK_PYTHON, given)[0].content
     plan = json.loads(render(QGC_PLAN, given)[0].content)
     assert [item["params"][0] for item in plan["mission"]["items"] if item["command"] == 195] == [3.0]
+
+
+@pytest.mark.parametrize(
+    ("event", "response", "why"),
+    [
+        ("BATTERY_LOW", "SURFACE", "no copter can answer it by SURFACE"),
+        ("OBSTACLE", "STOP_THRUST", "no copter can answer it by STOP_THRUST"),
+        ("POSITION_LOST", "RETURN", "without its position, nobody can answer it by RETURN"),
+        ("POSITION_LOST", "EMERGENCY_AREA", "without its position, nobody can answer it by EMERGENCY_AREA"),
+    ],
+)
+def test_a_response_that_no_vehicle_can_give_is_refused(event, response, why):
+    robot = replace(robot_program("alpha", [take_off("up", 5.0), LAND]), policies=(Policy(event, response),))
+    with pytest.raises(UnsupportedError) as error:
+        generated(program(robot))
+    assert error.value.elements == (f"robot 'alpha': policy {event}: {why}",)
+
+
+def test_a_gimbal_is_not_pointed_at_places_that_are_nowhere_on_the_earth():
+    robot = robot_program("a", [DRIVE])
+    made = program(robot, frame=Frame("EPSG:4326", None, None))
+    with pytest.raises(UnsupportedError, match="places on the Earth, and the behaviour is local"):
+        generated(made, types=[crawler(**{"mavlink.gimbal": "1"})])
+
+
+def test_a_robot_without_a_home_is_refused_whatever_is_allowed():
+    robot = robot_program("alpha", [take_off("up", 5.0), LAND], home=None)
+    with pytest.raises(UnsupportedError, match="its home is not known"):
+        generated(program(robot), allow_lossy=True)
+
+
+def test_standard_conditions_are_decided_from_the_beginning():
+    moves = [take_off("up", 5.0), go_to("a", (0.0, 9.0, 5.0)), LAND]
+    choices = {
+        1: Transition(1, 2, condition="wind-above:8", otherwise=3),
+        2: Transition(2, 3, condition="calm", otherwise=4),
+    }
+    files = generated(program(robot_program("alpha", moves, transitions=choices)))
+    source = files["conditions.py"].decode()
+    assert '"wind-above:8": standard("wind-above:8"),' in source
+    assert '"calm": undecided,' in source

@@ -243,3 +243,55 @@ def test_an_object_target_is_refused():
     goes = replace(go_to("a", (0.0, 9.0, 20.0)), target=Target((0.0, 9.0, 20.0), "a buoy", 2.0))
     (fault,) = refused(take_off("up", 20.0), goes, LAND)
     assert "object 'a buoy'" in fault
+
+
+AHEAD = Heading(Target((0.0, 90.0, 0.0)), "camera")
+
+
+def looking(*moves, **properties):
+    """Return the commands of a plan, with their first parameters, and the refusals."""
+    named = {name.replace("__", "."): value for name, value in properties.items()}
+    kind = replace(quad(), devices={"camera": Device("camera", {}, named)})
+    given = target_input(program(robot_program("alpha", [take_off("up", 20.0), *moves, LAND])), [kind])
+    plan = json.loads(render(QGC_PLAN, given, allow_lossy=True)[0].content)
+    return [(command, params[0]) for command, params in items(plan)], tuple(QGC_PLAN.refusals(given))
+
+
+def test_a_device_that_looks_aside_is_turned_on_the_spot():
+    turn = replace(move("turn", "HeadTo"), heading=AHEAD)
+    commands, refusals = looking(turn, mount__yaw="90")
+    assert (115, 270.0) in commands
+    assert refusals == ()
+
+
+def test_a_device_that_looks_aside_cannot_be_turned_on_the_way():
+    _, refusals = looking(go_to("a", (0.0, 30.0, 20.0), heading=AHEAD), mount__yaw="90")
+    assert refusals == ("robot 'alpha', move 'a': device 'camera' does not look ahead (mount.yaw)",)
+
+
+def test_a_gimbal_turns_by_itself_while_the_vehicle_stays_as_it_is():
+    turn = replace(move("turn", "HeadTo"), heading=AHEAD)
+    commands, refusals = looking(turn, mavlink__gimbal="2")
+    assert [command for command, _ in commands] == [22, 195, 21]
+    assert (195, 2.0) in commands
+    assert refusals == ()
+
+
+def test_a_gimbal_cannot_look_past_its_target():
+    _, refusals = looking(
+        replace(move("turn", "HeadTo"), heading=replace(AHEAD, angle_degrees=30.0)), mavlink__gimbal="0"
+    )
+    assert refusals == (
+        "robot 'alpha', move 'turn': a gimbal points straight at its target, not at an angle to it",
+    )
+
+
+def test_a_mount_that_is_no_number_is_refused():
+    _, refusals = looking(go_to("a", (0.0, 30.0, 20.0), heading=AHEAD), mount__yaw="left")
+    assert refusals == ("robot 'alpha', move 'a': device 'camera': mount.yaw is no number",)
+
+
+def test_moves_that_come_round_again_are_refused():
+    moves = (take_off("up", 20.0), go_to("a", (0.0, 9.0, 20.0)), LAND)
+    (fault,) = refused(*moves, transitions={2: Transition(2, 2)})
+    assert fault == "robot 'alpha', move 'a': 'a' comes round again, which no plan can"
