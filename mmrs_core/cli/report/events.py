@@ -15,6 +15,8 @@ from mmrs_core.scene import Position
 
 MOST_TEXTS = 50
 """How many warnings of one vehicle are told."""
+BY_PEOPLE = frozenset({"ORDERED", "STOPPED", "TAKEN_OVER"})
+"""Ends of programs, among the faults of logs, that people wanted."""
 _WARNINGS = frozenset({"EMERGENCY", "ALERT", "CRITICAL", "ERROR", "WARNING"})
 
 
@@ -37,7 +39,8 @@ def readings_of(flown: Flown, zero: Zero, place_of: Callable[[Position], Place])
 def _events(flown: Flown) -> Iterator[Event]:
     for record in flown.records:
         if record.label == "fault":
-            yield Event(flown.robot, record.time, "fault", record.detail, f"at move {record.move}")
+            kind = "order" if record.detail.partition(":")[0] in BY_PEOPLE else "fault"
+            yield Event(flown.robot, record.time, kind, record.detail, f"program ended at move {record.move}")
     for entry in flown.of_kind("decision"):
         yield Event(flown.robot, entry.time, "decision", _words(entry, "what"), _decided(entry))
     for entry in flown.of_kind("order"):

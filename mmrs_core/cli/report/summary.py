@@ -19,16 +19,16 @@ def verdict(report: Report) -> str:
 def _verdict(report: Report) -> tuple[str, str]:
     asked = [task for task in report.tasks if task.status is not Status.NOT_CHOSEN]
     done = sum(task.status is Status.DONE for task in asked)
-    faults = sum(event.kind == "fault" for event in report.events)
+    ended = sum(robot.ended_early for robot in report.robots)
     near = any(approach.too_near for approach in report.approaches)
-    ended = "all robots came to the end of their programs" if report.outcome == "success" else ""
-    tasks = f"{done} of {len(asked)} tasks done" if asked else ended
-    early = f"{faults} robot{'s' * (faults != 1)} ended early" if faults else ""
+    whole = "all robots came to the end of their programs" if report.outcome == "success" else ""
+    tasks = f"{done} of {len(asked)} tasks done" if asked else whole
+    early = f"{ended} robot{'s' * (ended != 1)} ended early" if ended else ""
     close = "a required distance was not kept" if near else ""
     empty = any(e.lowest is not None and e.lowest < e.reserve - 0.005 for e in report.energies)
     low = "a battery fell under the reserve" if empty else ""
     strange = "the logs are no run of this behaviour" if report.complaints else ""
-    unfinished = "not all programs came to their end" if report.outcome != "success" and not faults else ""
+    unfinished = "not all programs came to their end" if report.outcome != "success" and not ended else ""
     words = "; ".join(each for each in (tasks, early, unfinished, close, low, strange) if each)
     if near or strange or (asked and not done):
         return words, "bad"

@@ -222,6 +222,11 @@ class RobotReport:
     planned_time: float | None
     moves: tuple[int, int]
 
+    @property
+    def ended_early(self) -> bool:
+        """Return whether a fault or an order ended its program."""
+        return self.ending.isupper()
+
 
 @dataclass(frozen=True, slots=True)
 class Report:

@@ -151,7 +151,7 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
     assert told == [
         ("text", "wind is strong", "warning"),
         ("decision", "LINK_LOST", "nothing heard for 10 s; response: RETURN"),
-        ("fault", "LINK_LOST", "at move a2"),
+        ("fault", "LINK_LOST", "program ended at move a2"),
         ("order", "hold", "confirmed after 0.25 s"),
         ("order", "land", "not confirmed"),
     ]
@@ -161,6 +161,12 @@ def test_a_fault_that_was_made_on_purpose_says_so(make):
     entry = make.entry(1.0, "injected", fault="gps-lost", state="begins")
     (event,) = events_of(make.flown("alpha", entries=(entry,)))
     assert (event.kind, event.what, event.why) == ("injected", "gps-lost", "on purpose: begins")
+
+
+@pytest.mark.parametrize("end", ["ORDERED", "STOPPED", "TAKEN_OVER"])
+def test_an_end_that_people_wanted_is_no_fault(make, end):
+    (event,) = events_of(make.flown("alpha", make.records("alpha", (3.0, "fault", "a2", end))))
+    assert (event.kind, event.what) == ("order", end)
 
 
 def test_a_flood_of_warnings_is_told_in_short(make):
