@@ -76,7 +76,7 @@ def _subject(entry: Entry) -> str:
 def _facts(entry: Entry) -> Iterator[str]:
     step, facts = entry.step, entry.facts
     if facts.model:
-        yield f"move in {facts.model}"
+        yield f"{'move' if step.move else 'robot'} in {facts.model}"
     if step.task:
         yield f"task '{step.task}'" + (f", by rule '{step.rule}'" if step.rule else "")
     if facts.sets:

@@ -32,10 +32,11 @@ class Recorded:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What the behaviour says of a step's move, as far as it concerns others.
+    """What the behaviour says of a step's move, or of its robot, as far as it concerns others.
 
     Attributes:
-        model: file (without its folder) and line of the move, such as ``behaviour.xmi:12``; may be empty.
+        model: file (without its folder) and line where it stands, such as ``behaviour.xmi:12``; may be
+            empty.
         then: moves that may follow.
         waits: own slots that must be active before. condition: of a choice; may be empty.
         sets: slots of robots that it sets, such as ``beta.go``.

@@ -10,6 +10,7 @@ from jinja2 import Environment
 
 from mmrs_core.behaviour.program import Move, Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, GeneratedFile, Target, TargetInput
+from mmrs_core.diagnostics import Place
 from mmrs_core.errors import InternalError, UnsupportedError
 from mmrs_core.generation.environment import environment_of, rendered_with_lines
 from mmrs_core.generation.manifest import (
@@ -113,16 +114,22 @@ def _check_paths(target: Target, specs: Sequence[FileSpec]) -> None:
 
 
 def _facts_of(program: Program) -> dict[tuple[str, str], Facts]:
-    return {
+    """Return what the behaviour says of each move, and of each robot: by robot and move, or no move."""
+    of_moves = {
         (robot.id, move.id): _facts(robot, index, move)
         for robot in program.robots
         for index, move in enumerate(robot.moves)
     }
+    return of_moves | {(robot.id, ""): Facts(_model(robot.place)) for robot in program.robots}
+
+
+def _model(place: Place) -> str:
+    line = f":{place.line}" if place.line else ""
+    return f"{PurePath(place.file).name}{line}" if place.file else ""
 
 
 def _facts(robot: RobotProgram, index: int, move: Move) -> Facts:
-    line = f":{move.place.line}" if move.place.line else ""
-    model = f"{PurePath(move.place.file).name}{line}" if move.place.file else ""
+    model = _model(move.place)
     sets = (f"{owner}.{slot}" for action in (*move.before, *move.after) for owner, slot in action.sets)
     transition = robot.transitions.get(index)
     if transition is None:

@@ -54,6 +54,15 @@ def test_a_line_is_explained_by_its_move_and_the_line_of_the_model(capsys):
     assert "from robot.py.jinja of target mavlink-python" in told
 
 
+def test_a_line_about_a_robot_is_explained_by_the_line_of_the_robot(capsys):
+    lines = controller().read_text().splitlines()
+    home = next(number for number, line in enumerate(lines, 1) if line.startswith("    home="))
+    assert explained(f"{controller()}:{home}", "--json") == 0
+    (served,) = json.loads(capsys.readouterr().out)["serves"]
+    file, line = served["model"].split(":")
+    assert f'id="{served["robot"]}"' in (Path("project") / file).read_text().splitlines()[int(line) - 1]
+
+
 def test_the_model_line_holds_the_move(capsys):
     explained(f"{controller()}:{go_to()}", "--json")
     (served,) = json.loads(capsys.readouterr().out)["serves"]
