@@ -33,13 +33,14 @@ class Fixes:
     """Fixes so far.
 
     Attributes:
-        unplaced: how many had no place that can be used. turned: how many were older than the one before.
+        unplaced: how many had no place that can be used. turned: how many were older than one before.
+        astray: how many were left out because their time makes no sense among those around.
     """
 
     unplaced: int = 0
     turned: int = 0
+    astray: int = 0
     _values: array[float] = field(default_factory=lambda: array("d"))
-    _last: float = 0.0
 
     def add(self, entry: Entry) -> None:
         """Take a fix; one without a usable place is counted."""
@@ -48,11 +49,9 @@ class Fixes:
         if found is None:
             self.unplaced += 1
             return
-        self.turned += entry.time < self._last
-        self._last = max(self._last, entry.time)
         energy = number_of(entry.content.get("energy"))
         on_earth, first, second, height = found
-        row = (self._last, on_earth, first, second, height, nan if energy is None else energy)
+        row = (entry.time, on_earth, first, second, height, nan if energy is None else energy)
         self._values.extend(row)
 
     def track(self, zero: Zero, *, exact: bool) -> Track:
@@ -62,12 +61,23 @@ class Fixes:
             zero: what places count from.
             exact: whether the robot went straight between fixes, however far apart.
         """
-        rows = np.frombuffer(self._values, dtype=np.float64).reshape(-1, _ROW)
+        every = np.frombuffer(self._values, dtype=np.float64).reshape(-1, _ROW)
+        rows = every[_in_order(every[:, 0])]
+        self.astray = len(every) - len(rows)
         positions = zero.positions(rows[:, 1] > 0, rows[:, 2:5])
         placed = np.isfinite(positions).all(axis=1)
         self.unplaced += int(len(rows) - placed.sum())
-        times = rows[placed, 0]
+        times: Floats = np.maximum.accumulate(rows[placed, 0]) if placed.any() else rows[placed, 0]
+        self.turned = int((rows[placed, 0] < times).sum())
         return Track(times, positions[placed], rows[placed, 5], _broken(times, exact))
+
+
+def _in_order(times: Floats) -> Flags:
+    """Return false for those times that alone are later than what follows them, as a damaged figure is."""
+    sound = np.ones(len(times), dtype=bool)
+    if len(times) > 2:
+        sound[1:-1] = ~((times[1:-1] > times[2:]) & (times[2:] >= times[:-2]))
+    return sound
 
 
 def _broken(times: Floats, exact: bool) -> Flags:

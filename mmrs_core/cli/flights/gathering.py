@@ -178,6 +178,8 @@ def _flown(
     track = fixes.track(zero, exact=contents.simulated)
     if fixes.unplaced:
         damages.append(f"{robot}: {fixes.unplaced} fixes have no place in the frame of the behaviour")
+    if fixes.astray:
+        damages.append(f"{robot}: {fixes.astray} fixes have times that make no sense; they are left out")
     if fixes.turned:
         damages.append(
             f"{robot}: the time of {fixes.turned} fixes goes back; they count as of the one before"

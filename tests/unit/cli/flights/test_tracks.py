@@ -109,10 +109,16 @@ def test_a_simulation_has_no_gaps():
     assert track.at(251.0) is not None
 
 
+def test_a_fix_of_which_the_time_was_damaged_is_left_out_and_counted():
+    fixes, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 1.0, 9e9, 2.0, 3.0)])
+    assert track.times.tolist() == [0.0, 1.0, 2.0, 3.0]
+    assert (fixes.astray, fixes.turned) == (1, 0)
+
+
 def test_time_that_goes_back_stands_still_and_is_counted():
-    fixes, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 2.0, 1.0, 3.0)])
-    assert track.times.tolist() == [0.0, 2.0, 2.0, 3.0]
-    assert fixes.turned == 1
+    fixes, track = track_of([fix(t, local(t, 0, 0)) for t in (0.0, 4.0, 5.0, 2.0, 3.0, 6.0)])
+    assert track.times.tolist() == [0.0, 4.0, 5.0, 5.0, 5.0, 6.0]
+    assert fixes.turned == 2
 
 
 def test_heights_under_water_count_from_the_surface():
