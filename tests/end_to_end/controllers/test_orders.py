@@ -1,0 +1,213 @@
+"""Orders of people, obeyed from every state, and confirmed by the robots."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.flight.ordering import Unreachable, give
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    go_to,
+    move,
+    photo,
+    program,
+    robot_program,
+    take_off,
+)
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+BRAKE, GUIDED, LANDING = 17, 4, 9
+PROMPT = 1.0
+"""Real seconds in which an order on loopback is confirmed."""
+
+
+def full(*values: str):
+    """Return values of a test that runs in the full counts only."""
+    return pytest.param(*values, marks=pytest.mark.thorough)
+
+
+def survey(*, leg: float = 40.0, waits: bool = False):
+    """A climb, a stepped leg, a run of three legs, a photo, a wait, and a way home."""
+    moves = [
+        take_off("up", 10.0),
+        go_to("out", (0.0, leg, 12.0)),
+        go_to("r1", (20.0, leg, 12.0)),
+        go_to("r2", (40.0, leg, 12.0)),
+        replace(go_to("r3", (60.0, leg, 12.0)), after=(photo(),)),
+        move("stay", "HoldPosition", duration=20.0),
+        go_to("home", (0.0, 0.0, 12.0)),
+        LAND,
+    ]
+    fluid = {index: Transition(index, index + 1, fluid=True) for index in (3, 4)}
+    waiting = {6: Transition(6, 7, waits=("go",))} if waits else {}
+    return program(robot_program("alpha", moves, slots=("go",), transitions=fluid | waiting))
+
+
+def order(made, name: str, **options):
+    """Give one robot an order; return its reply."""
+    until = time.monotonic() + 10.0
+    while True:
+        try:
+            (reply,) = give(made.logs, name, ["alpha"], **options)
+            return reply
+        except Unreachable:
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
+
+def await_move(made, name: str, label: str = "begin") -> None:
+    path = made.logs / "alpha.jsonl"
+    until = time.monotonic() + 60.0
+    while not (path.exists() and f'"label": "{label}", "move": "{name}"' in path.read_text("ascii")):
+        assert time.monotonic() < until, f"{name} never comes to {label}"
+        time.sleep(0.02)
+
+
+def pace(vehicle) -> float:
+    return vehicle.autopilot.body.pace
+
+
+@pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), "down"])
+def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, hangar, state):
+    made = controllers(survey())
+    vehicles, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, state)
+        time.sleep(0.1)
+        held = order(made, "hold")
+        place = vehicles["alpha"].autopilot.body.position
+        assert (held["confirmed"], vehicles["alpha"].autopilot.mode) == (True, BRAKE), held
+        time.sleep(1.0)
+        assert pace(vehicles["alpha"]) < 0.3
+        assert vehicles["alpha"].autopilot.body.distance_to(place) < 12.0
+        resumed = order(made, "resume")
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    assert held["seconds"] < PROMPT
+    assert resumed["confirmed"]
+    assert resumed["seconds"] < PROMPT
+    assert made.replayed().complaints == ()
+    assert [(line["order"], line["confirmed"]) for line in made.box("alpha", "order")] == [
+        ("hold", True),
+        ("resume", True),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("state", "name"),
+    [
+        ("up", "return"),
+        ("r2", "land"),
+        *(full(state, name) for state in ("out", "stay") for name in ("return", "land")),
+        full("r2", "return"),
+        full("up", "land"),
+    ],
+)
+def test_a_robot_comes_home_or_down_when_it_is_told_to(controllers, hangar, state, name):
+    made = controllers(survey(leg=30.0))
+    vehicles, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, state)
+        time.sleep(0.1)
+        told = order(made, name)
+        assert told["confirmed"], told
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert told["seconds"] < PROMPT
+    assert {"return": GUIDED, "land": LANDING}[name] in [
+        number for _, number in vehicles["alpha"].autopilot.modes
+    ]
+    assert not vehicles["alpha"].autopilot.armed
+    if name == "return":
+        assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
+
+
+def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(controllers, hangar):
+    made = controllers(survey())
+    vehicles, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, "out")
+        told = order(made, "stop")
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert told["confirmed"]
+    assert told["seconds"] < PROMPT
+    assert vehicles["alpha"].autopilot.mode == BRAKE
+    assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
+
+
+def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, hangar):
+    made = controllers(survey(leg=80.0))
+    vehicles, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, "r1")
+        assert order(made, "return")["confirmed"]
+        time.sleep(0.2)
+        held = order(made, "hold")
+        assert (held["confirmed"], vehicles["alpha"].autopilot.mode) == (True, BRAKE)
+        assert order(made, "land")["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+    assert not vehicles["alpha"].autopilot.armed
+    assert vehicles["alpha"].autopilot.body.position[0] > 20.0
+    assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
+
+
+def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar):
+    made = controllers(survey(leg=20.0, waits=True))
+    vehicles, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, "stay", "end")
+        assert order(made, "hold")["seconds"] < PROMPT
+        assert order(made, "resume")["confirmed"]
+        assert vehicles["alpha"].autopilot.mode == GUIDED
+        assert order(made, "land")["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130, said
+
+
+def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
+    made = controllers(survey())
+    _, links = hangar(made.program, speedup=10.0)
+    with made.start("fleet.py", *links) as process:
+        await_move(made, "stay")
+        told = order(made, "status")
+        order(made, "land")
+        process.communicate(timeout=60)
+    assert (told["phase"], told["move"], told["mode"], told["armed"]) == ("works", "stay", "guided", True)
+    assert told["place"]["height"] == pytest.approx(12.0, abs=1.0)
+
+
+def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
+    made = controllers(survey(leg=20.0))
+    vehicles, links = hangar(made.program, speedup=10.0, silent=frozenset({2000}))
+    with made.start("fleet.py", *links) as process:
+        assert any("holds; interrupt to end" in line for line in process.stderr)
+        refused = order(made, "resume")
+        assert (refused["confirmed"], refused["why"]) == (False, "its program has ended")
+        assert order(made, "return")["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 1, said
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert made.replayed(partial=True).faults == {"alpha": "DEVICE_SILENT"}
+
+
+def test_an_answer_decides_a_choice_that_waited_for_it(controllers):
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), LAND],
+        transitions={1: Transition(1, 2, condition="answer:is it safe", otherwise=3)},
+    )
+    made = controllers(program(robot))
+    with made.start("fleet.py", "--dry-run") as process:
+        assert any("waits for an answer to 'is it safe'" in line for line in process.stderr)
+        assert order(made, "answer", question="is it safe", answer=False)["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    assert [step["detail"] for step in made.steps("alpha") if step["label"] == "choose"] == ["false"]
+    assert made.replayed().complaints == ()
