@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities import behaviours, moves, policies
+from mmrs_core.generation.capabilities import actions, behaviours, moves, policies
 from mmrs_core.generation.capabilities.probes import Probe
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
@@ -55,7 +55,7 @@ def probes(more_moves: Iterable[Metaclasses] = ()) -> tuple[Probe, ...]:
             moves.of_plugins(more_moves),
             moves.of_headings(),
             moves.of_transitions(),
-            moves.of_actions(),
+            actions.of_actions(),
             policies.of_policies(),
         )
     )

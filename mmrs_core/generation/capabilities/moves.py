@@ -1,16 +1,14 @@
-"""Probes of moves, of what follows them, and of what is done before and after them."""
+"""Probes of moves, of where things point meanwhile, and of what follows them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Move, Target, Transition
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.generation.capabilities.probes import (
     ALPHA,
-    BETA,
     FLIGHT,
     KINDS,
     LAND,
@@ -18,7 +16,6 @@ from mmrs_core.generation.capabilities.probes import (
     TAKE_OFF,
     THERE,
     Probe,
-    action,
     changed,
     given,
     go_to,
@@ -36,28 +33,11 @@ UNHEARD_OF: Metaclasses = (("urn:mmrs:nowhere:1.0", "Somersault"), MOVE)
 ON_THE_WAY = (TAKE_OFF, go_to("a"), go_to("b", THERE), LAND)
 """Places where the moves of plug-ins are tried: between two of the core's."""
 
-WIRINGS: Mapping[str, Mapping[str, str]] = {
-    "a MAVLink command (mavlink.command.ACTION)": {"mavlink.command.act": "183 9 1900"},
-    "a value that is measured (mavlink.value)": {"mavlink.value": "CO2"},
-    "a camera (mavlink.camera)": {"mavlink.camera": "0"},
-    "a camera that the autopilot triggers": {"mavlink.camera": "0", "mavlink.camera.command": "digicam"},
-    "a camera that tells each image": {"mavlink.camera": "0", "mavlink.camera.confirms": "yes"},
-    "a servo (mavlink.servo)": {"mavlink.servo": "9", "mavlink.servo.act": "1900"},
-    "a relay (mavlink.relay)": {"mavlink.relay": "0", "mavlink.relay.act": "on"},
-    "a gripper (mavlink.gripper)": {"mavlink.gripper": "1", "mavlink.gripper.act": "release"},
-    "a video (mavlink.video)": {"mavlink.video": "0", "mavlink.video.act": "start"},
-    "a trigger by distance (mavlink.trigger)": {"mavlink.trigger": "5", "mavlink.trigger.act": "start"},
-    "a winch (mavlink.winch)": {"mavlink.winch": "1", "mavlink.winch.act": "length 5"},
-    "a gimbal (mavlink.gimbal.ACTION)": {"mavlink.gimbal": "1", "mavlink.gimbal.act": "-90 0"},
-    "a wiring of a plug-in": {"probe.device": ""},
-    "no wiring": {},
-}
-
 
 def of_moves() -> Iterator[Probe]:
     """Yield a probe for each metaclass and feature of moves."""
     base, two = plain(), given(robot(ALPHA, ON_THE_WAY))
-    yield Probe("move", "Start, Stop", given(robot(BETA, FLIGHT)), base)
+    yield Probe("move", "Start, Stop", given(robot(ALPHA, ())), base)
     yield Probe("move", "multicopter GoTo", given(robot(ALPHA, ON_THE_WAY)), base)
     yield Probe("move", "GoTo", *_inserted(move("m", "GoTo"), target=Target(THERE), speed=2.0))
     yield Probe("move", "GoTo.target", with_move(base, "a", target=Target(THERE)), base)
@@ -136,42 +116,6 @@ def of_transitions() -> Iterator[Probe]:
         yield Probe("transition", element, other, listening)
 
 
-def of_actions() -> Iterator[Probe]:
-    """Yield a probe for each metaclass of actions, and each way in which devices are wired."""
-    for words, properties in WIRINGS.items():
-        type = replace(
-            kind_of("copter"),
-            devices={"device": replace(kind_of("copter").devices["device"], properties=properties)},
-        )
-        base = replace(plain(), types={"Kind": type}, device_actions={"probe.device": _PLUGIN})
-        act = action("DeviceAction", name="act", device="device")
-        yield Probe("device action", f"DeviceAction: {words}", with_move(base, "a", after=(act,)), base)
-    servo = kind_of("copter", mavlink__servo="9", mavlink__servo__act="1900")
-    base = with_move(replace(plain(), types={"Kind": servo}), "a", after=(act,))
-    told = replace(act, parameters=(("pwm", "1100"),))
-    yield Probe("device action", "DeviceAction.parameters", with_move(base, "a", after=(told,)), base)
-    base = given(robot(ALPHA, FLIGHT), replace(robot(BETA, FLIGHT), slots=("go", "on")))
-    notify = ("Notify", "CommunicationAction")
-    go, on = (BETA, "go"), (BETA, "on")
-    for element, does in {
-        "Feedback": action("Feedback", "CommunicationAction", name="arrived"),
-        "UnicastNotify": replace(action("UnicastNotify", *notify), sets=(go,)),
-        "MulticastNotify": replace(action("MulticastNotify", *notify), sets=(go, on)),
-        "BroadcastNotify": replace(action("BroadcastNotify", *notify), sets=(go,)),
-        "Notify.active false": replace(action("UnicastNotify", *notify), sets=(go,), active=False),
-        "an action of a plug-in": replace(
-            action("Sing"), metaclasses=(("urn:mmrs:nowhere:1.0", "Sing"), (BEHAVIOUR, "Action"))
-        ),
-    }.items():
-        yield Probe("action", element, with_move(base, "a", after=(does,)), base)
-    device = replace(plain(), types={"Kind": servo})
-    yield Probe("action", "Move.preActions", with_move(device, "a", before=(act,)), device)
-    yield Probe("action", "Move.postActions", with_move(device, "a", after=(act,)), device)
-    payload = replace(action("Feedback", "CommunicationAction", name="arrived"), parameters=(("at", "a"),))
-    spoken = with_move(base, "a", after=(replace(payload, parameters=()),))
-    yield Probe("action", "Feedback.payload", with_move(base, "a", after=(payload,)), spoken)
-
-
 def _inserted(new: Move, *more: Move, **changes: object) -> tuple[TargetInput, TargetInput]:
     """Return a journey with a move on its way, and without it; `more` makes up for it."""
     made = replace(new, **changes)  # type: ignore[arg-type]
@@ -195,8 +139,3 @@ def _then(base: TargetInput, new: Move) -> TargetInput:
 def _between_sorties(new: Move) -> tuple[TargetInput, TargetInput]:
     again = (replace(TAKE_OFF, id="up2"), replace(LAND, id="down2"))
     return given(robot(ALPHA, (*FLIGHT, new, *again))), given(robot(ALPHA, (*FLIGHT, *again)))
-
-
-_PLUGIN = DeviceWiring(
-    "probe.device", "a wiring of a plug-in", lambda action, device: Wired(183, (9.0, 1900.0))
-)
