@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -18,6 +19,7 @@ from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.sitl.battery import load_at
 from mmrs_core.sitl.faults import ENDS, FAULTS
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.schedule import Planned, Schedule, order, planned
@@ -25,26 +27,44 @@ from mmrs_core.sitl.settings import Settings
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 from mmrs_core.sitl.words import Deeds, deeds_of, state_of, summary
 
+if TYPE_CHECKING:
+    from mmrs_core.scene import RobotType
+
 LOOK_SECONDS = 0.1
 TELL_SECONDS = 10.0
 SPACING = 0.0001
 """Degrees between vehicles without a model: eleven metres."""
+
+USUAL_ENERGY = 1200.0
+"""Seconds of hovering where nobody says how long a battery lasts."""
 
 QUIT = frozenset({"quit", "exit"})
 
 
 @dataclass(frozen=True, slots=True)
 class Berth:
-    """A robot that needs a vehicle: its name, its kind, and its home in degrees."""
+    """A robot that needs a vehicle.
+
+    Attributes:
+        kind: ``copter``, ``sub`` or ``rover``.
+        home: latitude and longitude, degrees.
+        energy: seconds of hovering in a full battery; recharge: seconds until it is full; 0: never.
+    """
 
     robot: str
     kind: str
     home: tuple[float, float]
+    energy: float = USUAL_ENERGY
+    recharge: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Berths:
-    """What all vehicles have in common."""
+    """What all vehicles have in common.
+
+    Attributes:
+        energy, recharge: for all of them; None: as each berth says.
+    """
 
     port: int
     step: int
@@ -55,8 +75,8 @@ class Berths:
     seed: int
     firmware: str
     wind: str
-    energy: float
-    recharge: float
+    energy: float | None
+    recharge: float | None
     parameters: tuple[str, ...]
 
     def vehicles(self, berths: Sequence[Berth]) -> tuple[tuple[str, SimulatedVehicle], ...]:
@@ -89,8 +109,8 @@ class Berths:
                 system=number + 1,
                 firmware=self.firmware,
                 wind=pair(self.wind, "--wind"),
-                energy=self.energy,
-                recharge=self.recharge,
+                energy=berth.energy if self.energy is None else self.energy,
+                recharge=berth.recharge if self.recharge is None else self.recharge,
                 parameters=dict(map(_parameter, self.parameters)),
             )
         except ValueError as error:
@@ -133,20 +153,37 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
     found = model_in(path, "behaviour") if path.is_dir() else path
     if found is not None and found.is_file() and is_behaviour(workshop, found):
         loaded = load_behaviour(workshop, found)
-        program, types = loaded.program, loaded.place.types
-        names = [robot.id for robot in program.robots]
-        kinds = [vehicle_class(robot, types.get(robot.type_name)).name for robot in program.robots]
-        homes, frame = [robot.home for robot in program.robots], program.frame
+        frame = loaded.program.frame
+        robots = loaded.program.robots
+        types = [loaded.place.types.get(each.type_name) for each in robots]
+        crew = [
+            (each.id, vehicle_class(each, type).name, each.home, _battery(each.payload, type))
+            for each, type in zip(robots, types, strict=True)
+        ]
     else:
         scene = Journey(workshop, path).grounded
-        names = [robot.name for robot in scene.robots]
-        kinds = [class_of_type(robot.type).name for robot in scene.robots]
-        homes, frame = [robot.home for robot in scene.robots], scene.frame
-    lost = [name for name, home in zip(names, homes, strict=True) if home is None]
+        frame = scene.frame
+        crew = [
+            (each.name, class_of_type(each.type).name, each.home, _battery(each.payload, each.type))
+            for each in scene.robots
+        ]
+    lost = [name for name, _, home, _ in crew if home is None]
     if lost:
         raise UnsupportedError(f"{path}: no home for {', '.join(lost)}")
-    places = degrees_of([home[:2] for home in homes if home is not None], frame)
-    return [Berth(*each) for each in zip(names, kinds, places, strict=True)]
+    places = degrees_of([home[:2] for _, _, home, _ in crew if home is not None], frame)
+    return [
+        Berth(name, kind, place, *battery)
+        for (name, kind, _, battery), place in zip(crew, places, strict=True)
+    ]
+
+
+def _battery(payload: float, type: RobotType | None) -> tuple[float, float]:
+    """Return seconds of hovering and of recharging, so that it lasts its lifetime at its fastest."""
+    able = [each for each in type.capabilities if each.payload >= payload] if type is not None else []
+    charging = max((each.recharge_time or 0.0 for each in type.batteries), default=0.0) if type else 0.0
+    if not able or able[0].lifetime is None:
+        return USUAL_ENERGY, charging
+    return able[0].lifetime * load_at(able[0].speed[1]), charging
 
 
 def fault_list() -> None:

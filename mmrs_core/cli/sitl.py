@@ -47,14 +47,19 @@ def sitl(
         str, typer.Option("--wind", metavar="SPEED,FROM", help="Metres a second, degrees it comes from.")
     ] = "0,0",
     energy: Annotated[
-        float, typer.Option("--energy", min=1.0, help="Seconds of hovering in a full battery.")
-    ] = 1200.0,
-    recharge: Annotated[
-        float,
+        float | None,
         typer.Option(
-            "--recharge", min=0.0, help="Seconds on the ground until it is full; 0: it stays empty."
+            "--energy", min=1.0, help="Seconds of hovering in a full battery; else as the robot's type says."
         ),
-    ] = 0.0,
+    ] = None,
+    recharge: Annotated[
+        float | None,
+        typer.Option(
+            "--recharge",
+            min=0.0,
+            help="Seconds on the ground until it is full; 0: never. Else as the robot's type says.",
+        ),
+    ] = None,
     parameter: Annotated[
         _Texts, typer.Option("--parameter", metavar="NAME=VALUE", help="Of all vehicles; may be repeated.")
     ] = None,

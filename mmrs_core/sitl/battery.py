@@ -59,5 +59,9 @@ class Battery:
 
 def load_of(body: Body) -> float:
     """Return the power that a movement takes, in that of hovering without wind."""
-    climb = max(0.0, body.velocity[2])
-    return 1.0 + 0.5 * (body.air_pace / CRUISE) ** 2 + 0.1 * climb
+    return load_at(body.air_pace) + 0.1 * max(0.0, body.velocity[2])
+
+
+def load_at(air_pace: float) -> float:
+    """Return the power that a level flight takes at so many metres per second in the air."""
+    return 1.0 + 0.5 * (air_pace / CRUISE) ** 2

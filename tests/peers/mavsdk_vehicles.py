@@ -162,7 +162,10 @@ class MavsdkVehicle(SimulatedVehicle):
         )
 
     def _local(self, server) -> None:
-        (north, east, up), (v_north, v_east, v_up) = self.autopilot.body.position, self.autopilot.body.velocity
+        (north, east, up), (v_north, v_east, v_up) = (
+            self.autopilot.body.position,
+            self.autopilot.body.velocity,
+        )
         server.publish_position_velocity_ned(
             telemetry.PositionVelocityNed(
                 telemetry.PositionNed(north, east, -up), telemetry.VelocityNed(v_north, v_east, -v_up)
@@ -180,7 +183,9 @@ class MavsdkVehicle(SimulatedVehicle):
         latitude, longitude = self.autopilot.degrees()
         above = self.autopilot.settings.altitude + self.autopilot.body.position[2]
         fix = telemetry.FixType.FIX_3D if self.autopilot.located else telemetry.FixType.NO_FIX
-        raw = telemetry.RawGps(0, latitude, longitude, above, 0.8, 1.2, 0.0, 0.0, above, 1.0, 1.0, 0.5, 1.0, 0.0)
+        raw = telemetry.RawGps(
+            0, latitude, longitude, above, 0.8, 1.2, 0.0, 0.0, above, 1.0, 1.0, 0.5, 1.0, 0.0
+        )
         server.publish_raw_gps(raw, telemetry.GpsInfo(14, fix))
 
     def _nothing(self, server) -> None:

@@ -1,0 +1,88 @@
+"""The mission, its behaviour, and how near to areas a track may come."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot, inf
+from pathlib import Path
+from shutil import copytree
+
+from shapely import LineString, Polygon
+
+from mmrs_core import pipeline
+from mmrs_core.languages.writing import write_model
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.plugins import load_plugins
+from mmrs_core.resources import shipped
+from mmrs_core.scene import AreaUse
+
+EXAMPLE = "carbon-dioxide"
+SLACK = 0.6
+"""Metres that a vehicle may be off its leg: the radius in which places count as reached, and a little."""
+
+Track = Sequence[tuple[float, float, float, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """A robot, and where it is at first: degrees, and metres east, north and up in the mission's frame."""
+
+    robot: str
+    latitude: float
+    longitude: float
+    place: tuple[float, float, float]
+
+
+class Mission:
+    """The planned mission, in a folder with its behaviour and its generated controllers.
+
+    Attributes:
+        program: what robots do. homes: in its order.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        contributions = load_plugins().contributions
+        copytree(shipped("examples") / EXAMPLE, folder, dirs_exist_ok=True)
+        models, _ = pipeline.valid_models(folder, contributions)
+        scene = pipeline.expand(pipeline.ground(models), contributions)
+        behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
+        write_model([behaviour], folder / "behaviour.xmi", contributions.languages)
+        self.program = pipeline.program_of(behaviour, contributions)
+        self._place = pipeline.place_of_scene(scene)
+        files = pipeline.render(self.program, self._place, "mavlink-python", contributions)
+        pipeline.write(files, folder / "controllers")
+        degrees = degrees_of([robot.home[:2] for robot in self.program.robots], self.program.frame)
+        self.homes = [
+            Home(robot.id, *place, robot.home)
+            for robot, place in zip(self.program.robots, degrees, strict=True)
+        ]
+
+    def margins(self, home: Home, track: Track) -> dict[str, float]:
+        """Return how much farther from each area as drawn than it must be a track stays, metres.
+
+        Args:
+            home: of the robot.
+            track: seconds, metres north, east and up of home.
+        """
+        robot = next(each for each in self.program.robots if each.id == home.robot)
+        needed = self._place.types[robot.type_name].half_diagonal + self.program.position_error
+        areas = [area for area in self._place.areas if area.use is not AreaUse.EMERGENCY]
+        concerned = [area for area in areas if area.concerns(robot.type_name)]
+        assert concerned
+        return {
+            area.name: least_distance(home, track, area) - area.safety_distance - needed for area in concerned
+        }
+
+
+def least_distance(home: Home, track: Track, area) -> float:
+    """Return the metres between an area as drawn and what was flown, leg by leg of the record."""
+    shape, (east, north, up) = Polygon(area.shell), home.place
+    least = inf
+    for (_, n1, e1, u1), (_, n2, e2, u2) in pairwise(track):
+        way = LineString([(east + e1, north + n1), (east + e2, north + n2)])
+        above = max(up + min(u1, u2) - area.high, area.low - up - max(u1, u2), 0.0)
+        least = min(least, hypot(shape.distance(way), above))
+    return least

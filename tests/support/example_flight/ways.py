@@ -1,0 +1,59 @@
+"""The two ways to fly it: generated controllers as separate programs, and `mmrs run`."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from example_flight.mission import Mission
+
+PATIENCE = 280.0
+
+
+def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
+    """Start a controller for each robot, which keep their slots by Zenoh; return exit codes and words."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    folder = mission.folder / "controllers"
+    processes = {}
+    for number, (robot, link) in enumerate(links.items()):
+        bus = ("--bus-connect" if number else "--bus-listen", endpoint)
+        command = [sys.executable, str(_script(folder, robot)), "--connect", link]
+        command += ["--speedup", f"{speedup:g}", "--log", str(mission.folder / "logs"), *bus]
+        processes[robot] = subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+    return _ends(processes)
+
+
+def by_run(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
+    """Have `mmrs run` carry it out; return exit codes and words."""
+    command = [sys.executable, "-m", "mmrs_core", "run", str(mission.folder), "--speedup", f"{speedup:g}"]
+    command += ["--log", str(mission.folder / "logs")]
+    for robot, link in links.items():
+        command += ["--connect", f"{robot}={link}"]
+    run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return _ends({"all": run})
+
+
+def _ends(processes: Mapping[str, subprocess.Popen[str]]) -> tuple[dict[str, int], str]:
+    said = []
+    try:
+        for process in processes.values():
+            said.append(process.communicate(timeout=PATIENCE)[1])
+    finally:
+        for process in processes.values():
+            process.kill()
+            process.wait()
+    return {name: process.returncode for name, process in processes.items()}, "\n".join(said)
+
+
+def _script(folder: Path, robot: str) -> Path:
+    return next(path for path in folder.glob("robot_*.py") if path.stem.lower() == f"robot_{robot.lower()}")
+
+
+WAYS = {"controllers": by_controllers, "run": by_run}
