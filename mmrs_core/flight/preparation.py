@@ -79,7 +79,7 @@ def check_identity(link: Link, telemetry: Telemetry, kind: str, home: Place, tol
     beat = link.latest("HEARTBEAT")
     if beat is not None and beat.type not in VEHICLES[kind] | {mavlink.MAV_TYPE_GENERIC}:
         entry = mavlink.enums["MAV_TYPE"].get(beat.type)
-        shown = entry.name.removeprefix("MAV_TYPE_").lower() if entry else beat.type
+        shown = entry.name.removeprefix("MAV_TYPE_").lower().replace("_", " ") if entry else beat.type
         raise Refused(f"the vehicle is a {shown}, and the program is for a {kind}")
     if link.doubt():
         raise Refused(link.doubt())

@@ -32,7 +32,10 @@ def main(port: str) -> None:
     added = mavsdk.add_any_connection(f"udpout://127.0.0.1:{port}")
     assert added == ConnectionResult.SUCCESS, added
     component = mavsdk.server_component(0)
-    plugins = [ParamServer(component), TelemetryServer(component)]
+    parameters = ParamServer(component)
+    parameters.provide_param_float("RTL_ALT", 1500.0)
+    parameters.provide_param_float("FS_GCS_ENABLE", 0.0)
+    plugins = [parameters, TelemetryServer(component)]
     missions, actions = MissionRawServer(component), ActionServer(component)
     missions.subscribe_incoming_mission(mission_came)
     actions.set_armable(True, True)

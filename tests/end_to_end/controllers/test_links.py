@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -13,9 +13,12 @@ from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.link import Link
 from mmrs_core.flight.ports import NOTHING, open_port
-from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off, two_drones
 
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
+TWO = two_drones()
 NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise"
 
 
@@ -117,3 +120,71 @@ def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar
     assert "unreadable (" in said
     (counted,) = made.box("alpha", "counted")
     assert counted["frames"]["unreadable"] > 0
+
+
+@pytest.fixture
+def one_radio(free_port):
+    """Return a function that switches on vehicles with system ids 1 and 2 behind one port."""
+    with ExitStack() as stack:
+
+        def switch_on(homes):
+            port, found = free_port(), []
+            for number, (latitude, longitude) in enumerate(homes, start=1):
+                settings = Settings("copter", latitude, longitude, system=number)
+                found.append(stack.enter_context(SimulatedVehicle(port, settings, speedup=20.0)))
+            return f"udpin:127.0.0.1:{port}", found
+
+        yield switch_on
+
+
+def test_two_robots_fly_by_one_radio(controllers, one_radio):
+    made = controllers(TWO)
+    url, (first, second) = one_radio(homes_of(TWO))
+    code, said = made.run(
+        "fleet.py", "--speedup", "20", "--connect", f"alpha={url}@1", "--connect", f"beta={url}@2"
+    )
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+    for vehicle in (first, second):
+        assert max(up for _, _, _, up in vehicle.autopilot.track) > 10.0
+
+
+def test_a_program_for_one_vehicle_does_not_reach_the_other(controllers, one_radio):
+    made = controllers(TWO)
+    url, vehicles = one_radio(homes_of(TWO))
+    code, said = made.run(
+        "fleet.py", "--speedup", "20", "--connect", f"alpha={url}@2", "--connect", f"beta={url}@1"
+    )
+    assert code == 1
+    assert "m from the home of its program" in said
+    assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)
+
+
+def test_which_of_two_vehicles_is_meant_must_be_said(controllers, one_radio):
+    made = controllers(UP_AND_DOWN)
+    url, vehicles = one_radio([(42.37, 13.35), (42.37, 13.3501)])
+    code, said = made.run("fleet.py", "--speedup", "20", "--connect", url)
+    assert code == 1
+    assert "vehicles with the system ids 1 and 2 speak on this link: say which, as URL@" in said
+    assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)
+
+
+def test_a_vehicle_of_another_kind_is_refused(controllers, free_port):
+    port = free_port()
+    with SimulatedVehicle(port, Settings("rover"), speedup=20.0):
+        code, said = controllers(UP_AND_DOWN).run(
+            "fleet.py", "--speedup", "20", "--connect", f"udpin:127.0.0.1:{port}"
+        )
+    assert code == 1
+    assert "the vehicle is a ground rover, and the program is for a copter" in said
+
+
+def test_a_system_is_given_to_one_robot_only(controllers):
+    url = "udpin:127.0.0.1:14550@1"
+    code, said = controllers(TWO).run("fleet.py", "--connect", f"alpha={url}", "--connect", f"beta={url}")
+    assert code == 2
+    assert f"--connect {url}: is given to two robots" in said
+
+
+def homes_of(program):
+    return [degrees_of([robot.home[:2]], program.frame)[0] for robot in program.robots]

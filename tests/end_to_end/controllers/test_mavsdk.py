@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import json
+import queue
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
+from lossy_proxy import LossyProxy
 
 from mmrs_core import flight
-from mmrs_core.flight import missions
+from mmrs_core.flight import missions, parameters
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.commands import command
-from mmrs_core.flight.link import Link
+from mmrs_core.flight.link import Link, Retries
 from mmrs_core.flight.ports import open_port
 from mmrs_core.flight.uploads import mission_of
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.mavlink.plans.qgc import QGC_PLAN
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.testing.programs import target_input, two_drones
 
 PEERS = Path(__file__).parents[2] / "peers"
 
@@ -31,19 +39,30 @@ class Peer:
             stderr=subprocess.STDOUT,
             text=True,
         )
+        self.lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
+
+    def _read(self) -> None:
+        for line in self.process.stdout:
+            self.lines.put(line)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
         self.process.kill()
-        self.process.communicate()
+        self.process.wait()
+        self.reader.join()
+        self.process.stdin.close()
+        self.process.stdout.close()
 
     def next(self):
-        for line in self.process.stdout:
-            if line.startswith("peer "):
-                return json.loads(line.removeprefix("peer "))
-        raise AssertionError("the peer has ended")
+        line = ""
+        while not line.startswith("peer "):
+            line = self.lines.get(timeout=30.0)
+            print(line, end="")
+        return json.loads(line.removeprefix("peer "))
 
 
 @pytest.fixture
@@ -54,8 +73,8 @@ def link(free_port):
     made.close()
 
 
-def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
-    made, port = link
+@pytest.fixture
+def items():
     robot = flight.Robot(
         id="alpha",
         log="alpha.jsonl",
@@ -68,10 +87,18 @@ def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
         ),
         runs=(flight.Run(("a", "b", "c"), (1.0, 0.0, 1.0)),),
     )
-    items, _ = mission_of(robot)
+    return mission_of(robot)[0]
+
+
+def await_autopilot(link, peer) -> None:
+    assert link.wait(lambda: link.component, 30.0), "MAVSDK is not heard"
+    assert peer.next()["what"] == "ready"
+
+
+def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link, items):
+    made, port = link
     with Peer("mavsdk_autopilot.py", port) as peer:
-        assert made.wait(lambda: made.component, 30.0), "MAVSDK is not heard"
-        assert peer.next()["what"] == "ready"
+        await_autopilot(made, peer)
         missions.upload(made, items)
         found = peer.next()
         assert [item[0] for item in found["items"]] == [16, 178, 16, 16, 16, 17]
@@ -79,3 +106,49 @@ def test_mavsdk_as_the_autopilot_accepts_upload_and_arming(link):
         missions.verify(made, items)
         command(made, 400, 1)
         assert peer.next() == {"what": "arm", "arm": True}
+
+
+def test_mavsdk_as_the_autopilot_tells_its_parameters_and_takes_new_values(link):
+    made, port = link
+    with Peer("mavsdk_autopilot.py", port) as peer:
+        await_autopilot(made, peer)
+        found = parameters.read(made, ["RTL_ALT", "NO_SUCH", "FS_GCS_ENABLE"])
+        assert found == {"RTL_ALT": 1500.0, "FS_GCS_ENABLE": 0.0}
+        assert parameters.write(made, "FS_GCS_ENABLE", 3)
+        assert parameters.read(made, ["FS_GCS_ENABLE"]) == {"FS_GCS_ENABLE": 3.0}
+
+
+@pytest.mark.parametrize("seed", [1, 2, pytest.param(3, marks=pytest.mark.thorough)])
+def test_mavsdk_as_the_autopilot_gets_everything_over_a_bad_network(link, items, seed):
+    made, port = link
+    made.retries = Retries(tries=12, answer=0.6, item=0.3)
+    with (
+        LossyProxy(("127.0.0.1", int(port)), loss=0.15, double=0.1, late=0.1, seed=seed) as network,
+        Peer("mavsdk_autopilot.py", str(network.port)) as peer,
+    ):
+        await_autopilot(made, peer)
+        missions.upload(made, items)
+        missions.verify(made, items)
+        command(made, 400, 1)
+        assert parameters.write(made, "FS_GCS_ENABLE", 3)
+        told = [peer.next()]
+        while told[-1]["what"] != "arm":
+            told.append(peer.next())
+        last = [each for each in told if each["what"] == "mission"][-1]
+        assert [item[0] for item in last["items"]] == [16, 178, 16, 16, 16, 17]
+        assert min(network.lost, network.doubled) > 0
+
+
+def test_mavsdk_as_the_ground_uploads_a_plan_over_a_network_that_loses_and_doubles(tmp_path, free_port):
+    write(render(QGC_PLAN, target_input(two_drones()), allow_lossy=True), tmp_path)
+    port = free_port()
+    with (
+        LossyProxy(("127.0.0.1", port), loss=0.1, double=0.1, seed=4) as network,
+        SimulatedVehicle(network.port, Settings(boot=0.0, ready=0.0)) as vehicle,
+        Peer("mavsdk_import.py", str(port), str(tmp_path / "alpha.plan")) as peer,
+    ):
+        found = peer.next()
+        kept = [item.command for item in vehicle.autopilot.stores[0]]
+        assert kept == [item[0] for item in found["mission"]]
+        assert [item[0] for item in found["downloaded"]] == kept
+        assert network.lost > 0

@@ -1,0 +1,148 @@
+"""Parameters: asked for together, written with read-back, and in each autopilot's coding."""
+
+from __future__ import annotations
+
+import pytest
+from mavlink_peer import ARDUPILOT, PX4, bytewise, linked, value
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight import modes, parameters, preparation, safeguards
+from mmrs_core.flight.faults import Refused
+
+INT = mavlink.MAV_PARAM_TYPE_INT32
+
+
+class Values:
+    """A vehicle's parameter service."""
+
+    def __init__(self, deaf: int = 0, stubborn: bool = False, **values: float) -> None:
+        self.values = values
+        self.deaf = deaf
+        self.stubborn = stubborn
+
+    def __call__(self, message):
+        if message.get_type() not in ("PARAM_REQUEST_READ", "PARAM_SET"):
+            return
+        if self.deaf:
+            self.deaf -= 1
+            return
+        name = message.param_id
+        if name in self.values:
+            if message.get_type() == "PARAM_SET" and not self.stubborn:
+                self.values[name] = message.param_value
+            yield value(name, self.values[name])
+
+
+def test_all_are_asked_for_at_once_and_those_that_are_not_there_are_left_out():
+    with linked(Values(A=1.0, B=2.5)) as (link, wire):
+        assert parameters.read(link, ["A", "NONE", "B"]) == {"A": 1.0, "B": 2.5}
+        asked = [message.param_id for message in wire.of("PARAM_REQUEST_READ")]
+        assert asked == ["A", "NONE", "B", "NONE"]
+
+
+def test_a_vehicle_that_tells_none_is_asked_once():
+    with linked() as (link, wire):
+        assert parameters.read(link, ["A", "B"]) == {}
+        assert len(wire.sent) == 2
+
+
+def test_a_lost_answer_is_asked_for_again():
+    with linked(Values(deaf=1, A=1.0, B=2.0)) as (link, _):
+        assert parameters.read(link, ["A", "B"]) == {"A": 1.0, "B": 2.0}
+
+
+def test_a_value_is_written_and_confirmed():
+    values = Values(deaf=1, A=1.0)
+    with linked(values) as (link, _):
+        assert parameters.write(link, "A", 3.3)
+    assert values.values["A"] == pytest.approx(3.3)
+
+
+def test_a_value_that_the_vehicle_does_not_take_is_not_confirmed():
+    with linked(Values(stubborn=True, A=1.0)) as (link, _):
+        assert not parameters.write(link, "A", 3.0)
+
+
+@pytest.mark.parametrize(("autopilot", "sent"), [(ARDUPILOT, 3.0), (PX4, bytewise(3))])
+def test_whole_numbers_are_coded_as_each_autopilot_wants_them(autopilot, sent):
+    def answer(message):
+        if message.get_type() == "PARAM_SET":
+            yield value("NAV_DLL_ACT", message.param_value, INT)
+
+    with linked(answer, autopilot=autopilot) as (link, wire):
+        assert parameters.write(link, "NAV_DLL_ACT", 3, INT)
+        (message,) = wire.of("PARAM_SET")
+        assert (message.param_value, message.param_type) == (sent, INT)
+
+
+@pytest.mark.parametrize(("autopilot", "coded"), [(ARDUPILOT, 5.0), (PX4, bytewise(5))])
+def test_whole_numbers_are_understood_from_each_autopilot(autopilot, coded):
+    with linked(lambda message: [value("A", coded, INT)], autopilot=autopilot) as (link, _):
+        assert parameters.read(link, ["A"]) == {"A": 5.0}
+
+
+def test_failsafes_are_told_in_words_with_a_warning_where_there_is_cause():
+    values = Values(
+        FS_GCS_ENABLE=0.0, BATT_FS_LOW_ACT=0.0, FENCE_ACTION=1.0, DISARM_DELAY=2.0, RTL_ALT=1500.0
+    )
+    with linked(values) as (link, _):
+        told = list(safeguards.report(link, "copter"))
+    assert told == [
+        "FS_GCS_ENABLE = 0: no heartbeats from the ground: nothing",
+        "BATT_FS_LOW_ACT = 0: battery low: nothing (beware: the vehicle does nothing by itself)",
+        "FENCE_ACTION = 1: fence broken: return, or land",
+        "RTL_ALT = 1500: height at which it returns: 1500 cm",
+        "DISARM_DELAY = 2: seconds on the ground until it disarms: 2 s"
+        " (beware: it may disarm before it is told to take off)",
+    ]
+
+
+def test_a_vehicle_that_tells_no_failsafes_is_told():
+    with linked() as (link, _):
+        (line,) = safeguards.report(link, "rover")
+    assert line == "the vehicle tells none of its failsafe parameters: look yourself what it does by itself"
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "response", "expected"),
+    [
+        (ARDUPILOT, "RETURN", {"FS_GCS_ENABLE": 3.0, "FS_GCS_TIMEOUT": 20.0}),
+        (ARDUPILOT, "EMERGENCY_AREA", {"RALLY_INCL_HOME": 0.0, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 20.0}),
+        (PX4, "LAND", {"NAV_DLL_ACT": bytewise(3), "COM_DL_LOSS_T": bytewise(20)}),
+    ],
+)
+def test_a_lost_link_is_answered_by_parameters(autopilot, response, expected):
+    def answer(message):
+        if message.get_type() == "PARAM_SET":
+            yield value(message.param_id, message.param_value, message.param_type)
+
+    with linked(answer, autopilot=autopilot) as (link, wire):
+        assert preparation.answer_lost_link(link, "copter", response, 20.0) == ""
+        assert {message.param_id: message.param_value for message in wire.of("PARAM_SET")} == expected
+
+
+def test_seconds_that_no_vehicle_can_be_told_are_told_to_people():
+    def answer(message):
+        if message.get_type() == "PARAM_SET":
+            yield value(message.param_id, message.param_value)
+
+    with linked(answer) as (link, _):
+        otherwise = preparation.answer_lost_link(link, "copter", "LAND", 500.0)
+    assert otherwise == "the vehicle responds to a lost link after 120 s, not 500 s"
+
+
+def test_a_response_that_a_vehicle_cannot_give_by_itself_is_refused():
+    with linked() as (link, _), pytest.raises(Refused, match="a copter cannot do SURFACE by itself"):
+        preparation.answer_breach(link, "copter", "SURFACE")
+
+
+def test_a_response_that_the_vehicle_does_not_confirm_is_refused():
+    with linked() as (link, _), pytest.raises(Refused, match=r"a broken fence: .* confirm FENCE_ACTION = 2"):
+        preparation.answer_breach(link, "copter", "LAND")
+
+
+@pytest.mark.parametrize("kind", ["copter", "rover", "sub"])
+def test_every_parameter_that_is_set_is_one_that_is_told_or_of_little_account(kind):
+    told = {each.name for each in safeguards.OF_ARDUPILOT[kind]} | {"RALLY_INCL_HOME"}
+    answers = [*modes.LINK_LOST[kind].values(), *modes.BREACH[kind].values()]
+    assert {name for values in answers for name in values} <= told
