@@ -13,13 +13,13 @@ from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.earth import metres
+from mmrs_core.mavlink.escapes import escapes_of
 from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
 from mmrs_core.mavlink.safety import (
     areas_of,
     clearance_of,
-    escape_from,
     explicit,
     policies_of,
     refuges,
@@ -196,7 +196,7 @@ def _head(
     yield "runs", tuple(_run(run, robot) for run in runs_of(context))
     yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
-    yield "escapes", tuple(_escapes(context, input, points, clearance))
+    yield "escapes", tuple(escapes_of(context, input, points, clearance))
 
 
 def _endurance(context: RobotContext) -> Iterator[tuple[str, object]]:
@@ -230,19 +230,6 @@ def _ground(vertex: Point, context: RobotContext) -> Call:
 def _highest(context: RobotContext) -> float:
     ups = [move.target.position[2] for move in context.robot.moves if move.target and move.target.position]
     return max(ups, default=context.zero)
-
-
-def _escapes(
-    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
-) -> Iterator[tuple[str, Call]]:
-    if not points:
-        return
-    for move in context.robot.moves:
-        if move.target is None or move.target.position is None:
-            continue
-        place = escape_from(move.target.position, points, areas_of(context.robot, input), clearance)
-        if place is not None:
-            yield move.id, place_of(place, context)
 
 
 def _words(value: object) -> set[str]:
