@@ -13,6 +13,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
@@ -28,6 +29,8 @@ LEASE_MILLISECONDS = 1500
 
 ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
+
+CLOSING_SECONDS = 1.0
 
 _FILES = (
     "root_ca_certificate",
@@ -149,7 +152,7 @@ class ZenohCarrier:
         with self._closing:
             session, self._session = self._session, None
         if session is not None:
-            session.close()
+            _close(session)
             self._work.put(None)
             self._worker.join()
 
@@ -261,6 +264,19 @@ def states_of(
                     found[str(reply.ok.key_expr).split("/")[3]] = reply.ok.payload.to_string()
             time.sleep(0.05)
     return found
+
+
+def _close(session: Any) -> None:
+    """Close a session, but do not wait for peers that are frozen: Zenoh would, for ten seconds."""
+
+    def close() -> None:
+        # What fails here is that a peer does not say goodbye; there is nobody left to be told.
+        with suppress(zenoh.ZError):
+            session.close()
+
+    closing = threading.Thread(target=close, name="bus closing", daemon=True)
+    closing.start()
+    closing.join(CLOSING_SECONDS)
 
 
 def _opened(endpoints: Endpoints) -> Any:

@@ -64,7 +64,7 @@ class Session:
             if what not in self._ANSWERS:
                 raise Unreadable(f"{what!a}: nothing that can be done here")
             return self._ANSWERS[what](self, content)
-        except (ValueError, KeyError, OSError) as error:
+        except (ValueError, OSError) as error:
             return {"is": "wrong", "why": str(error)}
 
     def _prepare(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -80,19 +80,29 @@ class Session:
 
     def _send(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number = number_in(content, "number")
-        self._deliveries[number].send(number_in(content, "lamport"))
+        self._delivery(number).send(number_in(content, "lamport"))
         return {"is": "sent", "number": number}
 
     def _withdraw(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number = number_in(content, "number")
-        self._deliveries.pop(number).withdraw()
+        self._delivery(number).withdraw()
+        del self._deliveries[number]
         return {"is": "withdrawn", "number": number}
+
+    def _delivery(self, number: int) -> Delivery:
+        found = self._deliveries.get(number)
+        if found is None:
+            raise Unreadable(f"number {number}: no such notify is on its way")
+        return found
 
     def _state(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         return {"is": "state", "slots": json.loads(self._node.shown(self._robot))}
 
     def _pass(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         slots = [(self._robot, name) for name in names_in(content, "slots")]
+        for _, name in slots:
+            if name not in self._slots:
+                raise Unreadable(f"{self._robot!a} has no slot {name!a}")
         passed = self._node.passed(slots, number_in(content, "lamport"))
         return {"is": "passed" if passed else "held"}
 

@@ -1,0 +1,231 @@
+"""The gateway as programs without Zenoh see it: one line of JSON, one answer."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import time
+from contextlib import suppress
+
+import pytest
+
+from mmrs_core.flight.bus import CommandId
+from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+
+RUN = "run-0"
+LEASE = 1.5
+
+
+@pytest.fixture(scope="module")
+def behaviour(tmp_path_factory):
+    """Return the file of a behaviour in which 'a' and 'b' wait for each other."""
+    file = tmp_path_factory.mktemp("models") / "pair.xmi"
+    file.write_text(PAIR)
+    return file
+
+
+PAIR = """<?xml version="1.0" encoding="UTF-8"?>
+<bl:Behaviour xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:bl="urn:mmrs:behaviour:1.0" name="pair">
+  <targets xsi:type="bl:RelativeCoordinate" name="here" x="0.0" y="0.0"/>
+  <robots id="a" typeName="rover" home="//@targets.0">
+    <moves xsi:type="bl:Start" name="start"/>
+    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
+      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0"/>
+      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0" active="false"/>
+    </moves>
+    <moves xsi:type="bl:Stop" name="stop"/>
+    <moveTransitions from="//@robots.0/@moves.0" to="//@robots.0/@moves.1" waitFor="//@robots.0/@slots.0"/>
+    <moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"/>
+    <slots name="ready"/>
+  </robots>
+  <robots id="b" typeName="rover" home="//@targets.0">
+    <moves xsi:type="bl:Start" name="start"/>
+    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
+      <preActions xsi:type="bl:UnicastNotify" slot="//@robots.0/@slots.0"/>
+    </moves>
+    <moves xsi:type="bl:Stop" name="stop"/>
+    <moveTransitions from="//@robots.1/@moves.0" to="//@robots.1/@moves.1"/>
+    <moveTransitions from="//@robots.1/@moves.1" to="//@robots.1/@moves.2" waitFor="//@robots.1/@slots.0"/>
+    <slots name="go"/>
+  </robots>
+</bl:Behaviour>
+"""
+
+
+class Client:
+    """A socket, as a program in C would have it."""
+
+    def __init__(self, port: int) -> None:
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=10.0)
+        self._lines = self.socket.makefile("rb")
+
+    def say(self, line: object) -> None:
+        self.socket.sendall(json.dumps(line).encode() + b"\n")
+
+    def hear(self, what: str) -> dict:
+        """Return the next line that says that; news of other things is passed over."""
+        while line := self._lines.readline():
+            found = json.loads(line)
+            if found["is"] == what:
+                return found
+            assert found["is"] in ("changed", "waiting"), found
+        raise AssertionError(f"{what} was never said")
+
+    def ask(self, line: object, what: str) -> dict:
+        self.say(line)
+        return self.hear(what)
+
+    def close(self) -> None:
+        self._lines.close()
+        self.socket.close()
+
+
+@pytest.fixture
+def gateway(behaviour, ends, tmp_path):
+    """Return the process of a gateway for 'a', and what its file says."""
+    command = [sys.executable, "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", "a"]
+    command += ["--log", str(tmp_path / "logs"), "--listen", f"tcp/127.0.0.1:{ends.ports['a']}"]
+    file = tmp_path / "logs" / "gateway.json"
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
+        until = time.monotonic() + 20
+        while not file.exists():
+            assert process.poll() is None and time.monotonic() < until  # noqa: PT018
+            time.sleep(0.01)
+        yield process, file
+        with suppress(ProcessLookupError):
+            process.kill()
+
+
+@pytest.fixture
+def client(gateway):
+    """Return a client that has said hello."""
+    told = json.loads(gateway[1].read_text())
+    made = Client(told["port"])
+    made.ask({"do": "hello", "token": told["token"]}, "welcome")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def peer(behaviour, ends, tmp_path):
+    """Return the bus of robot 'b', by Zenoh in this process."""
+    from mmrs_core.flight.bus import Member, Node, Owned
+
+    carrier = ZenohCarrier("pair", RUN, ("a", "b"), Endpoints(connect=(f"tcp/127.0.0.1:{ends.ports['a']}",)))
+    member = Member(Owned("b", ("go",), {"go": ("a",)}, {"go": ("a",)}), frozenset({"a"}))
+    node = Node([member], RUN, carrier=carrier)
+    yield node
+    node.close()
+
+
+def test_a_program_sets_slots_and_is_told_step_by_step(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    client.say({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True})
+    client.hear("asked")
+    granted = client.hear("granted")
+    assert not peer.state(("b", "go")).active
+    client.ask({"do": "send", "number": 1, "lamport": granted["lamport"] + 3}, "sent")
+    assert client.hear("acknowledged")["number"] == 1
+    assert peer.state(("b", "go")).active
+    assert peer.state(("b", "go")).lamport == granted["lamport"] + 3
+
+
+def test_a_program_waits_for_its_slots_and_is_told_of_news(client, peer, until, notify):
+    until(lambda: not peer.missing(["a"]))
+    assert not client.ask({"do": "state"}, "state")["slots"]["ready"]["active"]
+    delivery = peer.prepare(CommandId(RUN, "b", "", 1), (("a", "ready"),), True)
+    until(lambda: delivery.lamport is not None)
+    delivery.send(delivery.lamport)
+    until(lambda: not delivery.waiting)
+    found = client.ask({"do": "state"}, "state")["slots"]["ready"]
+    assert found["active"]
+    client.ask({"do": "pass", "slots": ["ready"], "lamport": found["lamport"]}, "held")
+    client.ask({"do": "pass", "slots": ["ready"], "lamport": found["lamport"] + 1}, "passed")
+
+
+def test_a_program_that_goes_is_a_lost_peer(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    client.close()
+    assert until(lambda: peer.lost(["a"])) < 1.0
+
+
+def test_a_gateway_that_is_killed_is_a_lost_peer(gateway, client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    os.kill(gateway[0].pid, signal.SIGKILL)
+    assert until(lambda: peer.lost(["a"])) < 1.0
+
+
+def test_a_gateway_that_is_frozen_is_a_lost_peer(gateway, client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    os.kill(gateway[0].pid, signal.SIGSTOP)
+    assert until(lambda: peer.lost(["a"])) < 2 * LEASE
+
+
+def test_a_gateway_without_a_program_keeps_no_robot(gateway, peer):
+    time.sleep(1.0)
+    assert peer.missing(["a"]) == ("a",)
+
+
+def test_a_program_notices_that_its_peer_has_gone(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    time.sleep(0.2)
+    peer.close()
+    until(lambda: client.ask({"do": "lost", "robots": ["b"]}, "lost")["robots"] == ["b"])
+
+
+def test_a_program_is_told_for_whom_its_notify_waits_and_gives_it_up(client):
+    client.ask({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True}, "asked")
+    assert client.hear("waiting") == {"is": "waiting", "number": 1, "for": ["b"]}
+    client.ask({"do": "withdraw", "number": 1}, "withdrawn")
+
+
+def test_a_program_that_does_not_know_the_token_is_turned_away(gateway):
+    client = Client(json.loads(gateway[1].read_text())["port"])
+    assert client.ask({"do": "hello", "token": "0" * 32}, "wrong")["why"] == "does not know the token"
+    client.close()
+
+
+def test_only_its_user_can_read_the_token(gateway):
+    assert stat.S_IMODE(gateway[1].stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ({"do": "fly"}, "'fly': nothing that can be done here"),
+        ({"do": "prepare", "number": 1, "slots": [], "active": True}, "slots: none"),
+        ({"do": "prepare", "number": 1, "slots": ["go"], "active": True}, "slots: no lists"),
+        ({"do": "prepare", "number": -1, "slots": [["b", "go"]], "active": True}, "number: no whole"),
+        ({"do": "send", "number": 9, "lamport": 3}, "number 9: no such notify"),
+        ({"do": "pass", "slots": ["nothing"], "lamport": 3}, "'a' has no slot 'nothing'"),
+        ([], "not an object"),
+    ],
+    ids=str,
+)
+def test_what_makes_no_sense_is_answered_and_the_program_stays(client, line, why):
+    assert why in client.ask(line, "wrong")["why"]
+    client.ask({"do": "state"}, "state")
+
+
+def test_a_gateway_ends_when_it_is_interrupted(gateway, client):
+    gateway[0].send_signal(signal.SIGINT)
+    assert gateway[0].wait(10.0) == 0
+    assert not gateway[1].exists()
+
+
+def test_a_program_that_comes_again_without_saying_so_is_turned_away(gateway, client):
+    client.close()
+    told = json.loads(gateway[1].read_text())
+    again = Client(told["port"])
+    assert "earlier start" in again.ask({"do": "hello", "token": told["token"]}, "wrong")["why"]
+    again.close()
+    resumed = Client(told["port"])
+    hello = {"do": "hello", "token": told["token"], "resumed": {"lamport": 7, "notifies": []}}
+    assert resumed.ask(hello, "welcome")["slots"] == ["ready"]
+    resumed.close()
