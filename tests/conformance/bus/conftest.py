@@ -73,6 +73,17 @@ class ThreadFleet(Fleet):
     def thaw(self, robot: str) -> None:
         self.runs[robot].thaw()
 
+    def split(self) -> None:
+        """Cut all ends from each other; every robot goes on where it is."""
+        for robot, run in self.runs.items():
+            run.carrier.cut = True
+            self.hub.noticed(robot, False, run.node)
+
+    def heal(self) -> None:
+        for robot, run in self.runs.items():
+            run.carrier.cut = False
+            self.hub.noticed(robot, True, run.node)
+
     def ended(self, robot: str) -> bool:
         """Wait until a robot has ended; return whether well."""
         self.runs[robot].thread.join(PATIENCE)

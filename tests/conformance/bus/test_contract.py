@@ -34,7 +34,15 @@ def test_a_late_joiner_gets_what_it_was_told_before(fleet):
     check_success(fleet)
 
 
-@pytest.mark.parametrize("point", ["granted", "logged", "acknowledged", "applied"])
+@pytest.mark.parametrize(
+    "point",
+    [
+        "logged",
+        "applied",
+        pytest.param("granted", marks=pytest.mark.thorough),
+        pytest.param("acknowledged", marks=pytest.mark.thorough),
+    ],
+)
 def test_a_robot_that_is_killed_and_started_again_goes_on_exactly(fleet, point):
     fleet = fleet("exchange", 4)
     number = notifies(fleet, "a")[2]
@@ -84,3 +92,19 @@ def notifies(fleet, robot):
             found.append(number)
         point, number = possible[0].leads_to, number + 1
     return found
+
+
+def test_a_split_network_is_bridged_when_it_heals(fleet):
+    fleet = fleet("exchange", 8)
+    if not hasattr(fleet, "split"):
+        pytest.skip("processes are split by freezing them; only a hub can be cut between two ends")
+    fleet.start("a", pause=0.02)
+    fleet.start("b", pause=0.02)
+    for step in (8, 20, 32):
+        fleet.await_steps("a", step)
+        fleet.split()
+        time.sleep(0.5 if step < 30 else 2.5)
+        fleet.heal()
+    assert fleet.ended("a")
+    assert fleet.ended("b")
+    check_success(fleet)

@@ -106,6 +106,24 @@ def test_a_robot_notices_that_a_peer_was_killed(controllers, endpoint):
     assert made.replayed(partial=True).faults == {"beta": "PEER_LOST"}
 
 
+def test_a_robot_notices_that_a_peer_is_frozen_and_does_not_wait_for_it_at_the_end(controllers, endpoint):
+    made = controllers(waiting(Policy("PEER_LOST", "LAND", 3.0)))
+    with ExitStack() as stack:
+        alpha, beta = start_all(made, stack, endpoint, "robot_alpha.py", "robot_beta.py", "--speedup", "5")
+        await_line(beta, "waits for 'go'")
+        await_line(alpha, "'stay'")
+        time.sleep(1.0)
+        alpha.send_signal(signal.SIGSTOP)
+        begun = time.monotonic()
+        code, said = end(beta)
+        taken = time.monotonic() - begun
+        alpha.send_signal(signal.SIGCONT)
+        alpha.kill()
+        alpha.communicate()
+    assert (code, "PEER_LOST" in said) == (1, True)
+    assert taken < 8.0
+
+
 def test_a_notification_that_nobody_answers_is_a_lost_peer(controllers, endpoint):
     robot = replace(two_drones().robots[0], policies=(Policy("PEER_LOST", "LAND", 20.0),))
     made = controllers(replace(two_drones(), robots=(robot, two_drones().robots[1])))
