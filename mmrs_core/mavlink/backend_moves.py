@@ -27,6 +27,7 @@ from mmrs_core.flight.program import (
     TakeOff,
     Turn,
 )
+from mmrs_core.flight.responses import policy_for
 from mmrs_core.flight.uploads import Flight
 from mmrs_core.flight.vehicle import Vehicle
 from mmrs_core.mavlink.backend_worker import Job
@@ -34,6 +35,9 @@ from mmrs_core.mavlink.backend_worker import Job
 FULL = 0.99
 RECHARGE_FACTOR = 3.0
 """How many times as long as expected charging may take."""
+
+SILENCE_SECONDS = 5.0
+"""How long a device may give no answer, where policies do not say."""
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""
@@ -55,6 +59,8 @@ class Moves:
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
         self._home = robot.home
+        after = policy_for(DEVICE_SILENT, robot).after
+        self._silence = SILENCE_SECONDS if after is None else after
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
 
     def movement(self, move: str, *, through: bool = False) -> Job:
@@ -170,12 +176,18 @@ class Moves:
         return go
 
     def _operate(self, action: Operate) -> None:
-        try:
-            self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
-            for command, params in action.more:
-                self._vehicle.operate(command, params)
-        except Unanswered as error:
-            raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+        """Have a device do something; one that does not answer is asked for as long as policies bear it."""
+        begun = self._clock.now()
+        while True:
+            try:
+                self._vehicle.operate(action.command, action.params, confirmed=action.confirmed)
+                for command, params in action.more:
+                    self._vehicle.operate(command, params)
+            except Unanswered as error:
+                if self._clock.now() - begun >= self._silence:
+                    raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
+            else:
+                return
 
     def _turn(self, look: Look) -> None:
         found = look_at(look, self._locators, self._vehicle.state())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
@@ -15,14 +16,14 @@ from mmrs_core.flight import modes
 from mmrs_core.flight.ardupilot import MavlinkVehicle
 from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import LINK_LOST, TAKEN_OVER
+from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.link import Link
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
-from mmrs_core.flight.program import Policy, Robot
+from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.radios import Radios
-from mmrs_core.flight.responses import policy_for, respond
+from mmrs_core.flight.responses import NEEDS_POSITION, policy_for, respond
 from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
 from mmrs_core.flight.watch import Watch
 from mmrs_core.mavlink.backend_ground import Ground
@@ -32,6 +33,9 @@ from mmrs_core.mavlink.backend_recovery import WayBack
 from mmrs_core.mavlink.backend_worker import Job, Worker
 
 HANDS_OFF = "NOTHING"
+FAREWELL_SECONDS = 5.0
+"""Real seconds that a vehicle has to be told to stay where it is."""
+
 _MODES = {
     "RETURN": (modes.GUIDED,),
     "EMERGENCY_AREA": (modes.GUIDED,),
@@ -95,7 +99,8 @@ class MavlinkBackend:
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
         self._response = ""
-        self._watched = False
+        self._holding = self._hands_off = False
+        self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
         self._ready = False
 
@@ -108,6 +113,7 @@ class MavlinkBackend:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
         self._follow(())
         self._move = move.id
+        self._stand_or_go(move.id)
         if move.id in self._under_way[1:]:
             return
         self._passed.clear()
@@ -117,7 +123,10 @@ class MavlinkBackend:
             self._begin(self._moves.run(flight, self._pass))
             return
         self._under_way = ()
-        self._begin(self._moves.movement(move.id, through=through))
+        job = self._moves.movement(move.id, through=through)
+        if self._moves.kind(move.id) is Land:
+            job.append(self._landed)
+        self._begin(job)
 
     def act(self, action: Action, now: float) -> None:
         """Begin the action that comes next in the robot's program."""
@@ -157,19 +166,22 @@ class MavlinkBackend:
         )
 
     def stop(self, now: float, response: str = "HOLD") -> None:
-        """Carry out a response, from any state."""
+        """Carry out a response, from any state, or what comes nearest to it that can be done then."""
         if response == self._response and (self._worker.fault is None or not self._worker.done):
             return
         found = self._worker.fault
-        self._response, self._watched, self._under_way = response, False, ()
-        self._watch.relax()
+        self._response, self._holding, self._under_way = response, False, ()
+        self._handled.add("" if found is None else found.event)
+        self._watch.relax(self._handled, response)
         if found is not None and found.event == LINK_LOST:
             return
         if response == HANDS_OFF or (found is not None and found.event == TAKEN_OVER):
-            self._ready = False
+            self._hands_off = True
+            self._watch.let_go()
             self._worker.begin(Job(), afresh=True)
             return
-        self._worker.begin(Job(lambda: self._respond(response)), afresh=True)
+        possible = self._possible(found, response)
+        self._worker.begin(Job(lambda: self._respond(possible)), afresh=True)
         self._with.link.wake()
 
     def obeys(self, now: float) -> bool:
@@ -179,16 +191,23 @@ class MavlinkBackend:
         return self._worker.done or self._with.vehicle.state().mode in _MODES.get(self._response, ())
 
     def watched(self, now: float) -> bool:
-        """Return whether the vehicle holds with its motors running."""
-        return self._watched and self._worker.fault is None
+        """Return whether the motors run, and the vehicle holds or a pilot has it.
+
+        Without the heartbeats of this process, it might fly away from the pilot.
+        """
+        if self._worker.fault is not None:
+            return False
+        return self._holding or (self._hands_off and self._with.vehicle.state().armed)
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
         """Begin to go back to where the program was broken off."""
         self._response = ""
-        self._watch = self._new_watch()
+        self._handled.clear()
         self._move = begun or (passed[-1] if passed else "")
         way = WayBack(self._robot, self._moves, self._with.vehicle, self._options.home_tolerance)
-        self._begin(way.job(passed, begun), afresh=True)
+        job = way.job(passed, begun)
+        job.first(self._take_up)
+        self._begin(job, afresh=True)
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
@@ -210,6 +229,8 @@ class MavlinkBackend:
 
     def close(self) -> None:
         """End the worker and the link; the vehicle keeps whatever it does."""
+        if self._holding and self._worker.fault is None:
+            self._leave_it_holding()
         self._worker.close()
         self._with.let_go()
         self.note("counted", {"frames": dict(self._with.link.dropped)})
@@ -235,13 +256,13 @@ class MavlinkBackend:
     def _look(self) -> None:
         """Look after the vehicle, whatever it does."""
         self._watch.check()
-        if self._ready:
-            self._with.vehicle.check()
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
-        if self._ready:
+        if self._ready and not self._hands_off:
             self._with.vehicle.rest(0.0)
+        else:
+            self._watch.check()
 
     def _halt(self) -> None:
         self._with.vehicle.hold()
@@ -253,6 +274,7 @@ class MavlinkBackend:
 
     def _set_up(self) -> None:
         vehicle, robot = self._with.vehicle, self._robot
+        self._watch.renew()
         vehicle.answer_lost_link(self._alone.response, self._alone.after)
         if self._with.resumed:
             vehicle.hold()
@@ -273,9 +295,45 @@ class MavlinkBackend:
         }
         self.note("start", content)
 
+    def _leave_it_holding(self) -> None:
+        """Have a vehicle that holds stay where it is when nobody talks to it any more."""
+        self._worker.begin(Job(lambda: self._with.vehicle.answer_lost_link("HOLD")))
+        until = time.monotonic() + FAREWELL_SECONDS
+        while not self._worker.done and self._worker.fault is None and time.monotonic() < until:
+            time.sleep(0.01)
+        if not self._worker.done:
+            self._with.say("may not stay where it is when this program has ended")
+
+    def _take_up(self) -> None:
+        """Heed everything again; a vehicle that has started anew, as with a new battery, is set up again."""
+        restarted = self._watch.restarted
+        self._watch.tighten()
+        if restarted:
+            self._set_up()
+
+    def _possible(self, found: VehicleFault | None, response: str) -> str:
+        """Return the response, or to come down where nobody knows the position that it needs."""
+        lost = found is not None and found.event == POSITION_LOST
+        if not (lost and self._robot.vehicle == "copter" and response in NEEDS_POSITION):
+            return response
+        content = {"what": POSITION_LOST, "why": f"{response} needs a position", "response": "LAND"}
+        self.note("decision", content)
+        return "LAND"
+
     def _respond(self, response: str) -> None:
-        track = self._moves.track
-        self._watched = respond(response, self._robot, self._with.vehicle, track, lambda movement: movement())
+        vehicle, track = self._with.vehicle, self._moves.track
+        self._holding = respond(response, self._robot, vehicle, track, lambda movement: movement())
+        self._watch.moving = self._holding
+
+    def _stand_or_go(self, move: str) -> None:
+        """Say whether the robot is under way, and where its sorties begin."""
+        kind = self._moves.kind(move)
+        if kind is TakeOff:
+            self._watch.renew()
+        self._watch.moving = kind is not Recharge and (self._watch.moving or kind is TakeOff)
+
+    def _landed(self) -> None:
+        self._watch.moving = False
 
     def _pass(self, move: str) -> None:
         self._passed.add(move)

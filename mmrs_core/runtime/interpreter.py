@@ -229,7 +229,7 @@ class _Run:
             was_suspended = robot.suspended
             step = robot.due(self._clock.now(), self._peers)
             if robot.suspended and not was_suspended:
-                self._tell_decision(robot)
+                self._tell_decision(robot, robot.fault or Fault("BATTERY_LOW"))
                 self._stop(robot, robot.response)
             if step is None or not self._order(robot, step):
                 return
@@ -301,14 +301,13 @@ class _Run:
         self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
         self._bus.leave(robot.id)
         if robot.point.phase is Phase.FAILED:
-            self._tell_decision(robot)
+            self._tell_decision(robot, robot.fault or Fault("CRASHED"))
             self._stop(robot, robot.response)
         for order, other in enumerate(self._robots):
             if other.point.phase is Phase.OUT:
                 heappush(self._ready, order)
 
-    def _tell_decision(self, robot: RunningRobot) -> None:
-        found = robot.fault or Fault("")
+    def _tell_decision(self, robot: RunningRobot, found: Fault) -> None:
         self._terms.say(f"'{robot.id}': {found}; response: {robot.response}")
         if isinstance(robot.backend, Noting):
             content = {"what": found.which, "why": found.reason, "response": robot.response}
@@ -327,6 +326,10 @@ class _Run:
             robot.stopping = trouble is None and not robot.backend.finished(now)
         except LinkLostError as error:
             trouble, robot.stopping = Fault("LINK_LOST", str(error)), False
+        if trouble is not None and robot.overtaken_by(trouble):
+            self._tell_decision(robot, trouble)
+            self._stop(robot, robot.response)
+            return
         if trouble is not None:
             self._terms.say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed.append(robot.id)

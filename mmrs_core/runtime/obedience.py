@@ -102,6 +102,7 @@ class Obedience:
         if robot.fault is None:
             order.refuse(robot.id, "its program has ended")
         elif robot.response == HANDS_OFF:
+            robot.released = order.kind == STOP
             order.refuse(robot.id, "a pilot has taken over")
         elif robot.fault.which == "LINK_LOST":
             order.refuse(robot.id, "its link is lost")

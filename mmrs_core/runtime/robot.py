@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
-from mmrs_core.behaviour.policies import patience, response_to
+from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Point, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
@@ -18,6 +18,12 @@ from mmrs_core.scene import Policy
 HANDS_OFF = "NOTHING"
 TAKEN_OVER = "TAKEN_OVER"
 """A pilot has the robot: no policy answers that, the program lets go of it."""
+
+OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", TAKEN_OVER})
+"""What is answered anew where it happens while a robot still responds to something else."""
+
+UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
+"""What real robots do where nobody declared it; to anything else they hold."""
 
 COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
 """Responses after which a battery can be changed."""
@@ -82,6 +88,7 @@ class RunningRobot:
         self._program, self._bus, self._rules = program, bus, rules
         self._policies = (*program.policies, *rules.policies)
         self._passed: list[str] = []
+        self._answered: set[str] = set()
         self._begun = False
         self._waits_since: float | None = None
         self._peer_lost_at: float | None = None
@@ -132,6 +139,7 @@ class RunningRobot:
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
         self.fault, self.suspended, self.response = None, False, ""
+        self._answered.clear()
         self._forget()
         if isinstance(self.backend, Recovering):
             self.recovering = True
@@ -161,6 +169,7 @@ class RunningRobot:
         if self._rules.suspends and found.which == "BATTERY_LOW" and response in COMES_DOWN:
             self._give_up()
             self.fault, self.response, self.suspended, self.recovering = found, response, True, False
+            self._answered.add(found.which)
             return None
         return self._ended(found, response)
 
@@ -177,6 +186,14 @@ class RunningRobot:
         event = self.backend.next_event(now)
         return min(event, self.deadline) if event is not None else None
 
+    def overtaken_by(self, found: Fault) -> bool:
+        """Return whether a fault is answered now although the robot still answers another one."""
+        if found.which not in OVERTAKES or found.which in self._answered:
+            return False
+        self._answered.add(found.which)
+        self.response = self._response_to(found)
+        return True
+
     def fail(self, found: Fault) -> None:
         """End the program by a fault that cannot be recorded."""
         step = self._ended(found, self._response_to(found))
@@ -185,13 +202,17 @@ class RunningRobot:
     def _ended(self, found: Fault, response: str) -> Step:
         self._give_up()
         self.fault, self.response = found, response
+        self._answered.add(found.which)
         self.ordered, self.suspended, self.recovering = None, False, False
         return fault(self._program, self.point, found.which if self._rules.terse else str(found))
 
     def _response_to(self, found: Fault) -> str:
         if found.which == TAKEN_OVER:
             return HANDS_OFF
-        return response_to(found.which, self._effective_policies())
+        policies = self._effective_policies()
+        if self._rules.terse and policy_for(found.which, policies) is None:
+            return UNDECLARED.get(found.which, LAST_RESORT)
+        return response_to(found.which, policies)
 
     def _forget(self) -> None:
         self._begun, self._waits_since, self._peer_lost_at = False, None, None
