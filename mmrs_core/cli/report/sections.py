@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.preview.markup import element, text
+from mmrs_core.cli.report.events import BY_PEOPLE
 from mmrs_core.cli.report.tables import Markup, badge, folded, section, table
 from mmrs_core.cli.report.values import Event, Report, Status, TaskReport
 from mmrs_core.cli.report.words import (
@@ -54,7 +55,7 @@ def robots(report: Report) -> str:
         (
             robot.robot,
             robot.type_name,
-            badge(spoken(robot.ending), "good" if robot.ending == "to its end" else "bad"),
+            badge(spoken(robot.ending), _ending(robot.ending)),
             f"{robot.moves[0]} of {robot.moves[1]}",
             f"{metres(robot.way)} of {metres(robot.planned_way)}",
             f"{seconds(robot.time)} of {seconds(robot.planned_time)}",
@@ -63,6 +64,13 @@ def robots(report: Report) -> str:
     ]
     head = ("robot", "type", "program", "moves ended", "way, of planned", "time, of planned")
     return section("Robots", table(head, rows))
+
+
+def _ending(words: str) -> str:
+    if words == "to its end":
+        return "good"
+    wanted = words in BY_PEOPLE or words.startswith("suspended")
+    return "fair" if wanted else "bad"
 
 
 def waits(report: Report) -> str:
