@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+from .corners import goes_through
 from .desk import Desk
 from .doing import Doing
 from .faults import BATTERY_LOW, Fault, Refused
@@ -163,7 +164,7 @@ class Pilot:
             self._obedience.repeat(self._vehicle.land)
             self._watch.moving = False
         elif isinstance(movement, GoTo):
-            self._go_to(movement, isinstance(step.then, Then) and step.then.fluid)
+            self._go_to(movement, step)
         elif isinstance(movement, Recharge):
             self._recharge(movement.seconds)
         elif isinstance(movement, Hold):
@@ -187,7 +188,7 @@ class Pilot:
     def _look(self, look: Look | None) -> Look | None:
         return look_at(look, self._desk.locators, self._vehicle.state())
 
-    def _go_to(self, movement: GoTo, fluid: bool) -> None:
+    def _go_to(self, movement: GoTo, step: Step) -> None:
         if not self.track:
             self._begin_sortie()
             self._passed(self._vehicle.state().place)
@@ -195,9 +196,13 @@ class Pilot:
         target = place_of(movement.at, self._desk.locators, self._vehicle.state())
         look = self._look(movement.look)
         ends = ends_of(here, target, movement.legs, movement.distance)
+        through = goes_through(step, self._following(step), here)
         for place in ends:
-            self._go(place, movement.speed, look, through=fluid and place == ends[-1])
+            self._go(place, movement.speed, look, through=through and place == ends[-1])
             self._passed(place)
+
+    def _following(self, step: Step) -> Step | None:
+        return self._steps[step.then.move] if isinstance(step.then, Then) else None
 
     def _go(self, place: Place, speed: float | None, look: Look | None, *, through: bool) -> None:
         self._obedience.repeat(partial(self._vehicle.go_to, place, speed, look, through))

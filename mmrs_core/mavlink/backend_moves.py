@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.commands import Unanswered
+from mmrs_core.flight.corners import goes_through
 from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault
 from mmrs_core.flight.objects import Locator, look_at, place_of
 from mmrs_core.flight.places import at_height, ends_of
@@ -23,8 +24,10 @@ from mmrs_core.flight.program import (
     Recharge,
     Report,
     Robot,
+    Step,
     Stop,
     TakeOff,
+    Then,
     Turn,
 )
 from mmrs_core.flight.responses import policy_for
@@ -161,10 +164,15 @@ class Moves:
             target = self.target_of(movement)
             look = look_at(movement.look, self._locators, state)
             ends = ends_of(state.place, target, movement.legs, movement.distance)
-            job.then(*(self._leg(move, end, movement, look, through and end == ends[-1]) for end in ends))
+            on = through and goes_through(self._steps[move], self._following(move), state.place)
+            job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
 
         job.append(look_up)
         return job
+
+    def _following(self, move: str) -> Step | None:
+        then = self._steps[move].then
+        return self._steps[then.move] if isinstance(then, Then) else None
 
     def _leg(
         self, move: str, end: Place, movement: GoTo, look: Look | None, through: bool
