@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -226,3 +227,33 @@ def test_a_program_that_comes_again_without_saying_so_is_turned_away(gateway, cl
     hello = {"do": "hello", "token": told["token"], "resumed": {"lamport": 7, "notifies": []}}
     assert resumed.ask(hello, "welcome")["slots"] == ["ready"]
     resumed.close()
+
+
+def test_the_session_on_the_page_goes_as_it_says(gateway, peer, until):
+    """Each line that the page says to send is sent, and each that it says comes is awaited."""
+    told = json.loads(gateway[1].read_text())
+    client = Client(told["port"])
+    for line in SESSION:
+        content = json.loads(line[2:].replace("TOKEN", told["token"]))
+        if line.startswith(">"):
+            client.say(content)
+        else:
+            assert client.hear(content["is"]) == content
+        if content.get("is") == "welcome":
+            set_ready(peer, until)
+    client.close()
+    assert peer.state(("b", "go")).active
+
+
+PAGE = Path(__file__).parents[3] / "docs" / "how-to" / "bus.md"
+SESSION = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith(("> {", "< {"))]
+
+
+def set_ready(peer, until) -> None:
+    """Set the slot 'ready' of 'a' at logical time 4."""
+    until(lambda: not peer.missing(["a"]))
+    peer.use(3)
+    delivery = peer.prepare(CommandId(RUN, "b", "", 1), (("a", "ready"),), True)
+    until(lambda: delivery.lamport is not None)
+    delivery.send(4)
+    until(lambda: not delivery.waiting)
