@@ -58,13 +58,7 @@ class LogWriter:
 
     def write(self, record: StepRecord) -> None:
         """Append a step to its robot's log."""
-        file = self._files.get(record.robot)
-        if file is None:
-            path = self._folder / log_name(record.robot)
-            if self._resumed:
-                _cut_last_line(path)
-            mode = "a" if self._resumed else "w"
-            file = self._files[record.robot] = path.open(mode, encoding="utf-8", newline="\n")
+        file = self._files.get(record.robot) or self._opened(record.robot)
         file.write(to_line(record) + "\n")
         file.flush()
         if record.label in ("ntf", "fault"):
@@ -74,6 +68,14 @@ class LogWriter:
         """Close all files."""
         while self._files:
             self._files.popitem()[1].close()
+
+    def _opened(self, robot: str) -> TextIO:
+        path = self._folder / log_name(robot)
+        if self._resumed:
+            _cut_last_line(path)
+        file = path.open("a" if self._resumed else "w", encoding="utf-8", newline="\n")
+        self._files[robot] = file
+        return file
 
     def __enter__(self) -> LogWriter:
         """Return the writer."""
