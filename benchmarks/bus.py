@@ -38,9 +38,10 @@ from mmrs_core.flight.program import Local, Notify, Robot, Start, Step
 from mmrs_core.flight.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.interpreter import Terms, interpret
+from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.simulation import SIMULATION
 from mmrs_core.runtime.slots import shared_bus
+from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.small_programs import go, notify, program, robot, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT
 

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from mmrs_core.generation.capabilities.judging import Capability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
-    from mmrs_core.runtime.interpreter import Ending
     from mmrs_core.runtime.live import Venture
     from mmrs_core.runtime.run import Run
+    from mmrs_core.runtime.terms import Ending
     from mmrs_core.scene import Area, Plan, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
 
@@ -281,8 +281,8 @@ def simulate(
         UnsupportedError: if there is no such backend, it does not simulate or know an option, or the
             behaviour holds what nobody contributed.
     """
-    from mmrs_core.runtime.interpreter import Terms
     from mmrs_core.runtime.run import simulate as simulated
+    from mmrs_core.runtime.terms import Terms
 
     return simulated(
         program,

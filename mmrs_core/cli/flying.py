@@ -25,10 +25,10 @@ from mmrs_core.cli.output import counted, say, tell
 from mmrs_core.errors import InvalidModelError, LinkLostError
 from mmrs_core.pipeline import conditions_for, inputs_of, run_live
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.interpreter import Ending
 from mmrs_core.runtime.live import Venture
 from mmrs_core.runtime.obedience import STOPPED
 from mmrs_core.runtime.orders import STOP, Orders
+from mmrs_core.runtime.terms import Ending
 
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 FAILED = 1

@@ -8,8 +8,7 @@ backend, the bus or an order wakes it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Generator, Iterator, Mapping
 from heapq import heappop, heappush
 from math import inf
 
@@ -17,90 +16,18 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.behaviour.semantics import Phase, Step, Waiting
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import (
-    Backend,
-    Bus,
-    Clock,
-    CommandId,
-    Condition,
-    Fault,
-    Noting,
-    Watched,
-)
-from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.runtime.attention import BUS, Attention
+from mmrs_core.contributions.execution import Backend, Bus, Clock, CommandId, Condition, Fault
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.obedience import Obedience
-from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.peers import Peers
-from mmrs_core.runtime.robot import HANDS_OFF, Rules, RunningRobot
+from mmrs_core.runtime.robot import Rules, RunningRobot
+from mmrs_core.runtime.stopping import Stopping
+from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Policy
 
 PACE = 0.05
 """Seconds between two looks at a backend, or a bus, that cannot say when to look again."""
-
-Observer = Callable[[StepRecord], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Terms:
-    """What a run goes by, whatever its robots do.
-
-    Attributes:
-        run: identifier of the run.
-        incarnation: differs each time that these robots are started within a run.
-        observe: called with each step before it has an effect; a log, for example.
-        seconds: of the run's clock, after which it is cut off.
-        steps: number of them after which it is cut off, since a Choice can go round for ever.
-        resumed: the steps that were made before the run was broken off, those of a robot in order.
-        suspends: whether a battery that is low, and whose policy brings the robot down, breaks its program
-            off without a fault, so that the run can be resumed with a full one.
-        patience: seconds for which the run then waits for the order to resume once nobody else works.
-        attention: through which backends wake the interpreter; None in simulated time.
-        orders: what people order meanwhile.
-        say: tells people what goes on.
-    """
-
-    run: str = "run-0"
-    incarnation: str = "0"
-    observe: Observer | None = None
-    seconds: float = inf
-    steps: int = 1_000_000
-    resumed: tuple[StepRecord, ...] = ()
-    suspends: bool = False
-    patience: float = 0.0
-    attention: Attention | None = None
-    orders: Orders = field(default_factory=Orders)
-    say: Callable[[str], None] = lambda words: None
-
-
-TO_THE_END = Terms()
-"""Of a run that nobody is told of and that comes to its end, unless a Choice goes round for ever."""
-
-
-@dataclass(frozen=True, slots=True)
-class Ending:
-    """How a run ended.
-
-    Attributes:
-        outcome: INCOMPLETE where a limit cut it off.
-        waiting: the robots that waited for slots that nobody can set any more, when that first
-            became certain; it stays when policies then end their waits by a fault.
-        faults: by robot.
-        unconfirmed: robots that did not confirm that they have stopped.
-        time: seconds of the run's clock.
-        steps: how many were made.
-        suspended: robots whose programs were broken off, to be resumed with a full battery.
-        responses: to faults, by robot.
-    """
-
-    outcome: Outcome
-    waiting: tuple[Waiting, ...]
-    faults: Mapping[str, Fault]
-    unconfirmed: tuple[str, ...]
-    time: float
-    steps: int
-    suspended: tuple[str, ...] = ()
-    responses: Mapping[str, str] = field(default_factory=dict)
 
 
 def interpret(
@@ -168,11 +95,11 @@ class _Run:
         self._whole = len(robots) == len(program.robots)
         self._peers = Peers(program, self._by_id, bus)
         self._obedience = Obedience(robots, terms.orders, clock)
+        self._stopping = Stopping(robots, clock, self._obedience, terms.say)
         self._made = 0
         self._ready = list(range(len(robots)))
         self._wakes: list[tuple[float, int]] = []
         self._deadlock: tuple[Waiting, ...] = ()
-        self._unconfirmed: list[str] = []
         self._idle_since: float | None = None
         if terms.attention is not None:
             attention = terms.attention
@@ -185,7 +112,7 @@ class _Run:
             while True:
                 self._obey()
                 yield from self._settled()
-                self._look_after_stopping()
+                self._stopping.look_after()
                 if not self._deadlock and self._is_quiet():
                     self._deadlock = self._waiting()
                 if self._made >= self._terms.steps or self._is_over():
@@ -229,8 +156,7 @@ class _Run:
             was_suspended = robot.suspended
             step = robot.due(self._clock.now(), self._peers)
             if robot.suspended and not was_suspended:
-                self._tell_decision(robot, robot.fault or Fault("BATTERY_LOW"))
-                self._stop(robot, robot.response)
+                self._stopping.answer(robot, robot.fault or Fault("BATTERY_LOW"))
             if step is None or not self._order(robot, step):
                 return
             yield from self._make(robot, step)
@@ -301,42 +227,10 @@ class _Run:
         self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
         self._bus.leave(robot.id)
         if robot.point.phase is Phase.FAILED:
-            self._tell_decision(robot, robot.fault or Fault("CRASHED"))
-            self._stop(robot, robot.response)
+            self._stopping.answer(robot, robot.fault or Fault("CRASHED"))
         for order, other in enumerate(self._robots):
             if other.point.phase is Phase.OUT:
                 heappush(self._ready, order)
-
-    def _tell_decision(self, robot: RunningRobot, found: Fault) -> None:
-        self._terms.say(f"'{robot.id}': {found}; response: {robot.response}")
-        if isinstance(robot.backend, Noting):
-            content = {"what": found.which, "why": found.reason, "response": robot.response}
-            robot.backend.note("decision", content)
-
-    def _look_after_stopping(self) -> None:
-        """Note which robots have confirmed that they stopped, or cannot."""
-        now = self._clock.now()
-        for robot in self._robots:
-            if robot.stopping:
-                self._look_after(robot, now)
-
-    def _look_after(self, robot: RunningRobot, now: float) -> None:
-        try:
-            trouble = robot.backend.fault(now)
-            robot.stopping = trouble is None and not robot.backend.finished(now)
-        except LinkLostError as error:
-            trouble, robot.stopping = Fault("LINK_LOST", str(error)), False
-        if trouble is not None and robot.overtaken_by(trouble):
-            self._tell_decision(robot, trouble)
-            self._stop(robot, robot.response)
-            return
-        if trouble is not None:
-            self._terms.say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
-            self._unconfirmed.append(robot.id)
-        elif not robot.stopping:
-            done = "is left alone" if robot.response == HANDS_OFF else f"has done {robot.response}"
-            self._terms.say(f"'{robot.id}': {done}")
-        self._obedience.stopped(robot.id, robot.stopping, trouble)
 
     def _wake_time(self, robot: RunningRobot) -> float:
         now = self._clock.now()
@@ -354,7 +248,7 @@ class _Run:
             return self._patience_ends()
         while self._wakes and self._robots[self._wakes[0][1]].wake != self._wakes[0][0]:
             heappop(self._wakes)
-        pace = self._clock.now() + PACE if any(robot.stopping for robot in self._robots) else inf
+        pace = self._clock.now() + PACE if self._stopping.busy else inf
         return min(self._wakes[0][0] if self._wakes else inf, self._patience_ends(), pace)
 
     def _wake(self) -> None:
@@ -376,7 +270,7 @@ class _Run:
         """Return whether nothing will happen any more in real time."""
         if not self._clock.passes_by_itself:
             return False
-        if any(robot.stopping or self._is_watched(robot) for robot in self._robots):
+        if self._stopping.busy or self._stopping.watching:
             return False
         working = [robot for robot in self._robots if not robot.point.is_final and not robot.suspended]
         if not working or (self._is_quiet() and not self._is_patient()):
@@ -384,11 +278,6 @@ class _Run:
             return ends <= self._clock.now()
         self._idle_since = None
         return False
-
-    def _is_watched(self, robot: RunningRobot) -> bool:
-        if robot.fault is None or robot.released:
-            return False
-        return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
 
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
@@ -417,21 +306,12 @@ class _Run:
         """Stop every robot that is still at work, and wait until each has confirmed it."""
         for robot in self._robots:
             if not robot.point.is_final and not robot.suspended:
-                self._stop(robot, "HOLD")
-        self._look_after_stopping()
-        while any(robot.stopping for robot in self._robots):
+                self._stopping.stop(robot, "HOLD")
+        self._stopping.look_after()
+        while self._stopping.busy:
             self._clock.sleep_until(self._clock.now() + PACE)
-            self._look_after_stopping()
+            self._stopping.look_after()
         self._obedience.give_up()
-
-    def _stop(self, robot: RunningRobot, response: str) -> None:
-        robot.response = response
-        try:
-            robot.backend.stop(self._clock.now(), response)
-        except LinkLostError:
-            self._unconfirmed.append(robot.id)
-        else:
-            robot.stopping = self._clock.passes_by_itself
 
     def _ending(self) -> Ending:
         faults = {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
@@ -441,5 +321,5 @@ class _Run:
             outcome = Outcome.INCOMPLETE
         else:
             outcome = Outcome.FAILED if faults else Outcome.SUCCESS if done else Outcome.STUCK
-        unconfirmed = tuple(dict.fromkeys(self._unconfirmed))
+        unconfirmed = self._stopping.unconfirmed
         return Ending(outcome, self._deadlock, faults, unconfirmed, self._clock.now(), self._made, suspended)

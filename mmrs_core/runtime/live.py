@@ -23,8 +23,9 @@ from mmrs_core.contributions.execution import (
 from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.interpreter import PACE, Ending, Terms, interpret
+from mmrs_core.runtime.interpreter import PACE, interpret
 from mmrs_core.runtime.orders import ANSWER, Orders
+from mmrs_core.runtime.terms import Ending, Terms
 
 
 @dataclass(frozen=True, slots=True)

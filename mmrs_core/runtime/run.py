@@ -20,8 +20,9 @@ from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.clock import SimulatedClock
-from mmrs_core.runtime.interpreter import TO_THE_END, Ending, Terms, interpret
+from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Area, Name, Policy, RobotType
 
 

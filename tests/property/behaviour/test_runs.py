@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from mmrs_core.behaviour.log import LogWriter, merge, read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.semantics import apply, enabled, initial, is_deadlock, is_success
-from mmrs_core.runtime.interpreter import Terms
 from mmrs_core.runtime.run import assumed, simulate
 from mmrs_core.runtime.simulation import SIMULATION
+from mmrs_core.runtime.terms import Terms
 from mmrs_core.testing.random_programs import CONDITIONS, answers, programs
 from mmrs_core.testing.small_programs import ROBOT_TYPE, robot_type
 from mmrs_core.transformation.kinds import MOVE_KINDS, PLAIN_ROBOT

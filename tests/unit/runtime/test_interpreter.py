@@ -11,10 +11,11 @@ from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import BackendInput, Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.clock import RealClock, SimulatedClock
-from mmrs_core.runtime.interpreter import Terms, interpret
+from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.run import assumed
 from mmrs_core.runtime.simulation import SimulatedRobot
 from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.runtime.terms import Terms
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import go, hold, notify, program, robot, robot_type, use
 

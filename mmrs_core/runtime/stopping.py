@@ -1,0 +1,86 @@
+"""Robots that were told to stop, until each has confirmed that it has, or is known to be unable to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from mmrs_core.contributions.execution import Clock, Fault, Noting, Watched
+from mmrs_core.errors import LinkLostError
+from mmrs_core.runtime.obedience import Obedience
+from mmrs_core.runtime.robot import HANDS_OFF, RunningRobot
+
+
+class Stopping:
+    """Has robots stop, and sees to it that they do; in simulated time they are taken at their word."""
+
+    def __init__(
+        self,
+        robots: Sequence[RunningRobot],
+        clock: Clock,
+        obedience: Obedience,
+        say: Callable[[str], None],
+    ) -> None:
+        """Look after these robots; orders that stop them are told what became of it."""
+        self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
+        self._unconfirmed: dict[str, None] = {}
+
+    @property
+    def unconfirmed(self) -> tuple[str, ...]:
+        """Return the robots that have not confirmed that they stopped, and will not."""
+        return tuple(self._unconfirmed)
+
+    @property
+    def busy(self) -> bool:
+        """Return whether a robot has still to confirm."""
+        return any(robot.stopping for robot in self._robots)
+
+    @property
+    def watching(self) -> bool:
+        """Return whether a robot has stopped in a way that somebody must watch."""
+        return any(self._is_watched(robot) for robot in self._robots)
+
+    def answer(self, robot: RunningRobot, found: Fault) -> None:
+        """Have a robot give the response that it decided on, and tell people why."""
+        self._say(f"'{robot.id}': {found}; response: {robot.response}")
+        if isinstance(robot.backend, Noting):
+            content = {"what": found.which, "why": found.reason, "response": robot.response}
+            robot.backend.note("decision", content)
+        self.stop(robot, robot.response)
+
+    def stop(self, robot: RunningRobot, response: str) -> None:
+        """Have a robot stop in some way."""
+        robot.response = response
+        try:
+            robot.backend.stop(self._clock.now(), response)
+        except LinkLostError:
+            self._unconfirmed[robot.id] = None
+        else:
+            robot.stopping = self._clock.passes_by_itself
+
+    def look_after(self) -> None:
+        """Note which robots have confirmed that they stopped, or cannot."""
+        for robot in self._robots:
+            if robot.stopping:
+                self._look_after(robot, self._clock.now())
+
+    def _look_after(self, robot: RunningRobot, now: float) -> None:
+        try:
+            trouble = robot.backend.fault(now)
+            robot.stopping = trouble is None and not robot.backend.finished(now)
+        except LinkLostError as error:
+            trouble, robot.stopping = Fault("LINK_LOST", str(error)), False
+        if trouble is not None and robot.overtaken_by(trouble):
+            self.answer(robot, trouble)
+            return
+        if trouble is not None:
+            self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
+            self._unconfirmed[robot.id] = None
+        elif not robot.stopping:
+            done = "is left alone" if robot.response == HANDS_OFF else f"has done {robot.response}"
+            self._say(f"'{robot.id}': {done}")
+        self._obedience.stopped(robot.id, robot.stopping, trouble)
+
+    def _is_watched(self, robot: RunningRobot) -> bool:
+        if robot.fault is None or robot.released or not isinstance(robot.backend, Watched):
+            return False
+        return robot.backend.watched(self._clock.now())
