@@ -73,11 +73,7 @@ def fly(
         UnsupportedError: if there is no such backend, or it does not simulate, know its options or what
             the behaviour holds.
     """
-    asked = {each.condition for robot in program.robots for each in robot.transitions.values()} - {None}
-    unasked = [identifier for identifier in conditions if identifier not in asked]
-    if unasked:
-        known = ", ".join(sorted(map(repr, asked))) or "none at all"
-        raise typer.BadParameter(f"no choice asks for condition {unasked[0]!r}; asked for: {known}")
+    refuse_unasked(program, conditions)
     return workshop.stage(
         "simulate",
         "simulating",
@@ -91,6 +87,19 @@ def fly(
             observe=workshop.plugins.observe_step,
         ),
     )
+
+
+def refuse_unasked(program: Program, conditions: Mapping[str, bool]) -> None:
+    """Do nothing if every one of the conditions decides a Choice.
+
+    Raises:
+        typer.BadParameter: if nothing in the behaviour asks for one of them.
+    """
+    asked = {each.condition for robot in program.robots for each in robot.transitions.values()} - {None}
+    unasked = [identifier for identifier in conditions if identifier not in asked]
+    if unasked:
+        known = ", ".join(sorted(map(repr, asked))) or "none at all"
+        raise typer.BadParameter(f"no choice asks for condition {unasked[0]!r}; asked for: {known}")
 
 
 def write_logs(

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from mmrs_core.behaviour.program import Move, Program, RobotProgram
+from mmrs_core.behaviour.program import Move, RobotProgram
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.behaviours import Loaded
+from mmrs_core.cli.flights.answers import choosing_as
 from mmrs_core.cli.flights.values import Flight
 from mmrs_core.cli.journey import Workshop
-from mmrs_core.cli.simulation import fly
+from mmrs_core.cli.output import progress
+from mmrs_core.cli.simulation import refuse_unasked
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
-from mmrs_core.runtime.run import Run
+from mmrs_core.pipeline import conditions_for
+from mmrs_core.runtime.run import Run, simulate
 from mmrs_core.scene import Name, Position
+
+BACKEND = "simulation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +64,25 @@ def planned_for(
     Raises:
         typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
     """
-    program = loaded.program
-    answers, notes = _answers(program, flight)
-    known = {**(assume or {}), **answers}
-    contributed = workshop.contributions.conditions
-    guessed = [each for each in _asked(program) if each not in known and each not in contributed]
-    notes += [f"condition '{each}' was never asked; the plan takes it that it holds" for each in guessed]
+    program, place = loaded.program, loaded.place
+    contributed = workshop.contributions
+    told = assume or {}
+    refuse_unasked(program, told)
+    known = conditions_for(program, contributed, {}, asks=False)
+    choosing = choosing_as(flight, program, told, known)
+    notes = tuple(choosing.notes)
     try:
-        run = fly(workshop, program, loaded.place, {**dict.fromkeys(guessed, True), **known})
+        with progress("simulating the plan"):
+            run = simulate(
+                choosing.program,
+                backend=contributed.backends[BACKEND],
+                types=place.types,
+                robot_kinds=contributed.robot_kinds,
+                move_kinds=contributed.move_kinds,
+                conditions=choosing.conditions,
+                environment=place.environment,
+                areas=place.areas or (),
+            )
     except MmrsError as error:
         return Planned(None, (*notes, f"times and energy as planned are not known: {error}"))
     begun = min((flown.records[0].time for flown in flight.robots.values() if flown.records), default=0.0)
@@ -85,30 +101,6 @@ def _later(run: Run, seconds: float) -> Run:
             for robot, track in run.tracks.items()
         },
     )
-
-
-def _answers(program: Program, flight: Flight) -> tuple[dict[str, bool], list[str]]:
-    """Return what conditions answered first, and for which they did not always answer the same."""
-    answers: dict[str, bool] = {}
-    notes: list[str] = []
-    for robot in program.robots:
-        index = {move.id: i for i, move in enumerate(robot.moves)}
-        flown = flight.robots.get(robot.id)
-        for record in flown.records if flown else ():
-            transition = robot.transitions.get(index.get(record.move, -1))
-            if record.label == "choose" and transition is not None and transition.condition is not None:
-                holds = record.detail == "true"
-                if answers.setdefault(transition.condition, holds) is not holds:
-                    notes.append(
-                        f"condition '{transition.condition}' was answered both ways;"
-                        " the plan takes its first answer"
-                    )
-    return answers, list(dict.fromkeys(notes))
-
-
-def _asked(program: Program) -> Iterator[str]:
-    transitions = (each for robot in program.robots for each in robot.transitions.values())
-    yield from sorted({each.condition for each in transitions if each.condition is not None})
 
 
 def legs_of(
