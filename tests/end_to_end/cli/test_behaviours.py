@@ -64,7 +64,7 @@ def test_a_simulation_by_name_is_the_same_as_without(mmrs, project):
 def test_a_backend_that_nobody_contributed_is_named(mmrs, project):
     code, _, err = mmrs("simulate", project, "--backend", "simulaton")
     assert code == 1
-    assert "backend 'simulaton': not known; there are simulation" in err
+    assert "backend 'simulaton': not known; there are mavlink, simulation" in err
 
 
 def test_an_option_that_the_backend_does_not_know_is_named(mmrs, project):
