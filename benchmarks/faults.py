@@ -35,15 +35,7 @@ def outcomes(executions, speedup, pattern, folder):
         for number, batch in enumerate(batches(chosen)):
             yield from fly(batch, execution, folder / f"{execution}-{number}", speedup=speedup)
         for number, drill in enumerate(each for each in DRILLS if re.search(pattern, each.name)):
-            yield from fly(
-                drill.rows,
-                execution,
-                folder / f"{execution}-drill-{number}",
-                speedup=speedup,
-                blow=drill.blow,
-                until=drill.until,
-                arguments=drill.arguments.get(execution, ()),
-            )
+            yield from drill.fly(execution, folder / f"{execution}-drill-{number}")
         for number, journey in enumerate(each for each in JOURNEYS if re.search(pattern, each.name)):
             yield journey.fly(execution, folder / f"{execution}-journey-{number}")
 

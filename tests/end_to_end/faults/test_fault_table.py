@@ -53,14 +53,7 @@ def test_everything_that_goes_wrong_is_answered_as_declared(others, row):
 
 
 def drilled(drill, execution, folder) -> None:
-    outcomes = fly(
-        drill.rows,
-        execution,
-        folder,
-        blow=drill.blow,
-        until=drill.until,
-        arguments=drill.arguments.get(execution, ()),
-    )
+    outcomes = drill.fly(execution, folder)
     assert [(outcome.title, outcome.problems) for outcome in outcomes if outcome.problems] == []
 
 

@@ -6,12 +6,13 @@ import signal
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from fault_table.fleet import EXECUTIONS, Fleet, wait_for
 from fault_table.process import Process
-from fault_table.row import Row, leave_alone
+from fault_table.row import Outcome, Row, leave_alone
 from fault_table.rows import SILENCE
-from fault_table.trial import Blow
+from fault_table.trial import Blow, fly
 
 AT = "at its place"
 INJECTED_AT = 40
@@ -31,6 +32,7 @@ class Drill:
         blow: what happens to it.
         until: when, after all robots are at their places; None: at once.
         arguments: of the process, by execution.
+        speedup: seconds of the run in a second.
     """
 
     name: str
@@ -39,6 +41,19 @@ class Drill:
     until: Blow | None = None
     arguments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     fast: bool = False
+    speedup: float = 10.0
+
+    def fly(self, execution: str, folder: Path) -> list[Outcome]:
+        """Let it happen; return what became of its robots."""
+        return fly(
+            self.rows,
+            execution,
+            folder,
+            speedup=self.speedup,
+            until=self.until,
+            blow=self.blow,
+            arguments=self.arguments.get(execution, ()),
+        )
 
 
 def _both(*arguments: str) -> Mapping[str, tuple[str, ...]]:
@@ -167,6 +182,7 @@ DRILLS: tuple[Drill, ...] = (
             "generated": ("--tries", "12", "--inject", POOR),
             "interpreted": ("--backend-option", "tries=12", "--inject", POOR),
         },
+        speedup=5.0,
     ),
     *(_interruption(how, ends) for how, ends in (("hold", "holds"), ("return", "home"), ("land", "here"))),
 )

@@ -223,7 +223,7 @@ ROWS: tuple[Row, ...] = (
         "satellites lost",
         "POSITION_LOST",
         _satellites,
-        [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
+        [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "STOP_THRUST", "here")],
         "LAND",
     ),
     *_event_rows(
