@@ -328,7 +328,7 @@ def _zenoh_bus(made, given, folder, records):
 
 def die_after_applying(node, points):
     """Have the process die once a command is on its disk, before the answer; points are WHERE:NUMBER."""
-    owner = node._owners[node.robots[0]]
+    owner = node._owners._owners[node.robots[0]]
     commit = owner.commit
 
     def dying(sent):

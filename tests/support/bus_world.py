@@ -202,8 +202,8 @@ class Process:
             recorded=recorded,
             now=lambda: self.world.time,
             threaded=False,
+            chance=self.world.chance,
         )
-        self.node._chance = self.world.chance
 
     def crash(self):
         self.alive = False

@@ -16,9 +16,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .node import Node, Recorded
+from .members import Recorded
+from .node import Node
+from .reading import Unreadable, number_in, object_in, text_in
 from .session import Session
-from .words import LONGEST, Unreadable, number_in, object_in, text_in
+from .words import LONGEST
 
 FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""

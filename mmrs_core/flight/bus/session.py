@@ -9,9 +9,11 @@ import time
 from collections.abc import Callable, Mapping
 from typing import IO, Any
 
+from .delivery import Delivery
 from .meeting import begin_together
-from .node import Delivery, Node
-from .words import LONGEST, CommandId, Unreadable, flag_in, names_in, number_in, object_in, text_in
+from .node import Node
+from .reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
+from .words import LONGEST, CommandId
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""

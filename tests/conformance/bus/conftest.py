@@ -156,7 +156,7 @@ class _Thread:
             raise Gone
 
     def _die_after_applying(self) -> None:
-        owner = self.node._owners[self.robot]
+        owner = self.node._owners._owners[self.robot]
         commit, numbers = (
             owner.commit,
             {int(d.partition(":")[2]) for d in self.die if d.startswith("applied")},

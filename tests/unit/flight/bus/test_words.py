@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmrs_core.flight.bus.reading import Unreadable, answer_in, request_in, written
 from mmrs_core.flight.bus.words import (
     LARGEST,
     LONGEST,
@@ -18,11 +19,7 @@ from mmrs_core.flight.bus.words import (
     Leave,
     Meet,
     Prepare,
-    Unreadable,
     Withdraw,
-    answer_in,
-    request_in,
-    written,
 )
 
 NUMBERS = st.integers(0, LARGEST)

@@ -1,0 +1,144 @@
+"""The owners of one process: all slots that are kept here, and the logical time of its robots."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from .journal import Journal
+from .members import Member, Recorded
+from .owner import Owner
+from .watching import Watching
+from .words import Answer, Begin, CommandId, Commit, Prepare, SlotId, SlotState, Withdraw
+
+
+class Owners:
+    """Finds the owner of each slot of this process. Not thread-safe: whoever has it guards it.
+
+    Attributes:
+        incarnation: of the robots of this process; differs, and grows, each time that they are started.
+        lamport: the latest logical time that this process knows of.
+    """
+
+    def __init__(
+        self,
+        members: Sequence[Member],
+        run: str,
+        journals: Callable[[str], Journal],
+        recorded: Mapping[str, Recorded],
+        watching: Watching,
+        *,
+        trusting: bool,
+    ) -> None:
+        """Take up what journals and logs say.
+
+        Args:
+            members: the robots of this process.
+            run: identifier of the run.
+            journals: what survives, by robot.
+            recorded: by robot, what the logs say of those that are started again.
+            watching: who is there and who has ended; those who have told these robots so are added.
+            trusting: whether this process is alone, so that nobody forges commands or loses what it keeps.
+
+        Raises:
+            OSError: a journal cannot be read or written.
+            ValueError: a journal is damaged, or holds another run or an earlier start of a robot that
+                is not started again.
+        """
+        self.lamport = max((each.lamport for each in recorded.values()), default=0)
+        self._owners = {
+            member.owned.robot: Owner(
+                member.owned,
+                run,
+                journals(member.owned.robot),
+                floor=recorded.get(member.owned.robot, Recorded()).lamport,
+                lost=watching.lost_for_long,
+                trusting=trusting,
+            )
+            for member in members
+        }
+        self._watching = watching
+        watching.left.update(*(owner.left for owner in self._owners.values()))
+        self.incarnation = self._started(recorded, alone=trusting)
+
+    def __contains__(self, robot: str) -> bool:
+        """Return whether a robot is one of this process."""
+        return robot in self._owners
+
+    def answer(
+        self, robot: str, request: Prepare | Commit | Withdraw | Begin, now: float, *, here: bool
+    ) -> Answer:
+        """Return what the owner answers; `here`: the sender is of this process."""
+        owner = self._owners[robot]
+        if isinstance(request, Prepare):
+            return owner.prepare(request, now, here=here)
+        if isinstance(request, Commit):
+            self.use(request.lamport)
+            return owner.commit(request)
+        if isinstance(request, Withdraw):
+            return owner.withdraw(request)
+        return owner.begin(request)
+
+    def see_off(self, robot: str, sender: str) -> Answer:
+        """Have a robot of this process know that another has ended."""
+        return self._owners[robot].leave(sender)
+
+    def state(self, slot: SlotId, now: float) -> SlotState:
+        """Return the state of a slot.
+
+        Raises:
+            KeyError: it belongs to no robot of this process.
+        """
+        return self._owners[slot[0]].state(slot[1], now)
+
+    def shown(self, robot: str, now: float) -> str:
+        """Return the state of a robot's slots as a JSON object."""
+        return json.dumps(self._owners[robot].shown(now))
+
+    def passed(self, slots: Iterable[SlotId], lamport: int, now: float) -> bool:
+        """Return whether a wait is passed at that logical time, and if so keep the time."""
+        parts: dict[str, list[str]] = {}
+        for owner, slot in slots:
+            parts.setdefault(owner, []).append(slot)
+        if not all(self._owners[id].may_pass(names, lamport, now) for id, names in parts.items()):
+            return False
+        for id, names in parts.items():
+            self._owners[id].passed(names, lamport)
+        self.use(lamport)
+        return True
+
+    def end_lost(self, now: float) -> bool:
+        """Stop keeping slots for senders that are lost; return whether there were any."""
+        return any([owner.end_lost(now) for owner in self._owners.values()])
+
+    def next_end(self) -> float:
+        """Return when keeping a slot ends unless its sender is heard of; inf: nothing is kept."""
+        ends = (owner.next_end(self._watching.long_lost_at) for owner in self._owners.values())
+        return min((end for end in ends if end is not None), default=float("inf"))
+
+    def use(self, lamport: int) -> None:
+        """Take note of a logical time."""
+        self.lamport = max(self.lamport, lamport)
+
+    def repeat(self, id: CommandId, slots: Iterable[SlotId], active: bool, lamport: int) -> None:
+        """Set slots as a log says they were, whoever may set them."""
+        self.use(lamport)
+        for owner, slot in slots:
+            self._owners[owner].repeat(Commit(id, (slot,), active, lamport))
+
+    def restore(self, active: Iterable[SlotId], lamport: int) -> None:
+        """Begin with these slots active and at that logical time; others' slots are left alone."""
+        self.use(lamport)
+        given = tuple(active)
+        for robot, owner in self._owners.items():
+            owner.restore([slot for owned_by, slot in given if owned_by == robot], lamport)
+
+    def _started(self, recorded: Mapping[str, Recorded], *, alone: bool) -> str:
+        for robot, owner in self._owners.items():
+            if owner.start and robot not in recorded:
+                raise ValueError(f"{robot!a}: its slots were kept by an earlier start; resume it")
+        number = 1 + max((owner.start for owner in self._owners.values()), default=0)
+        if not alone:
+            for owner in self._owners.values():
+                owner.started(number)
+        return f"{number:08d}"
