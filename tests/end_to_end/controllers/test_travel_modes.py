@@ -6,40 +6,73 @@ from dataclasses import replace
 
 import pytest
 
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.link import Link
+from mmrs_core.flight.ports import open_port
+from mmrs_core.flight.program import Travel
+from mmrs_core.flight.travel import set_up
+from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
 
-
-def going(mode, position_error=0.0):
-    """Return a drone that goes somewhere in a travel mode."""
-    land = move("down", "Land", uri=MULTICOPTER)
-    drone = robot_program("alpha", [take_off("up", 5.0), go_to("a", (0.0, 12.0, 5.0)), land])
-    return replace(program(replace(drone, travel_mode=mode)), position_error=position_error)
+SAFE = Travel("SAFE", radius=1.0, margin=4.0)
+AGGRESSIVE = Travel("AGGRESSIVE", radius=2.0, margin=0.0)
 
 
 @pytest.fixture
-def parameters(controllers, hangar):
-    """Return a function that flies a mode on a vehicle, and gives the vehicle's parameters afterwards."""
+def told(free_port):
+    """Return a function that sets a vehicle up, and gives its parameters then, and what was said."""
 
-    def flown(mode, **owner):
-        made = going(mode)
-        vehicles, links = hangar(made, parameters=owner)
-        code, said = controllers(made).run("fleet.py", *links)
-        assert code == 0, said
-        return vehicles["alpha"].autopilot.parameters
+    def after(travel, kind="copter", **settings):
+        port = free_port()
+        vehicle = SimulatedVehicle(port, Settings(kind, 42.37, 13.35, **settings), speedup=10.0)
+        vehicle.start()
+        link = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock(10.0))
+        try:
+            assert link.wait(lambda: link.component, 30.0)
+            return vehicle.autopilot.parameters, list(set_up(link, kind, travel))
+        finally:
+            link.close()
+            vehicle.stop()
 
-    return flown
+    return after
 
 
-def test_a_safe_robot_passes_places_more_closely_and_keeps_further_from_obstacles(parameters):
-    found = parameters("SAFE", WPNAV_RADIUS=200.0, AVOID_MARGIN=2.0)
+def test_a_safe_robot_passes_places_more_closely_and_keeps_further_from_obstacles(told):
+    found, said = told(SAFE, parameters={"WPNAV_RADIUS": 200.0, "AVOID_MARGIN": 2.0})
     assert (found["WPNAV_RADIUS"], found["AVOID_MARGIN"]) == (100.0, 4.0)
+    assert "WPNAV_RADIUS = 100, which was 200: it travels SAFE" in said
 
 
-def test_an_owner_who_is_more_careful_is_left_so(parameters):
-    found = parameters("SAFE", WPNAV_RADIUS=50.0, AVOID_MARGIN=6.0)
+def test_an_owner_who_is_more_careful_is_left_so(told):
+    found, said = told(SAFE, parameters={"WPNAV_RADIUS": 50.0, "AVOID_MARGIN": 6.0, "OA_MARGIN_MAX": 5.0})
     assert (found["WPNAV_RADIUS"], found["AVOID_MARGIN"]) == (50.0, 6.0)
+    assert said == []
 
 
-def test_an_aggressive_robot_leaves_the_owners_margin(parameters):
-    found = parameters("AGGRESSIVE", WPNAV_RADIUS=150.0, AVOID_MARGIN=1.0)
-    assert (found["WPNAV_RADIUS"], found["AVOID_MARGIN"]) == (150.0, 1.0)
+def test_an_aggressive_robot_leaves_the_owners_margin(told):
+    found, said = told(AGGRESSIVE, parameters={"WPNAV_RADIUS": 150.0, "AVOID_MARGIN": 0.5})
+    assert (found["WPNAV_RADIUS"], found["AVOID_MARGIN"]) == (150.0, 0.5)
+    assert said == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "settings", "name"),
+    [
+        ("rover", {"parameters": {"WP_RADIUS": 2.0}}, "WP_RADIUS"),
+        ("copter", {"parameters": {"WP_RADIUS_M": 2.0}}, "WP_RADIUS_M"),
+        ("copter", {"firmware": "px4", "parameters": {"NAV_ACC_RAD": 2.0}}, "NAV_ACC_RAD"),
+    ],
+)
+def test_the_radius_has_another_name_in_other_firmware(told, kind, settings, name):
+    found, _ = told(SAFE, kind, **settings)
+    assert found[name] == 1.0
+
+
+def test_a_controller_sets_its_vehicle_up_before_take_off(controllers, hangar):
+    land = move("down", "Land", uri=MULTICOPTER)
+    drone = robot_program("alpha", [take_off("up", 5.0), go_to("a", (0.0, 12.0, 5.0)), land])
+    made = program(replace(drone, travel_mode="SAFE"))
+    vehicles, links = hangar(made)
+    code, said = controllers(made).run("fleet.py", *links)
+    assert code == 0, said
+    assert vehicles["alpha"].autopilot.parameters["AVOID_MARGIN"] == 4.0
