@@ -29,6 +29,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 STEP = 8.23
 """Metres between the homes of `mmrs sitl --count`, on this latitude."""
 
+NORTH = -300.0
+"""Metres north of the origin, where the areas of the behaviours for tests are."""
+
 SIDES = ("vehicles", "links", "shared", "bare")
 
 
@@ -231,14 +234,14 @@ def generate(folder: Path, count: int) -> None:
         target_input,
     )
 
-    frame = Frame("EPSG:4326", 42.37, 13.35)
+    frame = Frame("EPSG:4326", 42.37 - NORTH / 111_070.0, 13.35)
     robots = []
     for number in range(count):
         east = number * STEP
         moves = [take_off("up", 10.0)]
-        moves += [go_to(f"leg{n}", (east, 20.0 * n, 10.0 + n)) for n in range(1, 5)]
-        moves += [go_to("back", (east, 0.0, 10.0)), move("down", "Land", uri=MULTICOPTER)]
-        robots.append(robot_program(f"Vehicle{number + 1}", moves, home=(east, 0.0, 0.0)))
+        moves += [go_to(f"leg{n}", (east, NORTH + 20.0 * n, 10.0 + n)) for n in range(1, 5)]
+        moves += [go_to("back", (east, NORTH, 10.0)), move("down", "Land", uri=MULTICOPTER)]
+        robots.append(robot_program(f"Vehicle{number + 1}", moves, home=(east, NORTH, 0.0)))
     write(render(MAVLINK_PYTHON, target_input(program(*robots, frame=frame))), folder)
 
 

@@ -80,7 +80,7 @@ class Radio:
             self._order += 1
             heapq.heappush(self._leaving, (time.monotonic() + self._delay, self._order, data))
         else:
-            self.transmit(data)
+            self._transmit(data)
 
     def receive(self) -> Iterator[Message]:
         """Yield what has come."""
@@ -90,10 +90,15 @@ class Radio:
                     self.heard += 1
                     yield message
 
+    @property
+    def late(self) -> bool:
+        """Return whether something is on its way that has not been heard yet."""
+        return bool(self._coming)
+
     def flush(self) -> None:
         """Send what was held back long enough."""
         while self._leaving and self._leaving[0][0] <= time.monotonic():
-            self.transmit(heapq.heappop(self._leaving)[2])
+            self._transmit(heapq.heappop(self._leaving)[2])
 
     def _datagrams(self) -> Iterator[bytes]:
         while True:
@@ -109,8 +114,7 @@ class Radio:
         while self._coming and self._coming[0][0] <= time.monotonic():
             yield heapq.heappop(self._coming)[2]
 
-    def transmit(self, data: bytes) -> None:
-        """Send bytes as they are, at once and without loss."""
+    def _transmit(self, data: bytes) -> None:
         try:
             self._socket.sendto(data, self._address)
             self.sent += 1

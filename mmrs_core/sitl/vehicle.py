@@ -137,6 +137,8 @@ class SimulatedVehicle:
             self._missions.go_on(self.autopilot.time, self.autopilot.patience / 4.0)
             self._tell()
             self.radio.flush()
+            if self.radio.late:
+                self.hear()
 
     def _begin(self) -> None:
         """Begin anew after a boot: what was asked for is forgotten."""

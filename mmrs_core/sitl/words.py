@@ -76,7 +76,7 @@ def summary(deeds: Deeds) -> str:
     """Return what a vehicle did, in a line."""
     where = "still armed" if deeds["armed"] else "disarmed"
     return (
-        f"{deeds['flown']} s under way, {deeds['metres']} m, {deeds['highest']} m up at most,"
+        f"{deeds['flown']:.1f} s under way, {deeds['metres']:.1f} m, {deeds['highest']:.1f} m up at most,"
         f" {deeds['items']} mission items, {deeds['photos']} photos,"
-        f" {deeds['battery']:.0%} of the battery left, {where} {deeds['from_home']} m from home"
+        f" {deeds['battery']:.0%} of the battery left, {where} {deeds['from_home']:.1f} m from home"
     )

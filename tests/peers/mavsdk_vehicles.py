@@ -43,6 +43,7 @@ class MavsdkVehicle(SimulatedVehicle):
         super().__init__(port, settings, speedup=speedup)
         self.by_mavsdk: dict[str, int] = {}
         self._events: deque = deque()
+        self._outgoing: deque = deque()
         self._height, self._passed, self._told_item = 0.0, 0, 0
         self._armable: bool | None = None
         self._ground = mavlink.MAVLink(None, *GROUND)
@@ -72,13 +73,23 @@ class MavsdkVehicle(SimulatedVehicle):
         self._actions.subscribe_takeoff(lambda *_: later(("rise",)))
 
     def _pass_on(self, data: bytes) -> None:
-        """Send what MAVSDK says, but its heartbeats, which name no kind of vehicle, and lists of ours."""
+        """Take what MAVSDK says, but its heartbeats, which name no kind of vehicle, and lists of ours."""
         for message in self._spoken.parse_buffer(data) or ():
             kind = message.get_type()
             if kind in ("HEARTBEAT", "BAD_DATA", "PING") or getattr(message, "mission_type", 0):
                 continue
             self.by_mavsdk[kind] = self.by_mavsdk.get(kind, 0) + 1
-            self.radio.transmit(bytes(message.get_msgbuf()))
+            self._outgoing.append(message)
+
+    def hear(self) -> None:
+        super().hear()
+        self._send_on()
+
+    def _send_on(self) -> None:
+        """Send what MAVSDK said, numbered among what we say: a vehicle counts its frames only once."""
+        with self.lock:
+            while self._outgoing:
+                self.radio.send(self._outgoing.popleft())
 
     def _take(self, message) -> None:
         kind = message.get_type()
@@ -114,6 +125,7 @@ class MavsdkVehicle(SimulatedVehicle):
             if fit != self._armable:
                 self._armable = fit
                 self._actions.set_armable(fit, fit)
+        self._send_on()
         super().go_on(real_seconds)
         for _ in pilot.visited[self._passed :]:
             self._flown.set_current_item_complete()

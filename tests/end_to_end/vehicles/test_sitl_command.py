@@ -1,0 +1,130 @@
+"""`mmrs sitl` as users start it."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+from example_flight.fleets import free_port
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.resources import shipped
+
+
+def start(*arguments: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-W", "error", "-m", "mmrs_core", "sitl", *arguments]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.Popen(command, text=True, **pipes)
+
+
+def finish(process: subprocess.Popen[str], typed: str | None = None) -> tuple[int, str, str]:
+    out, said = process.communicate(typed, timeout=60)
+    return process.returncode, out, said
+
+
+def heard_at(port: int, seconds: float = 20.0) -> set[int]:
+    """Return the systems that speak to a port."""
+    codec, systems = mavlink.MAVLink(None), set()
+    codec.robust_parsing = True
+    until = time.monotonic() + seconds
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+        ground.bind(("127.0.0.1", port))
+        ground.settimeout(0.2)
+        while time.monotonic() < until and not systems:
+            try:
+                data = ground.recv(65_535)
+            except TimeoutError:
+                continue
+            systems |= {message.get_srcSystem() for message in codec.parse_buffer(data) or ()}
+    return systems
+
+
+def test_a_project_gets_a_vehicle_for_each_robot_at_its_home():
+    port = free_port()
+    process = start(str(shipped("examples") / "carbon-dioxide"), "--port", str(port), "--port-step", "1")
+    line = process.stdout.readline()
+    links = shlex.split(line)[1::2]
+    assert links == [
+        f"{robot}=udpin:127.0.0.1:{port + number}@{number + 1}"
+        for number, robot in enumerate(("Alba", "Brezza", "Cirro"))
+    ]
+    assert heard_at(port + 1) == {2}
+    code, out, said = finish(process, "quit\n")
+    assert code == 0, said
+    assert out.count("0.0 s under way") == 3
+    assert "'Alba': copter, system 1, at 42.3700000, 13.3500000" in said
+
+
+def test_vehicles_without_a_model_may_share_a_port():
+    port = free_port()
+    process = start("--count", "2", "--port", str(port), "--port-step", "0", "--kind", "rover")
+    assert process.stdout.readline().count(f":{port}@") == 2
+    assert heard_at(port)
+    assert finish(process, "quit\n")[0] == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_ends_it_with_what_each_vehicle_did(number):
+    process = start("--port", str(free_port()))
+    process.stdout.readline()
+    time.sleep(0.5)
+    process.send_signal(number)
+    code, out, said = finish(process)
+    assert code == 130
+    assert "'Vehicle1': 0.0 s under way" in out
+    assert "Traceback" not in said
+
+
+def test_it_ends_by_itself_and_tells_all_as_json():
+    code, out, said = finish(start("--port", str(free_port()), "--for", "1", "--speedup", "5", "--json"))
+    assert code == 0, said
+    told = json.loads(out)
+    assert told["connect"][-2:] == ["--speedup", "5"]
+    assert told["vehicles"]["Vehicle1"]["armed"] is False
+
+
+def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
+    process = start("--port", str(free_port()))
+    process.stdout.readline()
+    code, _, said = finish(process, "Vehicle1 gps-lost\nall battery 0.2\nDrone9 gps-lost\nstatus\nquit\n")
+    assert code == 0
+    assert "Vehicle1: gps-lost" in said
+    assert "Drone9: no such robot; there are Vehicle1, and all" in said
+    assert "battery 20%, no position" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["--fault", "gps"], "no such fault"),
+        (["--fault", "Drone7:gps-lost@3"], "no robot 'Drone7'"),
+        (["--wind", "strong"], "not two numbers"),
+        (["--home", "42.37"], "not two numbers"),
+        (["--kind", "plane"], "no such kind"),
+        (["--kind", "rover", "--firmware", "px4"], "no such firmware"),
+        (["--parameter", "RTL_ALT"], "is not NAME=NUMBER"),
+        (["--speedup", "0"], "speedup"),
+    ],
+)
+def test_a_wrong_command_line_is_a_usage_error(arguments, complaint):
+    code, out, said = finish(start("--port", str(free_port()), "--for", "0.1", *arguments))
+    assert (code, out) == (2, "")
+    assert complaint in said
+
+
+def test_faults_are_listed():
+    code, out, _ = finish(start("--fault", "list"))
+    assert code == 0
+    assert "gps-lost\n" in out
+    assert "restart  (happens once)\n" in out
+
+
+def test_a_mission_without_a_place_on_earth_is_refused(tmp_path):
+    code, _, said = finish(start(str(tmp_path)))
+    assert code == 3, said
