@@ -90,7 +90,7 @@ class WayBack:
     def _legs(self, way: Sequence[Point]) -> list[Callable[[], None]]:
         def leg(move: str, place: Place) -> Callable[[], None]:
             def go() -> None:
-                self._vehicle.go_to(place, self._moves.speed_of(move), None, True)
+                self._vehicle.go_to(place, self._moves.speed_of(move), None, False)
                 self._moves.track.append((move, place))
 
             return go

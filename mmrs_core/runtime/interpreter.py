@@ -62,7 +62,7 @@ def interpret(
     for robot in program.robots:
         if robot.id in backends:
             live = terms.attention is not None
-            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, terse=live)
+            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, live=live)
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
     return _Run(program, robots, bus, clock, terms).go()

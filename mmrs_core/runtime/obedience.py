@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 from mmrs_core.contributions.execution import Clock, Fault, Noting, Pausable, Watched
 from mmrs_core.errors import LinkLostError
+from mmrs_core.runtime.answers import HANDS_OFF
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
-from mmrs_core.runtime.robot import HANDS_OFF, RunningRobot
+from mmrs_core.runtime.robot import RunningRobot
 
 ORDERED, STOPPED = "ORDERED", "STOPPED"
 """Faults that end the program of a robot because somebody wants that."""

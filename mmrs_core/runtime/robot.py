@@ -6,27 +6,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
-from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Point, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Noting, Recovering
 from mmrs_core.errors import LinkLostError
+from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.scene import Policy
-
-HANDS_OFF = "NOTHING"
-TAKEN_OVER = "TAKEN_OVER"
-"""A pilot has the robot: no policy answers that, the program lets go of it."""
-
-OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", TAKEN_OVER})
-"""What is answered anew where it happens while a robot still responds to something else."""
-
-UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
-"""What real robots do where nobody declared it; to anything else they hold."""
-
-COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
-"""Responses after which a battery can be changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +24,13 @@ class Rules:
         conditions: by identifier.
         policies: of its type and kind, which go after the program's.
         suspends: whether a low battery only breaks the program off, to go on with a full one.
-        terse: whether steps tell only which fault it is; the black box then has the reason.
+        live: whether robots are real ones: steps then tell only which fault it is, black boxes the reason.
     """
 
     conditions: Mapping[str, Condition]
     policies: tuple[Policy, ...]
     suspends: bool
-    terse: bool = False
+    live: bool = False
 
 
 class RunningRobot:
@@ -165,7 +152,7 @@ class RunningRobot:
             found = Fault("LINK_LOST", str(error))
         if not isinstance(found, Fault):
             return found
-        response = self._response_to(found)
+        response = self._answers().response(found)
         if self._rules.suspends and found.which == "BATTERY_LOW" and response in COMES_DOWN:
             self._give_up()
             self.fault, self.response, self.suspended, self.recovering = found, response, True, False
@@ -191,12 +178,12 @@ class RunningRobot:
         if found.which not in OVERTAKES or found.which in self._answered:
             return False
         self._answered.add(found.which)
-        self.response = self._response_to(found)
+        self.response = self._answers().response(found)
         return True
 
     def fail(self, found: Fault) -> None:
         """End the program by a fault that cannot be recorded."""
-        step = self._ended(found, self._response_to(found))
+        step = self._ended(found, self._answers().response(found))
         self.point = step.leads_to
 
     def _ended(self, found: Fault, response: str) -> Step:
@@ -204,15 +191,7 @@ class RunningRobot:
         self.fault, self.response = found, response
         self._answered.add(found.which)
         self.ordered, self.suspended, self.recovering = None, False, False
-        return fault(self._program, self.point, found.which if self._rules.terse else str(found))
-
-    def _response_to(self, found: Fault) -> str:
-        if found.which == TAKEN_OVER:
-            return HANDS_OFF
-        policies = self._effective_policies()
-        if self._rules.terse and policy_for(found.which, policies) is None:
-            return UNDECLARED.get(found.which, LAST_RESORT)
-        return response_to(found.which, policies)
+        return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:
         self._begun, self._waits_since, self._peer_lost_at = False, None, None
@@ -228,10 +207,10 @@ class RunningRobot:
         if self._silent_since is None:
             self._silent_since = now
         found = self.backend.fault(now)
-        if found is not None and not self._bears(found):
+        if found is not None and not self._answers().bears(found):
             return found
         found = Fault("PEER_LOST", f"no answer from {', '.join(self.delivery.waiting)}")
-        return found if now - self._silent_since >= self._patience(found) else None
+        return found if now - self._silent_since >= self._answers().patience(found) else None
 
     def _give_up(self) -> None:
         if self.delivery is not None:
@@ -258,7 +237,7 @@ class RunningRobot:
     def _detained(self, now: float) -> Fault | None:
         """Return what goes wrong while nothing else may be begun."""
         found = self.backend.fault(now)
-        if found is not None and not self._bears(found):
+        if found is not None and not self._answers().bears(found):
             return found
         if self.recovering and self.backend.finished(now):
             self.recovering = False
@@ -276,9 +255,14 @@ class RunningRobot:
             else:
                 self.backend.begin(self.move, now, through=self._may_pass())
         found = self.backend.fault(now)
-        if action is not None and found is not None and found.which == "DEVICE_SILENT" and self._bears(found):
+        if (
+            action is not None
+            and found is not None
+            and found.which == "DEVICE_SILENT"
+            and self._answers().bears(found)
+        ):
             return self._next()
-        if found is not None and not self._bears(found):
+        if found is not None and not self._answers().bears(found):
             return found
         return self._next() if self.backend.finished(now) else None
 
@@ -302,7 +286,7 @@ class RunningRobot:
             self._waits_since = now
             self.backend.wait(now)
         found = self.backend.fault(now)
-        if found is not None and not self._bears(found):
+        if found is not None and not self._answers().bears(found):
             return found
         ends = (self._too_long(), self._peer_lost(now, peers))
         self.deadline = min(end for end, _ in ends)
@@ -310,7 +294,7 @@ class RunningRobot:
 
     def _too_long(self) -> tuple[float, Fault]:
         found = Fault("WAIT_TOO_LONG", f"waits for {', '.join(self.lacking) or self.question}")
-        return (self._waits_since or 0.0) + self._patience(found), found
+        return (self._waits_since or 0.0) + self._answers().patience(found), found
 
     def _peer_lost(self, now: float, peers: Peers) -> tuple[float, Fault]:
         lost = sorted({robot for name in self.lacking for robot in peers.lost((self.id, name))})
@@ -320,7 +304,7 @@ class RunningRobot:
             return inf, found
         if self._peer_lost_at is None:
             self._peer_lost_at = now
-        return self._peer_lost_at + self._patience(found), found
+        return self._peer_lost_at + self._answers().patience(found), found
 
     def _decision(self, now: float) -> bool | Fault | None:
         """Return what the condition says; None as long as nobody can know."""
@@ -352,19 +336,12 @@ class RunningRobot:
         slots = ((self.id, name) for name in transition.waits)
         return next(blocking, None) is None and all(self._bus.state(slot).active for slot in slots)
 
-    def _effective_policies(self) -> tuple[Policy, ...]:
-        if self.point.phase is not Phase.OUT:
-            return self._policies
-        return (*self._program.transitions[self.point.move].policies, *self._policies)
-
-    def _bears(self, found: Fault) -> bool:
-        return response_to(found.which, self._effective_policies()) == "CONTINUE"
-
-    def _patience(self, found: Fault) -> float:
-        if self._bears(found):
-            return inf
-        seconds = patience(found.which, self._effective_policies())
-        return inf if seconds is None else seconds
+    def _answers(self) -> Answers:
+        """Return what it does about faults here, a wait's own policies first."""
+        declared = self._policies
+        if self.point.phase is Phase.OUT:
+            declared = (*self._program.transitions[self.point.move].policies, *declared)
+        return Answers(declared, live=self._rules.live)
 
 
 def _followed(program: RobotProgram, point: Point, record: StepRecord) -> Step:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 
 from mmrs_core.contributions.execution import Clock, Fault, Noting, Watched
 from mmrs_core.errors import LinkLostError
+from mmrs_core.runtime.answers import HANDS_OFF
 from mmrs_core.runtime.obedience import Obedience
-from mmrs_core.runtime.robot import HANDS_OFF, RunningRobot
+from mmrs_core.runtime.robot import RunningRobot
 
 
 class Stopping:

@@ -1,0 +1,55 @@
+"""What a robot does about faults, and for how long it bears them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
+from mmrs_core.contributions.execution import Fault
+from mmrs_core.scene import Policy
+
+HANDS_OFF = "NOTHING"
+TAKEN_OVER = "TAKEN_OVER"
+"""A pilot has the robot: no policy answers that, the program lets go of it."""
+
+OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", TAKEN_OVER})
+"""What is answered anew where it happens while a robot still responds to something else."""
+
+UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
+"""What real robots do where nobody declared it; to anything else they hold."""
+
+COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
+"""Responses after which a battery can be changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """Policies in the order in which they count.
+
+    Attributes:
+        live: whether the robot is a real one, which does not hold for want of a better idea when it
+            cannot be reached, or when its battery gets low.
+    """
+
+    policies: tuple[Policy, ...]
+    live: bool = False
+
+    def response(self, found: Fault) -> str:
+        """Return what the robot does, a literal of PolicyResponse or HANDS_OFF."""
+        if found.which == TAKEN_OVER:
+            return HANDS_OFF
+        if self.live and policy_for(found.which, self.policies) is None:
+            return UNDECLARED.get(found.which, LAST_RESORT)
+        return response_to(found.which, self.policies)
+
+    def bears(self, found: Fault) -> bool:
+        """Return whether the robot goes on as if nothing were."""
+        return response_to(found.which, self.policies) == "CONTINUE"
+
+    def patience(self, found: Fault) -> float:
+        """Return for how many seconds the robot bears it; inf: for ever."""
+        if self.bears(found):
+            return inf
+        seconds = patience(found.which, self.policies)
+        return inf if seconds is None else seconds

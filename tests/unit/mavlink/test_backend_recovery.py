@@ -1,0 +1,132 @@
+"""The way back to where a program was broken off, with a vehicle that is not there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.dry import DryVehicle
+from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.places import distance, offset
+from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend_recovery import WayBack, sortie_of
+from mmrs_core.mavlink.built import robot_of
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    go_to,
+    move,
+    program,
+    robot_program,
+    take_off,
+    target_input,
+)
+
+FLUID = {index: Transition(index, index + 1, fluid=True) for index in (3, 4, 5)}
+BEHAVIOUR = program(
+    robot_program(
+        "r",
+        [
+            take_off("up", 20.0),
+            go_to("out", (0.0, 50.0, 20.0)),
+            go_to("s1", (50.0, 50.0, 20.0)),
+            go_to("s2", (50.0, 60.0, 20.0)),
+            go_to("s3", (0.0, 60.0, 20.0)),
+            go_to("s4", (0.0, 70.0, 20.0)),
+            go_to("back", (0.0, 0.0, 20.0)),
+            move("down", "Land", uri=MULTICOPTER),
+            move("charge", "Recharge", duration=10.0),
+            take_off("again", 15.0),
+            go_to("far", (80.0, 0.0, 15.0), trajectory="HORIZONTAL_FIRST"),
+            move("end", "Land", uri=MULTICOPTER),
+        ],
+        transitions=FLUID,
+    )
+)
+ROBOT = robot_of(BEHAVIOUR.robots[0], target_input(BEHAVIOUR))
+MOVES = [step.move for step in ROBOT.steps]
+
+
+class Vehicle(DryVehicle):
+    """Remembers where it was told to go: metres east and north of home, and up."""
+
+    def __init__(self, east=0.0, north=0.0, up=0.0):
+        super().__init__(Clock(1e6), ROBOT.home, lambda: None)
+        self._here = replace(
+            ROBOT.home,
+            latitude=ROBOT.home.latitude + north / 111_319.49,
+            longitude=ROBOT.home.longitude + east / 82_246.0,
+            height=up,
+        )
+        self.went = []
+
+    def take_off(self, height):
+        self.went.append(("up", height))
+        super().take_off(height)
+
+    def go_to(self, place, speed, look, through):
+        north, east, up = offset(ROBOT.home, place)
+        self.went.append((round(east), round(north), round(up)))
+        super().go_to(place, speed, look, through)
+
+
+def recovered(passed_until, begun, vehicle, tolerance=20.0):
+    """Return where a vehicle goes, after the log of a run that has ended moves up to that one."""
+    moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    passed = MOVES[: MOVES.index(passed_until) + 1]
+    WayBack(ROBOT, moves, vehicle, tolerance).job(passed, begun).run()
+    return vehicle.went, [move for move, _ in moves.track]
+
+
+def test_from_the_ground_it_flies_the_way_that_it_came():
+    went, track = recovered("s1", "s2", Vehicle())
+    assert went == [("up", 20.0), (0, 50, 20), (50, 50, 20)]
+    assert track == ["up", "out", "s1"]
+
+
+def test_a_sortie_begins_with_its_own_take_off():
+    assert sortie_of(ROBOT, MOVES[: MOVES.index("again") + 1]) == ("again",)
+    went, _ = recovered("again", "far", Vehicle())
+    assert went == [("up", 15.0)]
+
+
+@pytest.mark.parametrize(("passed", "begun"), [("start", "up"), ("down", "charge"), ("charge", "again")])
+def test_on_the_ground_between_sorties_there_is_nothing_to_do(passed, begun):
+    assert recovered(passed, begun, Vehicle())[0] == []
+
+
+def test_a_vehicle_that_has_landed_where_it_was_to_land_stays_there():
+    assert recovered("back", "down", Vehicle())[0] == []
+
+
+def test_in_the_air_on_its_way_it_goes_on_from_there():
+    went, track = recovered("s1", "s2", Vehicle(2.0, 30.0, 20.0))
+    assert went == [(0, 50, 20), (50, 50, 20)]
+    assert track == ["up", "out", "s1"]
+
+
+def test_on_the_leg_that_was_interrupted_it_goes_back_to_its_beginning():
+    assert recovered("out", "s1", Vehicle(20.0, 50.0, 20.0))[0] == [(0, 50, 20)]
+
+
+def test_ahead_on_a_run_that_it_flew_by_itself_it_goes_back_along_it():
+    went, _ = recovered("out", "s1", Vehicle(25.0, 60.0, 20.0))
+    assert went == [(50, 60, 20), (50, 50, 20), (0, 50, 20)]
+
+
+def test_in_the_air_elsewhere_it_is_refused():
+    with pytest.raises(Refused, match="bring it home"):
+        recovered("s1", "s2", Vehicle(-60.0, 20.0, 20.0))
+
+
+def test_on_the_ground_elsewhere_it_is_refused():
+    with pytest.raises(Refused, match="bring it home"):
+        recovered("s1", "s2", Vehicle(30.0, 0.0, 0.0))
+
+
+def test_the_corner_of_a_trajectory_is_on_the_way():
+    vehicle = Vehicle(40.0, 0.0, 15.0)
+    recovered("far", "end", vehicle)
+    assert distance(vehicle.state().place, Vehicle(80.0, 0.0, 15.0).state().place) < 1.0
