@@ -130,6 +130,9 @@ class Body:
         back = min(BACK_RATE, BACK_PACE / max(hypot(*aside), 1e-6))
         if self._turns(leg, square):
             pace = min(pace, self.corner_pace)
+        if along > 1.0:
+            # It has gone past its target, and comes back to it.
+            pace = -pace
         return plus(plus(STILL, leg, pace / sqrt(square)), aside, back)
 
     def _turns(self, leg: Vector, square: float) -> bool:

@@ -1,0 +1,211 @@
+"""Programs that go on after a break: with another battery, in another process, or in the same one."""
+
+from __future__ import annotations
+
+import signal
+import time
+from dataclasses import replace
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.flight.ordering import give
+from mmrs_core.scene import Policy
+from mmrs_core.testing.programs import (
+    MULTICOPTER,
+    go_to,
+    move,
+    notify,
+    photo,
+    program,
+    robot_program,
+    take_off,
+)
+
+LAND = move("down", "Land", uri=MULTICOPTER)
+TAKE_OFF = 22
+TRANSECTS = [(x, y, 12.0) for x in (20.0, 30.0, 40.0) for y in ((0.0, 60.0) if x != 30.0 else (60.0, 0.0))]
+"""Both ends of three lines of a coverage, flown up and down."""
+
+
+def coverage(*policies: Policy, fluid: bool = False, **robot):
+    """Fly a coverage, with a photo at every end."""
+    ends = [go_to(f"t{index}", place, task="field") for index, place in enumerate(TRANSECTS)]
+    ends = ends if fluid else [replace(end, after=(photo(),)) for end in ends]
+    moves = [take_off("up", 12.0), *ends, go_to("home", (0.0, 0.0, 12.0)), LAND]
+    chained = {index: Transition(index, index + 1, fluid=True) for index in range(2, 7)} if fluid else {}
+    return program(replace(robot_program("alpha", moves, transitions=chained, **robot), policies=policies))
+
+
+def covered(vehicle) -> list[bool]:
+    """Return which ends of the coverage the vehicle's own track has passed."""
+    track = [(north, east) for _, north, east, _ in vehicle.autopilot.track]
+    return [
+        any(abs(north - y) < 2.5 and abs(east - x) < 2.5 for north, east in track) for x, y, _ in TRANSECTS
+    ]
+
+
+def begun(made, name: str) -> int:
+    return sum((step["label"], step["move"]) == ("begin", name) for step in made.steps("alpha"))
+
+
+def await_step(made, name: str, label: str = "begin") -> None:
+    path = made.logs / "alpha.jsonl"
+    until = time.monotonic() + 60.0
+    while not (path.exists() and f'"label": "{label}", "move": "{name}"' in path.read_text("ascii")):
+        assert time.monotonic() < until, f"{name} never comes to {label}"
+        time.sleep(0.01)
+
+
+def empty(made, vehicle, links, move: str) -> str:
+    """Fly until a move, find the battery low there, and come home; return what was said."""
+    with made.start("fleet.py", *links) as process:
+        await_step(made, move)
+        time.sleep(0.15)
+        vehicle.faults.set_battery(0.19)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 1, said
+    assert "came home for its battery" in said
+    assert "fault" not in {step["label"] for step in made.steps("alpha")}
+    return said
+
+
+@pytest.mark.parametrize("fluid", [pytest.param(False, marks=pytest.mark.thorough), True])
+def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar, fluid):
+    made = controllers(coverage(fluid=fluid))
+    vehicles, links = hangar(made.program, speedup=20.0)
+    alpha = vehicles["alpha"]
+    empty(made, alpha, links, "t3")
+    assert not alpha.autopilot.armed
+    assert max(map(abs, alpha.autopilot.body.position)) < 1.5
+    assert not all(covered(alpha))
+    before = len(alpha.autopilot.track)
+    alpha.faults.set_battery(1.0)
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert all(covered(alpha))
+    legs = [(round(east / 10), round(north / 10)) for _, north, east, _ in alpha.autopilot.track[before:]]
+    assert legs.index((3, 6)) < legs.index((3, 0)), "the interrupted leg is flown from its beginning"
+    assert begun(made, "t3") == 1
+    assert made.replayed().complaints == ()
+
+
+def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(controllers, hangar):
+    other = robot_program(
+        "beta",
+        [take_off("up", 5.0), move("stay", "HoldPosition", duration=150.0), LAND],
+        home=(0.0, -50.0, 0.0),
+    )
+    made = controllers(program(*coverage().robots, other))
+    vehicles, links = hangar(made.program, speedup=20.0)
+    with made.start("fleet.py", *links) as process:
+        await_step(made, "t2")
+        time.sleep(0.15)
+        vehicles["alpha"].faults.set_battery(0.19)
+        assert any("came home for its battery" in line for line in process.stderr)
+        vehicles["alpha"].faults.set_battery(1.0)
+        (told,) = give(made.logs, "resume", ["alpha"])
+        assert told["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    assert all(covered(vehicles["alpha"]))
+    assert made.replayed().complaints == ()
+
+
+@pytest.mark.thorough
+def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, hangar):
+    made = controllers(coverage())
+    vehicles, links = hangar(made.program, speedup=20.0)
+    with made.start("fleet.py", *links, "--battery-patience", "60") as process:
+        await_step(made, "t1")
+        vehicles["alpha"].faults.set_battery(0.19)
+        assert any("came home for its battery" in line for line in process.stderr)
+        vehicles["alpha"].faults.restart()
+        vehicles["alpha"].faults.set_battery(1.0)
+        time.sleep(1.0)
+        (told,) = give(made.logs, "resume", ["alpha"])
+        assert told["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    assert all(covered(vehicles["alpha"]))
+
+
+def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(controllers, hangar):
+    far = [take_off("up", 10.0), go_to("far", (0.0, 400.0, 10.0)), go_to("home", (0.0, 0.0, 10.0)), LAND]
+    made = controllers(replace(program(robot_program("alpha", far)), reserve=0.1))
+    vehicles, links = hangar(made.program, energy=180.0)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1, said
+    assert "BATTERY_LOW: point of no return" in said
+    assert not vehicles["alpha"].autopilot.armed
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert vehicles["alpha"].autopilot.energy > 0.02
+
+
+def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, hangar):
+    made = controllers(coverage(Policy("LINK_LOST", "HOLD", 60.0)))
+    vehicles, links = hangar(made.program, speedup=20.0)
+    with made.start("fleet.py", *links) as process:
+        await_step(made, "t2")
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=60)
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert sum(command == TAKE_OFF for _, command, _ in vehicles["alpha"].autopilot.history) == 1
+    assert all(covered(vehicles["alpha"]))
+    assert made.replayed().complaints == ()
+
+
+def test_a_log_that_was_cut_off_is_gone_on_with_after_its_last_whole_line(controllers):
+    made = controllers(coverage())
+    with made.start("fleet.py", "--dry-run", "--speedup", "20") as process:
+        await_step(made, "t1")
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=60)
+    log = made.logs / "alpha.jsonl"
+    log.write_text(log.read_text("ascii") + '{"run": "run-0", "rob', "ascii")
+    code, said = made.run("fleet.py", "--dry-run", "--resume")
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+
+
+def test_slots_that_were_set_before_the_break_are_set_after_it(controllers):
+    giver = robot_program("alpha", [take_off("up", 5.0), LAND])
+    told = replace(giver.moves[1], after=(notify(("beta", "go")),))
+    giver = replace(giver, moves=(giver.moves[0], told, *giver.moves[2:]))
+    taker = robot_program(
+        "beta",
+        [take_off("up", 5.0), move("stay", "HoldPosition", duration=60.0), LAND],
+        slots=("go",),
+        transitions={2: Transition(2, 3, waits=("go",))},
+    )
+    made = controllers(program(giver, taker))
+    with made.start("fleet.py", "--dry-run", "--speedup", "20") as process:
+        assert any("'alpha': done" in line for line in process.stderr)
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=60)
+    code, said = made.run("fleet.py", "--dry-run", "--resume")
+    assert code == 0, said
+    assert "'alpha': it has come to its end" in said
+    assert made.replayed().complaints == ()
+
+
+def test_a_program_that_has_ended_by_a_fault_does_not_go_on(controllers):
+    made = controllers(coverage())
+    with made.start("fleet.py", "--dry-run", "--speedup", "20") as process:
+        await_step(made, "t1")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    code, said = made.run("fleet.py", "--dry-run", "--resume")
+    assert code == 1
+    assert "cannot go on: it has ended by STOPPED" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [(("--resume",), "there is no log of these robots"), (("--resume", "--run", "other"), "there is no log")],
+)
+def test_nothing_can_be_gone_on_with_where_nothing_was_begun(controllers, arguments, complaint):
+    code, said = controllers(coverage()).run("fleet.py", "--dry-run", *arguments)
+    assert code == 2
+    assert complaint in said
