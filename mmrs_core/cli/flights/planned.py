@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from mmrs_core.behaviour.program import Move, RobotProgram
-from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.behaviours import Loaded
 from mmrs_core.cli.flights.answers import choosing_as
-from mmrs_core.cli.flights.values import Flight
+from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
 from mmrs_core.cli.simulation import refuse_unasked
@@ -103,25 +102,22 @@ def _later(run: Run, seconds: float) -> Run:
     )
 
 
-def legs_of(
-    robot: RobotProgram, records: Sequence[StepRecord], last: float, kinds: Mapping[Name, MoveKind]
-) -> tuple[PlannedLeg, ...]:
+def legs_of(robot: RobotProgram, flown: Flown, kinds: Mapping[Name, MoveKind]) -> tuple[PlannedLeg, ...]:
     """Return every move that a robot began, with the way that it should have gone.
 
-    Args:
-        records: of the robot, in order.
-        last: when the last thing is known of it.
-        kinds: of moves, by metaclass.
+    Each begins where the one before should have ended; after a move to an object, whose place the robot
+    had to find, where the robot was.
     """
     moves = {move.id: move for move in robot.moves}
     here: Position | None = robot.home if robot.home is not None else (0.0, 0.0, 0.0)
     legs: list[PlannedLeg] = []
-    for record, after in zip_longest(records, records[1:]):
+    for record, after in zip_longest(flown.records, flown.records[1:]):
         move = moves.get(record.move)
         if record.label != "begin" or move is None:
             continue
+        here = here if here is not None else flown.track.at(record.time)
         way = _way(move, here, robot.home, kinds)
-        end = max(after.time if after is not None else last, record.time)
+        end = max(after.time if after is not None else flown.end, record.time)
         legs.append(PlannedLeg(move, record.time, end, after is not None and after.label == "end", way))
         here = way[-1] if way else None
     return tuple(legs)
@@ -131,10 +127,7 @@ def _way(
     move: Move, here: Position | None, home: Position | None, kinds: Mapping[Name, MoveKind]
 ) -> tuple[Position, ...]:
     name = most_specific(move.metaclasses, kinds)
-    if name is None:
+    searches = move.target is not None and move.target.description is not None
+    if name is None or here is None or searches:
         return ()
-    if here is None:
-        # Where it came from is not known: an object without a place. Where it leads to may be.
-        position = move.target.position if move.target is not None else None
-        return (position,) if position is not None and move.distance == 0 else ()
     return kinds[name].path(move, here, home) or ()

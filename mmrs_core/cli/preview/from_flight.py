@@ -97,7 +97,7 @@ class _Shown:
         self._program, self._flown, self._kinds, self._shots = program, flown, kinds, shots
         self._moves = {move.id: move for move in program.moves}
         self._track, self.tolerance = thinned(flown.track)
-        self._away = away_of(flown, legs_of(program, flown.records, flown.end, kinds))
+        self._away = away_of(flown, legs_of(program, flown, kinds))
 
     def over(self, plan: RobotPicture) -> RobotPicture:
         """Return the robot's picture over that of its plan."""

@@ -49,7 +49,7 @@ class Given:
     def legs(self) -> dict[str, tuple[PlannedLeg, ...]]:
         """Return the moves that each robot began, with the ways that they should have gone."""
         return {
-            robot.id: legs_of(robot, flown.records, flown.end, self.kinds)
+            robot.id: legs_of(robot, flown, self.kinds)
             for robot in self.program.robots
             for flown in (self.flight.robots[robot.id],)
         }

@@ -39,7 +39,8 @@ def deviations(report: Report) -> str:
     )
     note = (
         "From each fix to the nearest point of the way that its move should have gone; fixes outside of"
-        " moves, on the ground, and while a policy led the robot elsewhere do not count."
+        " moves, on the ground, on the way to objects that had to be found, and while a policy led the"
+        " robot elsewhere do not count."
         " Errors of the vehicle's own position are not in these figures."
     )
     return section("Planned against flown", table(head, rows) if rows else "", note=note)

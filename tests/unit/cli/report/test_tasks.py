@@ -16,7 +16,7 @@ from mmrs_core.testing.programs import go_to, move, program, robot_program, take
 def told(behaviour, run, contributions):
     def reports(flight, plan=run, of=behaviour):
         legs = {
-            robot.id: legs_of(robot, flown.records, flown.end, contributions.move_kinds)
+            robot.id: legs_of(robot, flown, contributions.move_kinds)
             for robot in of.robots
             for flown in (flight.robots[robot.id],)
         }
