@@ -46,14 +46,14 @@ def black_boxes(paths: Iterable[Path]) -> tuple[BlackBox, ...]:
     Args:
         paths: folders; logs, whose boxes lie beside them; or any part of a box, which stands for all.
     """
-    stems: dict[tuple[Path, str], None] = {}
+    stems: dict[tuple[Path, str], Path] = {}
     for path in paths:
         if path.is_dir():
             found = sorted(path.glob(f"*{BOX}*{BOX_SUFFIX}"))
-            stems |= {(path, stem): None for part in found if (stem := _stem(part))}
+            stems |= {(path.resolve(), stem): path for part in found if (stem := _stem(part))}
         elif stem := _stem(path) or (path.stem if path.suffix == SUFFIX else ""):
-            stems[(path.parent, stem)] = None
-    boxes = (_box(folder, stem) for folder, stem in stems)
+            stems[(path.parent.resolve(), stem)] = path.parent
+    boxes = (_box(folder, stem) for (_, stem), folder in stems.items())
     return tuple(box for box in boxes if box.parts)
 
 

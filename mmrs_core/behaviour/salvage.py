@@ -39,10 +39,11 @@ def logs_in(paths: Iterable[Path]) -> tuple[Path, ...]:
 
     Other files, such as the parts of a black box, are none.
     """
-    found: dict[Path, None] = {}
+    found: dict[Path, Path] = {}
     for path in paths:
-        found |= dict.fromkeys(sorted(path.glob(f"*{SUFFIX}")) if path.is_dir() else [path])
-    return tuple(path for path in found if path.suffix == SUFFIX)
+        for log in sorted(path.glob(f"*{SUFFIX}")) if path.is_dir() else [path]:
+            found.setdefault(log.resolve(), log)
+    return tuple(path for path in found.values() if path.suffix == SUFFIX)
 
 
 def _record(line: bytes) -> tuple[StepRecord | None, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -121,6 +122,12 @@ def test_a_folder_a_log_and_any_part_lead_to_the_whole_box(tmp_path, name):
     found = {box.stem: len(box.parts) for box in black_boxes([tmp_path / name])}
     assert found["Ann"] == 2
     assert len(found) == (2 if name == "." else 1)
+
+
+def test_a_box_that_is_named_in_two_ways_is_one(tmp_path, monkeypatch):
+    (tmp_path / "Ann.blackbox.ndjson").write_text(line())
+    monkeypatch.chdir(tmp_path)
+    assert len(black_boxes([tmp_path, Path("Ann.jsonl"), Path()])) == 1
 
 
 def test_a_log_without_a_box_leads_to_none(tmp_path):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from mmrs_core.behaviour.log import to_line
@@ -47,6 +49,12 @@ def test_logs_are_found_beside_other_files(tmp_path):
         (tmp_path / name).touch()
     found = logs_in([tmp_path, tmp_path / "Ann.jsonl", tmp_path / "Ann.blackbox.ndjson"])
     assert [path.name for path in found] == ["Ann.jsonl", "Bob.jsonl"]
+
+
+def test_a_log_that_is_named_in_two_ways_is_one(tmp_path, monkeypatch):
+    (tmp_path / "Ann.jsonl").touch()
+    monkeypatch.chdir(tmp_path)
+    assert len(logs_in([tmp_path, Path("Ann.jsonl"), Path()])) == 1
 
 
 def test_a_log_that_is_not_there_is_named(tmp_path):
