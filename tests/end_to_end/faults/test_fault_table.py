@@ -19,10 +19,10 @@ def title(case) -> str:
     return case.title
 
 
-def flown_by(rows, execution, folder):
+def flown_by(rows, execution, folder, size=10):
     outcomes = [
         outcome
-        for number, batch in enumerate(batches(rows))
+        for number, batch in enumerate(batches(rows, size))
         for outcome in fly(batch, execution, folder / f"batch-{number}")
     ]
     return dict(zip((row.title for row in rows), outcomes, strict=True))
@@ -31,7 +31,7 @@ def flown_by(rows, execution, folder):
 @pytest.fixture(scope="module", params=EXECUTIONS)
 def usual(request, tmp_path_factory):
     """Return what became of the rows that are always tested, flown together."""
-    return flown_by(FAST, request.param, tmp_path_factory.mktemp("usual"))
+    return flown_by(FAST, request.param, tmp_path_factory.mktemp("usual"), len(FAST))
 
 
 @pytest.fixture(scope="module", params=EXECUTIONS)

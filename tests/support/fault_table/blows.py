@@ -161,7 +161,6 @@ DRILLS: tuple[Drill, ...] = (
         "wall clock jumps forward",
         _link_lost("wall clock jumps by an hour", UNHARMED, 10.0),
         f"clock-jump@{INJECTED_AT}+3600",
-        fast=True,
     ),
     _injection(
         "wall clock jumps back",

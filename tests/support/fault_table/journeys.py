@@ -139,7 +139,7 @@ def _journeys() -> tuple[Journey, ...]:
     made = []
     for response, moment in (("RETURN", AUTO), ("EMERGENCY_AREA", AT)):
         fly = lambda e, f, r=response, m=moment: new_battery(e, f, r, m)  # noqa: E731
-        made.append(Journey(f"battery changed, {response}, {moment}", fly, response == "RETURN"))
+        made.append(Journey(f"battery changed, {response}, {moment}", fly))
     for moment in (AUTO, AT):
         fly = lambda e, f, m=moment: killed_and_resumed(e, f, "RETURN", m)  # noqa: E731
         made.append(Journey(f"killed and resumed, {moment}", fly))

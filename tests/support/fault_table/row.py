@@ -34,6 +34,7 @@ class Row:
         hands_off: whether nothing but heartbeats may be sent once the controller has noticed.
         strikes_peer: whether the fault is that of the robot which this one waits for.
         suspends: whether the robot only comes down for a new battery, which is no fault in its log.
+        responds: the response, where it cannot be that of the policy.
         says: what the process must say, where logs cannot.
     """
 
@@ -55,6 +56,7 @@ class Row:
     hands_off: bool = False
     strikes_peer: bool = False
     suspends: bool = False
+    responds: str = ""
     says: str = ""
 
     @property
@@ -80,7 +82,8 @@ class Row:
         """Return what the black box must have as the response; empty where it need not have any."""
         if self.order or not (self.event or self.suspends):
             return ""
-        return "NOTHING" if self.hands_off else self.policy[1] if self.policy is not None else ""
+        declared = self.policy[1] if self.policy is not None else ""
+        return self.responds or ("NOTHING" if self.hands_off else declared)
 
 
 @dataclass(slots=True)

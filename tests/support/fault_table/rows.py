@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from fault_table.project import POLICY
 from fault_table.row import Row, leave_alone
@@ -123,7 +124,7 @@ def _pilot_rows() -> list[Row]:
             within=None,
             stay=5.0 if during == AUTO else 20.0,
             hands_off=True,
-            fast=during in (LEG, AUTO),
+            fast=during == AUTO,
         )
         for during, strike, response in (
             (LEG, _stick, "RETURN"),
@@ -151,6 +152,16 @@ def _event_rows(
         )
         for during, response, ends in cases
     ]
+
+
+def _landed(*given) -> list[Row]:
+    """Return rows in which a robot that cannot hold its position comes down instead."""
+    return [replace(row, responds="LAND") for row in _event_rows(*given)]
+
+
+def _fallen(*given) -> list[Row]:
+    """Return rows in which the vehicle falls, so that there is nothing left that it could do."""
+    return [replace(row, within=None) for row in _event_rows(*given)]
 
 
 def _device_rows() -> list[Row]:
@@ -209,7 +220,6 @@ def _wait_rows() -> list[Row]:
             within=20.0,
             program="wait",
             strikes_peer=True,
-            fast=response == "LAND",
         )
         for response, ends in (("LAND", "here"), ("EMERGENCY_AREA", "meadow"))
     ]
@@ -219,11 +229,11 @@ def _wait_rows() -> list[Row]:
 ROWS: tuple[Row, ...] = (
     *_link_rows(),
     *_pilot_rows(),
-    *_event_rows(
+    *_landed(
         "satellites lost",
         "POSITION_LOST",
         _satellites,
-        [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "STOP_THRUST", "here")],
+        [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
         "LAND",
     ),
     *_event_rows(
@@ -252,12 +262,12 @@ ROWS: tuple[Row, ...] = (
         [(AT, "LAND", "here"), (LEG, "RETURN", "home"), (AUTO, "EMERGENCY_AREA", "meadow")],
         "RETURN",
     ),
-    *_event_rows(
+    *_fallen(
         "autopilot reboot, motors off",
         "VEHICLE_RESTARTED",
         _reboot,
         [(AT, "HOLD", "here"), (AUTO, "RETURN", "here")],
-        "HOLD",
+        "",
     ),
     *_event_rows(
         "battery low",

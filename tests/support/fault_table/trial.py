@@ -11,6 +11,7 @@ from fault_table.process import Process
 from fault_table.project import Pad
 from fault_table.row import Outcome, Row
 from fault_table.watch import Watch
+from mmrs_core.errors import MmrsError
 
 REAL_SECONDS = 50.0
 """How long everything may take."""
@@ -84,9 +85,11 @@ def _end(fleet: Fleet, process: Process) -> list[str]:
     if process.running():
         process.signal(signal.SIGINT)
     problems = [] if process.end(30.0) is not None else ["the process does not end when it is interrupted"]
-    if not fleet.logs.exists():
-        return [*problems, "there are no logs"]
-    return problems + [f"the logs do not replay: {each}" for each in fleet.replayed().complaints]
+    try:
+        complaints = fleet.replayed().complaints
+    except MmrsError as error:
+        return [*problems, f"the logs cannot be read: {error}"]
+    return problems + [f"the logs do not replay: {each}" for each in complaints]
 
 
 def _pads(rows: Sequence[Row]) -> tuple[list[Pad], list[str]]:
