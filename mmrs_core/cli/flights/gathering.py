@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
-from mmrs_core.behaviour.box_files import BlackBox, black_boxes
+from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.behaviour.steps import StepRecord
@@ -93,6 +93,9 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
     Raises:
         UnreadableError: if a file cannot be opened, or there is neither log nor black box.
     """
+    absent = next((path for path in paths if not path.exists() and not is_part(path)), None)
+    if absent is not None:
+        raise UnreadableError(f"{absent}: no such file or folder")
     damages: list[str] = []
     steps = _steps(paths, damages)
     readable = not damages

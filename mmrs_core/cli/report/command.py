@@ -25,7 +25,7 @@ def report(
     call: typer.Context,
     behaviour: Behaviour,
     logs: Annotated[
-        list[Path], typer.Argument(metavar="LOGS...", help="Folders with logs and black boxes, or files.")
+        list[Path], typer.Argument(metavar="LOG...", help="Folders with logs and black boxes, or files.")
     ],
     output: Annotated[
         Path | None,
@@ -41,7 +41,8 @@ def report(
     """Tell people how a flight went: what was asked, what was achieved, what happened.
 
     Planned against flown, times, energy, photos, faults, orders and links, on one page that needs no
-    network. What is planned is the behaviour as simulated, with the answers that its conditions gave.
+    network. What is planned is the behaviour as simulated, choosing as the flight did.
+
     Example: mmrs report mission/ mission/logs -o report.html
     """
     from mmrs_core.cli.behaviours import load_behaviour

@@ -134,7 +134,9 @@ def _map(picture: Picture, only: int | None = None) -> str:
 
 
 def _foot(report: Report) -> str:
-    off = "Distances are metres, times minutes and seconds since the run began"
-    drawn = f"{off}; it took {clock(report.duration)}." if report.duration else f"{off}."
-    ways = sum(robot.way or 0.0 for robot in report.robots)
-    return element("footer", None, element("p", None, text(f"{drawn} All robots travelled {metres(ways)}.")))
+    ways = [robot.way for robot in report.robots if robot.way is not None]
+    all_ways = f" All robots travelled {metres(sum(ways))}." if len(ways) == len(report.robots) else ""
+    words = (
+        f"Times are minutes and seconds since the run began, which took {clock(report.duration)}.{all_ways}"
+    )
+    return element("footer", None, element("p", None, text(words)))

@@ -114,6 +114,11 @@ def test_a_folder_with_neither_log_nor_box_is_refused(flight, tmp_path):
         flight(tmp_path)
 
 
+def test_a_folder_that_is_not_there_is_named(flight, tmp_path):
+    with pytest.raises(UnreadableError, match="gone: no such file or folder"):
+        flight(tmp_path / "gone")
+
+
 def test_a_simulation_never_replaces_the_black_box_of_a_flight(run, behaviour, types, folder):
     box = folder / "alpha.blackbox.ndjson"
     box.write_text(box_line(kind="start", link="udpin:0.0.0.0:14550", vehicle="copter"))
