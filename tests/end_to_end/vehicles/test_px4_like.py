@@ -1,0 +1,58 @@
+"""Generated controllers on our vehicles that behave as PX4's documentation says. No PX4 has flown by them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+from example_flight.fleets import free_port
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
+from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.sitl import Host, Settings, SimulatedVehicle
+from mmrs_core.testing.programs import target_input, two_drones
+
+SPEEDUP = 10.0
+OFFBOARD, MISSION = "guided", "auto"
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    """Return two drones that have flown: program, folder, vehicles by robot, and the ended process."""
+    folder, program, vehicles, links = tmp_path_factory.mktemp("flown"), two_drones(), {}, []
+    write(render(MAVLINK_PYTHON, target_input(program)), folder)
+    degrees = degrees_of([robot.home[:2] for robot in program.robots], program.frame)
+    for number, (robot, place) in enumerate(zip(program.robots, degrees, strict=True), start=1):
+        port = free_port()
+        settings = Settings("copter", *place, system=number, firmware="px4")
+        vehicles[robot.id] = SimulatedVehicle(port, settings, speedup=SPEEDUP)
+        links += ["--connect", f"{robot.id}=udpin:127.0.0.1:{port}@{number}"]
+    host = Host(list(vehicles.values()))
+    host.start()
+    command = [sys.executable, "fleet.py", *links, "--speedup", str(SPEEDUP)]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+    host.stop()
+    for vehicle in vehicles.values():
+        vehicle.radio.close()
+    return program, folder, vehicles, done
+
+
+def test_they_fly_and_their_logs_replay(flown):
+    program, folder, vehicles, done = flown
+    assert done.returncode == 0, done.stderr
+    result = replay(program, read_logs([folder / "logs"]))
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+    assert not any(vehicle.autopilot.armed for vehicle in vehicles.values())
+
+
+def test_runs_are_missions_and_the_rest_is_offboard(flown):
+    _, _, vehicles, _ = flown
+    names = {number: name for name, number in vehicles["alpha"].autopilot.numbers.items()}
+    entered = [names[number] for _, number in vehicles["alpha"].autopilot.modes]
+    assert OFFBOARD in entered
+    assert MISSION in entered
