@@ -1,0 +1,49 @@
+"""Generated controllers with a simulated vehicle that behaves as PX4's documents say: no PX4 has flown."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
+
+OFFBOARD, TAKE_OFF, MISSION, LAND = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
+ROUND = [(0.0, 60.0, 20.0), (0.0, 120.0, 20.0), (0.0, 180.0, 20.0), (60.0, 180.0, 20.0)]
+
+
+def mission():
+    """Return a robot that steps to a first place, flies a run of three, and steps back."""
+    moves = [take_off("up", 20.0), *(go_to(f"p{n}", place) for n, place in enumerate(ROUND))]
+    moves += [go_to("back", (0.0, 0.0, 20.0)), move("down", "Land", uri=MULTICOPTER)]
+    fluid = {n: Transition(n, n + 1, fluid=True) for n in (3, 4)}
+    return program(robot_program("alpha", moves, transitions=fluid))
+
+
+@pytest.fixture(scope="module")
+def flown(new_controllers, new_hangar, tmp_path_factory):
+    """Return the controllers, what they said, and the vehicle after the flight."""
+    made = new_controllers(tmp_path_factory.mktemp("px4") / "controllers", mission())
+    with new_hangar() as switch_on:
+        vehicles, links = switch_on(made.program, speedup=10.0, firmware="px4")
+        code, said = made.run("fleet.py", *links, patience=120.0)
+    assert code == 0, said
+    return made, said, vehicles["alpha"].autopilot
+
+
+def test_a_controller_steps_in_offboard_and_flies_runs_as_missions(flown):
+    made, _, autopilot = flown
+    assert made.replayed().complaints == ()
+    modes = [mode for _, mode in autopilot.modes if mode in (OFFBOARD, MISSION, TAKE_OFF, LAND)]
+    assert modes == [TAKE_OFF, OFFBOARD, MISSION, OFFBOARD, LAND]
+
+
+def test_every_place_is_passed(flown):
+    track = flown[2].track
+    for east, north, up in ROUND:
+        assert min(abs(n - north) + abs(e - east) + abs(u - up) for _, n, e, u in track) < 4.0
+
+
+def test_a_px4_is_told_what_to_do_when_the_link_is_lost(flown):
+    _, said, autopilot = flown
+    assert autopilot.parameters["NAV_DLL_ACT"] == 2
+    assert "NAV_DLL_ACT = " in said

@@ -1,0 +1,170 @@
+"""Who has the vehicle, and what it says when it does not obey."""
+
+from __future__ import annotations
+
+import pytest
+from mavlink_peer import acknowledged, eventually, linked
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight import Geographic, modes
+from mmrs_core.flight.ardupilot import MavlinkVehicle
+from mmrs_core.flight.commands import Unanswered
+from mmrs_core.flight.faults import Fault, Refused
+from mmrs_core.flight.helm import Helm
+from mmrs_core.flight.telemetry import Telemetry
+
+HOME = Geographic(42.37, 13.35, 0.0)
+ARM, TAKE_OFF, PHOTO = 400, 22, 2000
+LOITER, RTL, LAND = 5, 6, 9
+FLYING = mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_IN_AIR)
+
+
+def text(words: str):
+    return mavlink.MAVLink_statustext_message(2, words.encode())
+
+
+class Vehicle:
+    """Obeys commands, but for those that it has other results for."""
+
+    def __init__(self, wire, **results: int) -> None:
+        self.wire = wire
+        self.results = results
+        self.mode, self.armed = 0, False
+
+    def __call__(self, message):
+        if message.get_type() != "COMMAND_LONG":
+            return
+        result = self.results.get(f"c{message.command}", 0)
+        if result == 0 and message.command == mavlink.MAV_CMD_DO_SET_MODE:
+            self.mode = int(message.param2)
+        if result == 0 and message.command == ARM:
+            self.armed = bool(message.param1)
+        yield acknowledged(message.command, result)
+        self.wire.beat(mode=self.mode, armed=self.armed)
+
+
+@pytest.fixture
+def steered():
+    """Return a function that gives a helm, its telemetry, the vehicle and the wire to it."""
+    contexts = []
+
+    def steer(**results):
+        context = linked(speedup=10.0)
+        link, wire = context.__enter__()
+        contexts.append(context)
+        wire.answer = vehicle = Vehicle(wire, **results)
+        telemetry = Telemetry(link, HOME)
+        return Helm(link, telemetry, "copter"), telemetry, vehicle, wire
+
+    yield steer
+    for context in contexts:
+        context.__exit__(None, None, None)
+
+
+def in_mode(wire, telemetry, mode: int) -> None:
+    wire.beat(mode=mode, armed=True)
+    eventually(lambda: telemetry.mode() == mode)
+
+
+def test_a_mode_is_believed_when_a_heartbeat_shows_it(steered):
+    helm, telemetry, _, _ = steered()
+    helm.arm()
+    assert (telemetry.mode(), telemetry.armed()) == (4, True)
+    helm.check()
+
+
+def test_a_mode_that_was_acknowledged_and_never_shown_is_refused(steered):
+    helm, _, _, wire = steered()
+    wire.answer = lambda message: (
+        [acknowledged(message.command)] if message.get_type() == "COMMAND_LONG" else []
+    )
+    with pytest.raises(Refused, match="does not go into mode land"):
+        helm.enter(modes.LAND)
+
+
+@pytest.mark.parametrize("mode", [LOITER, RTL, LAND, 0])
+def test_a_mode_that_nobody_asked_for_is_a_pilot(steered, mode):
+    helm, telemetry, _, wire = steered()
+    helm.arm()
+    in_mode(wire, telemetry, mode)
+    with pytest.raises(Fault, match="left mode guided: somebody else has taken over") as fault:
+        helm.check()
+    assert fault.value.event == "TAKEN_OVER"
+
+
+@pytest.mark.parametrize(("mode", "event"), [(LAND, "POSITION_LOST"), (LOITER, "TAKEN_OVER")])
+def test_what_the_vehicle_answers_by_itself_is_no_pilot_but_a_stick_always_is(steered, mode, event):
+    helm, telemetry, _, wire = steered()
+    helm.arm()
+    wire.say(text("EKF Failsafe: changed to LAND Mode"))
+    in_mode(wire, telemetry, mode)
+    with pytest.raises(Fault) as fault:
+        helm.check()
+    assert fault.value.event == event
+
+
+def test_a_mode_that_is_being_changed_is_nobodys(steered):
+    helm, telemetry, _, wire = steered()
+    helm.arm()
+    helm.let_go()
+    in_mode(wire, telemetry, LOITER)
+    helm.check()
+
+
+def test_a_vehicle_that_does_not_arm_says_why(steered):
+    helm, _, _, wire = steered(c400=mavlink.MAV_RESULT_FAILED)
+    wire.say(text("Arm: Throttle too high"))
+    with pytest.raises(
+        Refused, match="COMPONENT_ARM_DISARM: the vehicle answers 'failed': Arm: Throttle too high"
+    ):
+        helm.arm()
+
+
+def test_a_take_off_whose_first_answer_was_lost_is_no_refusal(steered):
+    helm, _, _, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
+    wire.say(FLYING)
+    helm.leave_ground(20.0)
+
+
+def test_a_take_off_that_is_refused_on_the_ground_is(steered):
+    helm, _, _, _ = steered(c22=mavlink.MAV_RESULT_FAILED)
+    with pytest.raises(Refused, match="NAV_TAKEOFF: the vehicle answers 'failed'"):
+        helm.leave_ground(20.0)
+
+
+@pytest.fixture
+def camera():
+    """Return a vehicle with a camera, and the wire to it."""
+    with linked(speedup=10.0) as (link, wire):
+        wire.answer = Vehicle(wire)
+        yield MavlinkVehicle(link, "copter", HOME), wire
+
+
+IMAGE = mavlink.MAVLink_camera_image_captured_message(0, 0, 0, 0, 0, 0, 0, [1, 0, 0, 0], 1, 1, b"")
+NO_IMAGE = mavlink.MAVLink_camera_image_captured_message(0, 0, 0, 0, 0, 0, 0, [1, 0, 0, 0], 1, 0, b"")
+FEEDBACK = mavlink.MAVLink_camera_feedback_message(0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(("told", "component"), [(IMAGE, 100), (FEEDBACK, 1)])
+def test_an_image_that_was_promised_is_waited_for(camera, told, component):
+    vehicle, wire = camera
+    obey = wire.answer
+
+    def answer(message):
+        yield from obey(message)
+        if message.get_type() == "COMMAND_LONG" and message.command == PHOTO:
+            wire.say(told, component=component)
+
+    wire.answer = answer
+    vehicle.operate(PHOTO, (0.0, 0.0, 1.0), confirmed=True)
+
+
+@pytest.mark.parametrize("told", [None, NO_IMAGE])
+def test_an_image_that_never_comes_is_a_silent_device(camera, monkeypatch, told):
+    monkeypatch.setattr("mmrs_core.flight.ardupilot.IMAGE_SECONDS", 2.0)
+    vehicle, wire = camera
+    if told is not None:
+        wire.say(told, component=100)
+    vehicle.operate(PHOTO, (0.0, 0.0, 1.0))
+    with pytest.raises(Unanswered, match="IMAGE_START_CAPTURE: no image was told within 2 s"):
+        vehicle.operate(PHOTO, (0.0, 0.0, 1.0), confirmed=True)

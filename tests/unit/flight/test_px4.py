@@ -1,0 +1,175 @@
+"""PX4's way of being steered, as far as it can be told without one: set-points, modes, missions."""
+
+from __future__ import annotations
+
+import threading
+from itertools import pairwise
+from math import isnan, radians
+
+import pytest
+from mavlink_peer import ARDUPILOT, PX4, acknowledged, eventually, linked
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight import Geographic, modes
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.habits import ArduPilot
+from mmrs_core.flight.helm import Helm
+from mmrs_core.flight.items import Item
+from mmrs_core.flight.px4 import Px4
+from mmrs_core.flight.telemetry import Telemetry
+
+HOME = Geographic(42.37, 13.35, 0.0)
+NORTH = Geographic(42.371, 13.35, 20.0)
+OFFBOARD, LOITER, MISSION, TAKE_OFF, POSITION = 0x6_0000, 0x304_0000, 0x404_0000, 0x204_0000, 0x3_0000
+GLOBAL_INT = 5
+
+
+def here(height: float = 20.0):
+    place = (423_700_000, 133_500_000, 700_000 + round(height * 1000), round(height * 1000))
+    return mavlink.MAVLink_global_position_int_message(0, *place, 0, 0, 0, 9000)
+
+
+class Autopilot:
+    """Grants modes as a PX4 does: OFFBOARD only while set-points come."""
+
+    def __init__(self, wire) -> None:
+        self.wire = wire
+        self.mode = LOITER
+        self.armed = True
+        self.points: list[object] = []
+
+    def __call__(self, message):
+        kind = message.get_type()
+        if kind.startswith("SET_POSITION_TARGET"):
+            self.points.append(message)
+            return
+        if kind != "COMMAND_LONG":
+            return
+        if message.command == mavlink.MAV_CMD_DO_SET_MODE:
+            number = modes.px4_number(int(message.param2), int(message.param3))
+            if number == OFFBOARD and len(self.points) < 3:
+                yield acknowledged(message.command, mavlink.MAV_RESULT_DENIED)
+                return
+            self.mode = number
+        yield acknowledged(message.command)
+        self.wire.beat(autopilot=PX4, mode=self.mode, armed=self.armed)
+
+
+@pytest.fixture
+def px4():
+    """Return a helm, its telemetry, and the PX4 that it steers, in the air."""
+    with linked(autopilot=PX4, speedup=10.0) as (link, wire):
+        wire.answer = autopilot = Autopilot(wire)
+        telemetry = Telemetry(link, HOME)
+        wire.say(here())
+        wire.beat(autopilot=PX4, mode=LOITER, armed=True)
+        eventually(telemetry.armed)
+        helm = Helm(link, telemetry, "copter")
+        yield helm, telemetry, autopilot
+        helm.habits.end_guiding()
+
+
+def test_modes_are_main_and_sub_modes():
+    assert [modes.px4_number(*modes.PX4_MODES[name]) for name in (modes.GUIDED, modes.HOLD, modes.AUTO)] == [
+        OFFBOARD,
+        LOITER,
+        MISSION,
+    ]
+
+
+def test_the_heartbeat_says_which_habits_count(px4):
+    assert isinstance(px4[0].habits, Px4)
+    with linked(autopilot=ARDUPILOT) as (link, _):
+        assert isinstance(Helm(link, Telemetry(link, HOME), "copter").habits, ArduPilot)
+
+
+def test_set_points_come_before_offboard_is_asked_for_and_go_on(px4):
+    helm, telemetry, autopilot = px4
+    helm.enter(modes.GUIDED)
+    assert telemetry.mode() == OFFBOARD
+    before = len(autopilot.points)
+    assert before >= 10
+    eventually(lambda: len(autopilot.points) > before + 10)
+
+
+def test_set_points_begin_where_the_vehicle_is_above_sea_level(px4):
+    helm, _, autopilot = px4
+    helm.enter(modes.GUIDED)
+    first = autopilot.points[0]
+    assert (first.coordinate_frame, first.lat_int, first.lon_int) == (GLOBAL_INT, 423_700_000, 133_500_000)
+    assert first.alt == pytest.approx(720.0)
+    assert first.yaw == pytest.approx(radians(90.0))
+
+
+def test_set_points_move_along_the_leg_at_the_commanded_speed(px4):
+    helm, _, autopilot = px4
+    helm.enter(modes.GUIDED)
+    helm.habits.aim(NORTH, 0.0, 5.0)
+    begun = len(autopilot.points)
+    eventually(lambda: len(autopilot.points) > begun + 30)
+    metres = [(point.lat_int - 423_700_000) * 1e-7 * 111_319.49 for point in autopilot.points[begun:]]
+    assert metres == sorted(metres)
+    steps = [after - before for before, after in pairwise(metres[3:])]
+    assert 0.2 < sum(steps) / len(steps) < 1.5
+    assert metres[-1] < 111.0
+
+
+def test_without_a_speed_the_set_point_is_the_target(px4):
+    helm, _, autopilot = px4
+    helm.enter(modes.GUIDED)
+    helm.habits.aim(NORTH, 0.0, None)
+    eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
+
+
+def test_set_points_end_after_another_mode_is_there(px4):
+    helm, telemetry, autopilot = px4
+    helm.enter(modes.GUIDED)
+    helm.enter(modes.HOLD)
+    assert telemetry.mode() == LOITER
+    threading.Event().wait(0.05)
+    count = len(autopilot.points)
+    threading.Event().wait(0.2)
+    assert len(autopilot.points) == count
+
+
+def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
+    helm, telemetry, autopilot = px4
+    helm.enter(modes.GUIDED)
+    autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
+    eventually(lambda: telemetry.mode() == POSITION)
+    with pytest.raises(Fault, match="somebody else has taken over") as fault:
+        helm.check()
+    assert fault.value.event == "TAKEN_OVER"
+    threading.Event().wait(0.05)
+    count = len(autopilot.points)
+    threading.Event().wait(0.2)
+    assert len(autopilot.points) == count
+
+
+def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_modes(px4):
+    helm, telemetry, autopilot = px4
+    helm.leave_ground(20.0)
+    sent = next(each for each in reversed(autopilot.wire.of("COMMAND_LONG")) if each.command == 22)
+    assert sent.param7 == pytest.approx(720.0)
+    assert isnan(sent.param5)
+    for mode in (TAKE_OFF, LOITER):
+        autopilot.wire.beat(autopilot=PX4, mode=mode, armed=True)
+        eventually(lambda mode=mode: telemetry.mode() == mode)
+        helm.check()
+    autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
+    eventually(lambda: telemetry.mode() == POSITION)
+    with pytest.raises(Fault, match="left mode take-off"):
+        helm.check()
+
+
+def test_a_mission_has_no_home(px4):
+    items = [Item(16, x=n) for n in range(3)]
+    habits = px4[0].habits
+    assert list(habits.mission(items)) == items[1:]
+    assert habits.number(1) == 0
+
+
+def test_no_speed_is_commanded_where_set_points_have_it(px4):
+    helm, _, autopilot = px4
+    helm.pace(5.0)
+    assert not [each for each in autopilot.wire.of("COMMAND_LONG") if each.command == 178]
