@@ -290,6 +290,7 @@ def _main() -> int:
     parser.add_argument("--size", type=int, default=6)
     parser.add_argument("--listen", action="append", default=[])
     parser.add_argument("--connect", action="append", default=[])
+    parser.add_argument("--config", type=Path)
     parser.add_argument("--gateway", type=Path, help="folder of a gateway's file")
     parser.add_argument("--again", action="store_true", help="started again, after whatever end")
     parser.add_argument("--pause", type=float, default=0.0, help="seconds before each notify")
@@ -320,7 +321,9 @@ def _zenoh_bus(made, given, folder, records):
     from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
 
     names = [each.id for each in made.robots]
-    carrier = ZenohCarrier("m", RUN, names, Endpoints(tuple(given.listen), tuple(given.connect)))
+    carrier = ZenohCarrier(
+        "m", RUN, names, Endpoints(tuple(given.listen), tuple(given.connect), given.config)
+    )
     bus = shared_bus(made, [given.robot], RUN, folder, carrier, records)
     bus.await_change = bus.node.await_change
     return bus

@@ -1,9 +1,10 @@
 """The bus: slots of robots in one process or in many, and notifies that set them exactly once.
 
 A slot belongs to its robot. A notify is a command to the owner in two steps, so that the logs, merged
-by logical time, tell what happened: ``owner.py`` and ``errands.py`` say how, ``words.py`` with what messages. ``node.py``
-is one process's end; ``carrier.py`` says what carries messages, and ``over_zenoh.py`` is one that
-reaches other processes and machines. ``gateway.py`` lets programs without Zenoh take part.
+by logical time, tell what happened: ``owner.py`` and ``errands.py`` say how, ``words.py`` with what
+messages. ``node.py`` is one process's end; ``carrier.py`` says what carries messages, and
+``over_zenoh.py`` is one that reaches other processes and machines. ``gateway.py`` lets programs without
+Zenoh take part.
 """
 
 from .carrier import Carrier, Hub

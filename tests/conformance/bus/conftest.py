@@ -13,6 +13,7 @@ from pathlib import Path
 import bus_walking
 import pytest
 from bus_walking import RUN, Gone, Walker, logged
+from cut_proxy import CutProxy
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.flight.bus import FileJournal, Hub, Node
@@ -202,16 +203,31 @@ class _Reachable:
 
 
 class ProcessFleet(Fleet):
-    """Robots in processes of their own, which reach each other by Zenoh over loopback."""
+    """Robots in processes of their own, which reach each other by Zenoh over loopback.
+
+    They know of each other nothing but proxies, which can be cut; nobody tells them of other ways.
+    """
 
     def __init__(self, *args) -> None:
         super().__init__(*args)
         self.ports = {robot: free_port() for robot in self.names}
+        self.proxies = {robot: CutProxy(port) for robot, port in self.ports.items()}
         self.processes: dict[str, list[subprocess.Popen]] = {}
 
+    def split(self) -> None:
+        for proxy in self.proxies.values():
+            proxy.cut()
+
+    def heal(self) -> None:
+        for proxy in self.proxies.values():
+            proxy.heal()
+
     def endpoints(self, robot: str) -> list[str]:
-        others = [port for other, port in self.ports.items() if other != robot]
-        listen = ["--listen", f"tcp/127.0.0.1:{self.ports[robot]}"]
+        others = [proxy.port for other, proxy in self.proxies.items() if other != robot]
+        self.folder_of(robot).mkdir(exist_ok=True)
+        alone = self.folder_of(robot) / "no-gossip.json5"
+        alone.write_text('{"scouting": {"gossip": {"enabled": false}}}')
+        listen = ["--config", str(alone), "--listen", f"tcp/127.0.0.1:{self.ports[robot]}"]
         return listen + [word for port in others for word in ("--connect", f"tcp/127.0.0.1:{port}")]
 
     def start(self, robot: str, *die: str, again: bool = False, pause: float = 0.0) -> None:
@@ -243,6 +259,8 @@ class ProcessFleet(Fleet):
         for robot in self.processes:
             self.thaw(robot)
             self.kill(robot)
+        for proxy in self.proxies.values():
+            proxy.close()
 
 
 class GatewayFleet(ProcessFleet):
@@ -286,9 +304,10 @@ from mmrs_core.flight.bus.over_zenoh import Endpoints
 behaviour, size, robot, folder, die, *ways = sys.argv[1:]
 listen = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--listen")
 connect = tuple(ways[i + 1] for i, word in enumerate(ways) if word == "--connect")
+config = Path(ways[ways.index("--config") + 1])
 made = BEHAVIOURS[behaviour](int(size))
 object.__setattr__(made, "name", "m")
-found = _gateway(made, robot, Endpoints(listen, connect), RUN, Path(folder), 0)
+found = _gateway(made, robot, Endpoints(listen, connect, config), RUN, Path(folder), 0)
 enter = found._enter
 found._enter = lambda recorded: die_after_applying(enter(recorded), die.split(","))
 _until_interrupted(found)
@@ -309,3 +328,12 @@ def fleet(request, tmp_path):
     yield make
     for each in made:
         each.close()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Leave to the thorough profile what takes seconds and differs least from what the fast one runs."""
+    for item in items:
+        slow = "frozen" in item.name or "split" in item.name
+        if slow and Path(item.fspath).parent == Path(__file__).parent and "[zenoh" not in item.name:
+            item.add_marker(pytest.mark.thorough)

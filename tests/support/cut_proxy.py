@@ -1,0 +1,69 @@
+"""A TCP proxy on loopback that can be cut: nothing passes, nobody is told, until it heals."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from contextlib import suppress
+
+
+class CutProxy:
+    """Passes bytes on to a port of this machine; what was connected before a cut is closed when it heals."""
+
+    def __init__(self, target: int) -> None:
+        """Listen at a port of its own."""
+        self._target = target
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port: int = self._listener.getsockname()[1]
+        self._open = threading.Event()
+        self._open.set()
+        self._sockets: list[socket.socket] = []
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def cut(self) -> None:
+        """Pass nothing on from now."""
+        self._open.clear()
+
+    def heal(self) -> None:
+        """Pass on what comes by new connections."""
+        for each in self._sockets:
+            _shut(each)
+        self._sockets.clear()
+        self._open.set()
+
+    def close(self) -> None:
+        """Stop."""
+        _shut(self._listener)
+        self.heal()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                caller, _ = self._listener.accept()
+                self._open.wait()
+                called = socket.create_connection(("127.0.0.1", self._target))
+            except ConnectionRefusedError:
+                _shut(caller)
+                continue
+            except OSError:
+                return
+            self._sockets += [caller, called]
+            for one, other in ((caller, called), (called, caller)):
+                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                threading.Thread(target=self._pass, args=(one, other), daemon=True).start()
+
+    def _pass(self, one: socket.socket, other: socket.socket) -> None:
+        try:
+            while data := one.recv(65_536):
+                self._open.wait()
+                other.sendall(data)
+        except OSError:
+            self._open.wait()
+        _shut(one)
+        _shut(other)
+
+
+def _shut(each: socket.socket) -> None:
+    with suppress(OSError):  # it is closed already
+        each.shutdown(socket.SHUT_RDWR)
+    each.close()
