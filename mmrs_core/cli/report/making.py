@@ -25,8 +25,9 @@ from mmrs_core.cli.report.energies import energy_of
 from mmrs_core.cli.report.events import events_of, injected_by, readings_of
 from mmrs_core.cli.report.links import link_of
 from mmrs_core.cli.report.privacy import without_secrets
+from mmrs_core.cli.report.separations import separations_of, under_way
 from mmrs_core.cli.report.tasks import task_reports
-from mmrs_core.cli.report.values import Approach, PhotoReport, Report, RobotReport
+from mmrs_core.cli.report.values import Approach, PhotoReport, Report, RobotReport, Separation
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.pipeline import Place as Surroundings
 from mmrs_core.scene import Name
@@ -82,6 +83,7 @@ def report_of(given: Given) -> Report:
         waits=wait_reports(program, flight, plan),
         energies=tuple(energy_of(flown, plan, program.reserve) for flown in robots),
         approaches=tuple(_approaches(given, places)),
+        separations=tuple(_separations(given, legs, places)),
         photos=tuple(_photos(given, places)),
         readings=tuple(
             reading
@@ -140,6 +142,15 @@ def _approaches(given: Given, places: Places) -> Iterator[Approach]:
         own = robot_type.half_diagonal + given.program.position_error if robot_type is not None else None
         areas = [area for area in given.place.areas or () if area.concerns(robot.type_name)]
         yield from approaches_of(robot.id, given.flight.robots[robot.id].track, areas, own, places.of)
+
+
+def _separations(
+    given: Given, legs: Mapping[str, tuple[PlannedLeg, ...]], places: Places
+) -> Iterator[Separation]:
+    program = given.program
+    apart, flown = program.minimum_separation, given.flight.robots
+    ways = [(flown[robot.id], under_way(flown[robot.id], legs[robot.id])) for robot in program.robots]
+    yield from separations_of(ways, None if apart is None else apart + 2 * program.position_error, places.of)
 
 
 def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:

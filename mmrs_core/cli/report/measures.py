@@ -8,8 +8,11 @@ from collections.abc import Mapping
 from mmrs_core.cli.figures import clock, quantity
 from mmrs_core.cli.preview.markup import element, text
 from mmrs_core.cli.report.tables import Markup, badge, folded, section, table
-from mmrs_core.cli.report.values import Approach, Report
+from mmrs_core.cli.report.values import Approach, Report, Separation
 from mmrs_core.cli.report.words import UNKNOWN, level, metres, percent, place, seconds
+
+_PAIRS = 20
+"""How many pairs of robots are shown at once."""
 
 
 def deviations(report: Report) -> str:
@@ -69,7 +72,29 @@ def approaches(report: Report) -> str:
     return section("Distances to forbidden areas and obstacles", table(head, rows) if rows else "", note=note)
 
 
-def _kept(approach: Approach) -> Markup:
+def separations(report: Report) -> str:
+    """Return how near robots came to each other, the nearest first."""
+    rows = [
+        (
+            f"{each.robot}, {each.other}",
+            metres(each.kept),
+            metres(each.required) if each.required is not None else "nothing asked for",
+            _kept(each) if each.required is not None else "",
+            clock(each.time),
+            place(each.where),
+        )
+        for each in sorted(report.separations, key=lambda each: each.kept)
+    ]
+    head = ("robots", "smallest distance", "required", "verdict", "when", "where the first was")
+    note = (
+        "While both were under way; each went straight between its fixes. Required: the separation that the"
+        " mission asks for, and the position error of both."
+    )
+    rest = folded(f"all {len(rows)} pairs", table(head, rows)) if len(rows) > _PAIRS else ""
+    return section("Distances between robots", table(head, rows[:_PAIRS]) if rows else "", rest, note=note)
+
+
+def _kept(approach: Approach | Separation) -> Markup:
     if approach.required is None:
         return badge(UNKNOWN, "none")
     return badge("too near", "bad") if approach.too_near else badge("kept", "good")

@@ -89,6 +89,7 @@ def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
     yield section("Heights above the origin", _wide(profile_markup(picture)), note="Dashed grey: as planned.")
     yield measures.deviations(report)
     yield measures.approaches(report)
+    yield measures.separations(report)
     yield measures.energies(report)
     yield sections.waits(report)
     legs = given.legs()

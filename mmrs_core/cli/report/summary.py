@@ -20,7 +20,8 @@ def _verdict(report: Report) -> tuple[str, str]:
     asked = [task for task in report.tasks if task.status is not Status.NOT_CHOSEN]
     done = sum(task.status is Status.DONE for task in asked)
     ended = sum(robot.ended_early for robot in report.robots)
-    near = any(approach.too_near for approach in report.approaches)
+    near = any(each.too_near for each in report.approaches)
+    near = near or any(each.too_near for each in report.separations)
     whole = "all robots came to the end of their programs" if report.outcome == "success" else ""
     tasks = f"{done} of {len(asked)} tasks done" if asked else whole
     early = f"{ended} robot{'s' * (ended != 1)} ended early" if ended else ""

@@ -138,6 +138,27 @@ class Approach:
 
 
 @dataclass(frozen=True, slots=True)
+class Separation:
+    """How near two robots came to each other, and where the first was then.
+
+    Attributes:
+        kept: metres. required: None where nothing was asked for.
+    """
+
+    robot: str
+    other: str
+    kept: float
+    required: float | None
+    where: Place
+    time: float
+
+    @property
+    def too_near(self) -> bool:
+        """Return whether they were nearer than they might have been, by more than a millimetre."""
+        return self.required is not None and self.kept < self.required - 1e-3
+
+
+@dataclass(frozen=True, slots=True)
 class PhotoReport:
     """A photo; `state` is ``taken``, ``not confirmed`` or ``simulated``."""
 
@@ -254,6 +275,7 @@ class Report:
     waits: tuple[WaitReport, ...]
     energies: tuple[EnergyReport, ...]
     approaches: tuple[Approach, ...]
+    separations: tuple[Separation, ...]
     photos: tuple[PhotoReport, ...]
     readings: tuple[Reading, ...]
     events: tuple[Event, ...]
