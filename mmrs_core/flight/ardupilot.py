@@ -254,6 +254,13 @@ class MavlinkVehicle:
             self._helm.arm()
             self._steering.stay()
 
+    def take_back(self) -> None:
+        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        try:
+            self._helm.check()
+        except Fault:
+            self._helm.let_go()
+
     def surface(self) -> None:
         """Come up to the water surface."""
         self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)

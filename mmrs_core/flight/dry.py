@@ -94,6 +94,9 @@ class DryVehicle:
     def check(self) -> None:
         """Do nothing: nobody takes over what is not there."""
 
+    def take_back(self) -> None:
+        """Do nothing: it does nothing by itself."""
+
     def surface(self) -> None:
         """Be at the surface."""
         self._mode = SURFACE

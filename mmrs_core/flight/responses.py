@@ -73,6 +73,7 @@ def respond(
     """
     if response == NOTHING:
         return False
+    vehicle.take_back()
     if response in (RETURN, "EMERGENCY_AREA"):
         return _go_back(response, robot, vehicle, track, repeat)
     if response == LAND:

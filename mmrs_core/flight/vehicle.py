@@ -102,6 +102,10 @@ class Vehicle(Protocol):
         """
         ...
 
+    def take_back(self) -> None:
+        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        ...
+
     def surface(self) -> None:
         """Come up to the water surface."""
         ...
