@@ -91,7 +91,8 @@ def sitl(
 
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Drone1:gps-lost@60+20'
     """
-    from mmrs_core.cli.rehearsal import Berths, Rehearsal, berths_of, fault_list, plain_berths
+    from mmrs_core.cli.berths import Berths, berths_of, plain_berths
+    from mmrs_core.cli.rehearsal import Rehearsal, fault_list
 
     if fault == ["list"]:
         fault_list()

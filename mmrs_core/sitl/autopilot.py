@@ -51,6 +51,8 @@ class Autopilot:
         patience: seconds that it waits at least for what comes by its link, whatever parameters say.
         beats_now: whether a heartbeat is due because the mode has changed.
         failed: since when each thing is wrong that it watches, or that it has answered that.
+        fence_due: when it looks at its fence again. told_out: whether somebody says that it is out of it.
+        reboots: whether it is to be switched off and on.
         heard: when the ground station that it knows was last heard; None: never.
         steered: when the last set-points came, oldest first.
     """
@@ -75,6 +77,8 @@ class Autopilot:
         self.located, self.unfit = True, ""
         self.obstacle: tuple[float, float] | None = None
         self.breached, self.breaches = False, 0
+        self.told_out, self.reboots = False, False
+        self.fence_due = 0.0
         self.silent = settings.silent
         self.clock_error = 0.0
         self.patience = 0.0
@@ -215,7 +219,7 @@ class Autopilot:
         self._forget()
         self.armed = was_armed and armed
         self.home = home if self.armed else self.home
-        self.breached = False
+        self.breached = self.told_out = self.reboots = False
         self.mode_name = first_mode(self.settings)
         self.mode = self.numbers[self.mode_name]
         self.modes.append((self.time, self.mode))

@@ -175,7 +175,7 @@ def _no_roi(pilot: Autopilot, params: Params) -> int:
 def _reboot(pilot: Autopilot, params: Params) -> int:
     if pilot.armed:
         return FAILED
-    pilot.failed["reboot"] = 1.0
+    pilot.reboots = True
     return ACCEPTED
 
 

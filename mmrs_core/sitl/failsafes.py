@@ -181,13 +181,13 @@ OFFBOARD_GAP = 0.5
 
 
 def _watch_fence(pilot: Autopilot) -> None:
-    if pilot.settings.firmware == PX4 or pilot.time < pilot.failed.get("fence due", 0.0):
+    if pilot.settings.firmware == PX4 or pilot.time < pilot.fence_due:
         return
-    pilot.failed["fence due"] = pilot.time + FENCE_SECONDS
+    pilot.fence_due = pilot.time + FENCE_SECONDS
     outside = bool(pilot.parameters["FENCE_ENABLE"]) and pilot.located and outside_fence(pilot)
     if outside and not pilot.breached and pilot.armed:
         breach(pilot)
-    elif not outside and not pilot.failed.get("forced"):
+    elif not outside and not pilot.told_out:
         pilot.breached = False
 
 

@@ -66,13 +66,13 @@ class Faults:
     def breach_fence(self) -> None:
         """Have it report that it has left its fence, and do what FENCE_ACTION says."""
         with self._lock:
-            self._autopilot.failed["forced"] = 1.0
+            self._autopilot.told_out = True
             breach(self._autopilot)
 
     def mend_fence(self) -> None:
         """Have it be inside its fence again."""
         with self._lock:
-            self._autopilot.failed.pop("forced", None)
+            self._autopilot.told_out = False
             self._autopilot.breached = False
 
     def set_battery(self, level: float) -> None:

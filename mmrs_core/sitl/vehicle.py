@@ -10,30 +10,25 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl import parameters, telemetry
+from mmrs_core.sitl import telemetry
 from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.commands import ACCEPTED, complaint, obey, steer
+from mmrs_core.sitl.commands import obey, steer
 from mmrs_core.sitl.faults import Faults
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.items import MISSION, RALLY, Item
+from mmrs_core.sitl.parameter_service import ParameterService
 from mmrs_core.sitl.radio import COMPONENT, Radio
 from mmrs_core.sitl.settings import PX4, Settings
 from mmrs_core.sitl.simulation import advance
+from mmrs_core.sitl.streams import Streams
 from mmrs_core.sitl.transfers import MissionProtocol
 
 Message = Any
 
 YAW_IGNORED = mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
 ABOVE_SEA = frozenset({0, 5})
-UNFIT_SECONDS = 30.0
-GPS_SWITCH = "SIM_GPS1_ENABLE"
-"""By which ArduPilot's simulation, too, switches its GPS receiver off and on."""
-
 REAL_PATIENCE = 2.0
 """Real seconds that it waits at least for what comes by its link, however fast its time goes."""
-
-AT_ONCE = 10
-"""Parameters of a list that are told in one go."""
 
 
 class SimulatedVehicle:
@@ -42,7 +37,7 @@ class SimulatedVehicle:
     Attributes:
         autopilot: what it does; read it freely, its numbers may be a tick old.
         faults: makes things go wrong with it.
-        radio: how it speaks.
+        radio: how it speaks. streams: what it tells by itself. values: its parameters, for the ground.
         received: (seconds, name) of every message that has come for it, but heartbeats.
         speedup: seconds of simulation in a second.
     """
@@ -84,7 +79,8 @@ class SimulatedVehicle:
         self._missions.finished = self._count_items
         self._missions.home = None if given.firmware == PX4 else self._home
         self._late: list[tuple[float, Message]] = []
-        self._listed: list[str] = []
+        self.values = ParameterService(self.autopilot, self.radio.send)
+        self.streams = Streams(self.autopilot, self.radio.send)
         self._host: Host | None = None
         self._begin()
 
@@ -131,24 +127,26 @@ class SimulatedVehicle:
             advance(self.autopilot, real_seconds * self.speedup)
             if self.autopilot.booted != self._booted:
                 self._begin()
-            if self.autopilot.failed.pop("reboot", None):
+            if self.autopilot.reboots:
                 self.autopilot.restart()
             self._missions.busy = self.autopilot.uptime < self.autopilot.settings.boot
             self._missions.go_on(self.autopilot.time, self.autopilot.patience / 4.0)
-            self._tell()
+            self._tell_late()
+            self.streams.go_on()
+            self.values.go_on()
             self.radio.flush()
             if self.radio.late:
                 self.hear()
 
+    def _tell_late(self) -> None:
+        while self._late and self._late[0][0] <= self.autopilot.time:
+            self.radio.send(self._late.pop(0)[1])
+
     def _begin(self) -> None:
         """Begin anew after a boot: what was asked for is forgotten."""
         self._booted = self.autopilot.booted
-        self._periods = {
-            name: 1.0 / rate for name, rate in telemetry.usual_rates(self.autopilot.settings).items()
-        }
-        self._due = dict.fromkeys(self._periods, 0.0)
-        self._unfit_due = 0.0
-        self._listed.clear()
+        self.streams.begin()
+        self.values.begin()
 
     def _is_for_it(self, message: Message) -> bool:
         system = getattr(message, "target_system", 0)
@@ -165,6 +163,7 @@ class SimulatedVehicle:
         if handler is not None:
             handler(self, message)
         else:
+            self.values.take(message)
             self._missions.take(message)
 
     def _hear_ground(self, message: Message) -> None:
@@ -199,25 +198,10 @@ class SimulatedVehicle:
         )
 
     def _interval(self, params: tuple[float, ...]) -> int:
-        name = telemetry.NUMBERS.get(int(params[0]))
-        absent = telemetry.FIRMWARE[self.autopilot.settings.firmware]
-        if name is None or name in absent:
-            return int(mavlink.MAV_RESULT_FAILED)
-        usual = telemetry.usual_rates(self.autopilot.settings)
-        if params[1] < 0.0:
-            self._periods.pop(name, None)
-        else:
-            self._periods[name] = params[1] * 1e-6 or 1.0 / usual.get(name, 1.0)
-            self._due[name] = 0.0
-        return ACCEPTED
+        return self.streams.ask(params[0], params[1])
 
     def _request(self, params: tuple[float, ...]) -> int:
-        name = telemetry.NUMBERS.get(int(params[0]))
-        message = telemetry.TELLERS[name](self.autopilot) if name is not None else None
-        if message is None:
-            return int(mavlink.MAV_RESULT_FAILED)
-        self.radio.send(message)
-        return ACCEPTED
+        return self.streams.tell_now(params[0])
 
     def _capabilities(self, params: tuple[float, ...]) -> int:
         return self._request((float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
@@ -241,31 +225,6 @@ class SimulatedVehicle:
     def _steer_locally(self, message: Message) -> None:
         steer(self.autopilot, (message.x, message.y, -message.z), _heading(message))
 
-    def _set_parameter(self, message: Message) -> None:
-        name, pilot = message.param_id, self.autopilot
-        if name not in pilot.parameters:
-            return
-        value = parameters.decoded(name, message.param_value, message.param_type, pilot.settings.firmware)
-        pilot.parameters[name] = value
-        if name == GPS_SWITCH:
-            pilot.located = bool(value)
-        self._tell_parameter(name)
-
-    def _read_parameter(self, message: Message) -> None:
-        names = list(self.autopilot.parameters)
-        name = names[message.param_index] if 0 <= message.param_index < len(names) else message.param_id
-        if name in self.autopilot.parameters:
-            self._tell_parameter(name)
-
-    def _list_parameters(self, message: Message) -> None:
-        self._listed = list(self.autopilot.parameters)
-
-    def _tell_parameter(self, name: str) -> None:
-        pilot = self.autopilot
-        value, kind = parameters.encoded(name, pilot.parameters[name], pilot.settings.firmware)
-        count, index = len(pilot.parameters), list(pilot.parameters).index(name)
-        self.radio.send(mavlink.MAVLink_param_value_message(name.encode(), value, kind, count, index))
-
     def _synchronise(self, message: Message) -> None:
         if message.tc1 == 0:
             now = telemetry.milliseconds(self.autopilot) * 1_000_000
@@ -285,59 +244,6 @@ class SimulatedVehicle:
         name = {MISSION: "MIS_TOTAL", RALLY: "RALLY_TOTAL"}.get(kind)
         if name in self.autopilot.parameters:
             self.autopilot.parameters[name] = len(self.autopilot.stores[kind])
-
-    def _tell(self) -> None:
-        pilot = self.autopilot
-        if pilot.beats_now:
-            pilot.beats_now = False
-            if pilot.settings.firmware != PX4:
-                self._due["HEARTBEAT"] = 0.0
-        for name, period in self._periods.items():
-            if pilot.time >= self._due[name]:
-                self._due[name] = max(self._due[name] + period, pilot.time - period)
-                self._tell_one(name)
-        self._tell_events()
-
-    def _tell_one(self, name: str) -> None:
-        message = telemetry.TELLERS[name](self.autopilot)
-        if message is not None:
-            self.radio.send(message)
-        if name == "MISSION_CURRENT" and self.autopilot.pending is not None:
-            self.radio.send(mavlink.MAVLink_mission_item_reached_message(self.autopilot.pending))
-            self.autopilot.pending = None
-        if name == "SYS_STATUS":
-            self._tell_values()
-
-    def _tell_values(self) -> None:
-        now = telemetry.milliseconds(self.autopilot)
-        for name, value in self.autopilot.settings.values.items():
-            told = value(self.autopilot.time)
-            self.radio.send(mavlink.MAVLink_named_value_float_message(now, name.encode(), told))
-
-    def _tell_events(self) -> None:
-        pilot = self.autopilot
-        while self._late and self._late[0][0] <= pilot.time:
-            self.radio.send(self._late.pop(0)[1])
-        while pilot.texts:
-            severity, text = pilot.texts.pop(0)
-            self.radio.send(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
-        while pilot.camera.untold:
-            taken = pilot.camera.photos[-pilot.camera.untold]
-            pilot.camera.untold -= 1
-            self.radio.send(telemetry.photo(pilot, taken))
-        for name in self._listed[:AT_ONCE]:
-            self._tell_parameter(name)
-        del self._listed[:AT_ONCE]
-        self._complain()
-
-    def _complain(self) -> None:
-        pilot = self.autopilot
-        if pilot.armed or pilot.uptime < max(self._unfit_due, pilot.settings.ready):
-            return
-        why = complaint(pilot)
-        if why:
-            self._unfit_due = pilot.uptime + UNFIT_SECONDS
-            pilot.say(mavlink.MAV_SEVERITY_CRITICAL, f"PreArm: {why}")
 
 
 def _heading(message: Message) -> float | None:
@@ -359,8 +265,5 @@ _HANDLERS: Mapping[str, Callable[[SimulatedVehicle, Message], None]] = {
     "MISSION_SET_CURRENT": SimulatedVehicle._current,
     "SET_POSITION_TARGET_GLOBAL_INT": SimulatedVehicle._steer_globally,
     "SET_POSITION_TARGET_LOCAL_NED": SimulatedVehicle._steer_locally,
-    "PARAM_SET": SimulatedVehicle._set_parameter,
-    "PARAM_REQUEST_READ": SimulatedVehicle._read_parameter,
-    "PARAM_REQUEST_LIST": SimulatedVehicle._list_parameters,
     "TIMESYNC": SimulatedVehicle._synchronise,
 }

@@ -27,6 +27,7 @@ from mmrs_core.sitl.commands import complaint, obey
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.items import Item
 from mmrs_core.sitl.settings import Settings
+from mmrs_core.sitl.streams import Streams
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 from mmrs_core.sitl.words import deeds_of
 
@@ -46,6 +47,7 @@ class MavsdkVehicle(SimulatedVehicle):
         self._outgoing: deque = deque()
         self._height, self._passed, self._told_item = 0.0, 0, 0
         self._armable: bool | None = None
+        self.streams.tell = self._tell
         self._ground = mavlink.MAVLink(None, *GROUND)
         self._spoken = mavlink.MAVLink(None)
         self._spoken.robust_parsing = True
@@ -156,10 +158,10 @@ class MavsdkVehicle(SimulatedVehicle):
     def _on_rise(self) -> None:
         obey(self.autopilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self._height))
 
-    def _tell_one(self, name: str) -> None:
+    def _tell(self, name: str) -> None:
         tell = _TELLS.get(name)
         if tell is None:
-            super()._tell_one(name)
+            Streams.tell(self.streams, name)
         elif self.autopilot.uptime >= self.autopilot.settings.ready:
             tell(self, self._telemetry)
 
