@@ -43,6 +43,7 @@ OF_ALL = frozenset(
         "DISTANCE_SENSOR",
         "NAMED_VALUE_FLOAT",
         "OBSTACLE_DISTANCE",
+        "RADIO_STATUS",
     }
 )
 """Messages that count as the vehicle's whichever of its components sends them."""
@@ -254,8 +255,8 @@ class Link:
         return True
 
     def hears(self, message: Message, sender: Address | None) -> None:
-        """Take a message from the vehicle's system."""
-        own = message.get_srcComponent() == self.component
+        """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
+        own = (message.get_srcSystem(), message.get_srcComponent()) == (self.system, self.component)
         if own and not self._identity.speaks_from(sender, time.monotonic(), heartbeat=is_autopilot(message)):
             self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
             return

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
 from typing import Any, Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -38,7 +37,7 @@ class Ear(Protocol):
         ...
 
     def hears(self, message: Message, sender: Address | None) -> None:
-        """Take a message from the vehicle's system."""
+        """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
         ...
 
     def learns(self, reason: str) -> None:
@@ -52,7 +51,6 @@ class Radio:
     Attributes:
         dropped: how many frames were not used, by type and reason.
         heard: the systems of all autopilots that have spoken.
-        status: the last RADIO_STATUS of the radio itself; None before.
         trouble: what the port has last complained of; empty once something is heard again.
     """
 
@@ -67,9 +65,7 @@ class Radio:
         self.clock = clock
         self.dropped: Counter[str] = Counter()
         self.heard: set[int] = set()
-        self.status: Message | None = None
         self.trouble = ""
-        self.on_status: Callable[[Message], None] = lambda message: None
         self._port = port
         self._signer = signer
         self._mav = self._parser()
@@ -174,8 +170,9 @@ class Radio:
         elif kind.startswith("UNKNOWN"):
             self.dropped[f"message {kind.removeprefix('UNKNOWN_')}: unknown"] += 1
         elif kind == "RADIO_STATUS":
-            self.status = message
-            self.on_status(message)
+            for ear in self._ears:
+                if ear.component:
+                    ear.hears(message, sender)
         else:
             self._deliver(message, sender)
 

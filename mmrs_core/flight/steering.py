@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, radians
+from math import atan2, degrees, hypot, nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -11,7 +11,7 @@ from .faults import NO_PROGRESS, Fault
 from .helm import Helm
 from .link import Link
 from .places import bearing, distance, offset
-from .program import Geographic, Look, Object, Place
+from .program import Geographic, Local, Look, Object, Place
 from .telemetry import Telemetry
 
 PATIENCE_FACTOR = 4.0
@@ -47,6 +47,8 @@ class Steering:
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         while True:
             self._steer(place, look)
+            if look is not None and isinstance(look.at, Local):
+                self._point(look)
             if self._link.wait(lambda: self._arrived(place, through), RESEND_SECONDS):
                 break
             self._helm.check()
@@ -81,12 +83,34 @@ class Steering:
         self._send_target(self._telemetry.here() if place is None else place, self._heading())
 
     def _point(self, look: Look | None) -> None:
-        if look is not None and look.gimbal and isinstance(look.at, Geographic):
+        if look is None or not look.gimbal:
+            return
+        if isinstance(look.at, Local):
+            self._aim_gimbal(look, look.at)
+        elif isinstance(look.at, Geographic):
             at = (look.at.latitude, look.at.longitude, self._helm.habits.above(look.at.height))
             command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, look.device, 0, 0, 0, *at)
 
+    def _aim_gimbal(self, look: Look, at: Local) -> None:
+        """Turn a gimbal to a place near home: regions of interest are places on the Earth."""
+        here = self._telemetry.here()
+        north, east, up = offset(here, at)
+        pitch, yaw = degrees(atan2(up, hypot(north, east))), (bearing(here, at) - look.angle) % 360.0
+        locked = mavlink.GIMBAL_MANAGER_FLAGS_YAW_LOCK
+        command(
+            self._link,
+            mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+            pitch,
+            yaw,
+            nan,
+            nan,
+            locked,
+            0,
+            look.device,
+        )
+
     def _unpoint(self, look: Look | None) -> None:
-        if look is not None and look.gimbal:
+        if look is not None and look.gimbal and isinstance(look.at, Geographic):
             command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE, look.device)
 
     def _steer(self, place: Place, look: Look | None) -> None:

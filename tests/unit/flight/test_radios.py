@@ -171,6 +171,14 @@ def test_frames_that_are_not_used_are_counted_by_type_and_reason():
         assert link.dropped["unreadable"] == link.garbled > 0
 
 
+def test_what_a_radio_says_of_itself_is_told_to_all_who_use_it(shared):
+    shared.wire.say(
+        mavlink.MAVLink_radio_status_message(180, 170, 100, 30, 30, 0, 0), system=51, component=68
+    )
+    for link in (shared.first, shared.second):
+        assert link.wait(lambda link=link: link.latest("RADIO_STATUS"), 5.0).remrssi == 170
+
+
 def test_a_message_that_was_overtaken_is_no_news():
     with linked() as (link, wire):
         wire.say(mavlink.MAVLink_mission_current_message(5), seq=20)
