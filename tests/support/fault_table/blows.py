@@ -136,7 +136,6 @@ def _interruption(how: str, ends: str) -> Drill:
         _interrupt,
         None,
         _both("--on-stop", how),
-        how == "return",
     )
 
 

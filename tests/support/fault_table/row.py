@@ -28,7 +28,7 @@ class Row:
         ends: where the vehicle comes to rest, as `record.ending` says; ``done``: as if nothing had been.
         within: seconds of the run until the vehicle must answer; None: it need not do anything new.
         least: real seconds that it may take all the same: networks do not become faster with the run.
-        mends: undoes the fault after so many seconds of the run.
+        mends: undoes the fault after so many seconds of the run, or adds to it.
         order: is given instead of a fault; resumes: seconds of the run after which ``resume`` follows.
         fast: whether it is among those that are always tested.
         hands_off: whether nothing but heartbeats may be sent once the controller has noticed.

@@ -34,6 +34,11 @@ def _battery(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.set_battery(0.15)
 
 
+def _stick_and_battery(vehicle: SimulatedVehicle) -> None:
+    _battery(vehicle)
+    _stick(vehicle)
+
+
 def _barely(vehicle: SimulatedVehicle) -> None:
     """Leave a little more than the reserve, but not what the way back takes beside it."""
     vehicle.faults.set_battery(0.215)
@@ -113,7 +118,7 @@ def _link_rows() -> list[Row]:
 
 
 def _pilot_rows() -> list[Row]:
-    return [
+    rows = [
         Row(
             "pilot's stick",
             during,
@@ -133,6 +138,36 @@ def _pilot_rows() -> list[Row]:
             (UP, _stick, "HOLD"),
         )
     ]
+    # Whatever else is wrong at that moment, a pilot goes before it.
+    rows += [
+        Row(
+            "pilot's stick as the battery runs low",
+            during,
+            _policy("BATTERY_LOW", response),
+            _stick_and_battery,
+            "TAKEN_OVER|",
+            "holds",
+            within=None,
+            stay=5.0 if during == AUTO else 20.0,
+            hands_off=True,
+        )
+        for during, response in ((LEG, "RETURN"), (AUTO, "EMERGENCY_AREA"), (AT, "LAND"))
+    ]
+    rows += [
+        Row(
+            "battery low, and pilot's stick on the way back",
+            during,
+            _policy("BATTERY_LOW", response),
+            _battery,
+            "TAKEN_OVER|",
+            "holds",
+            stay=5.0 if during == AUTO else 20.0,
+            mends=(3.0, _stick),
+            hands_off=True,
+        )
+        for during, response in ((AT, "RETURN"), (AUTO, "EMERGENCY_AREA"))
+    ]
+    return rows
 
 
 def _event_rows(

@@ -95,7 +95,7 @@ class Watch:
         if (self._rest[0] if self._rest else "") != self._row.rest:
             problems.append(f"does not end as wanted: {self._row.rest}")
         if self._row.hands_off:
-            self._check_hands_off(self._struck.time)
+            self._check_hands_off(self._struck.time + (self._row.mends[0] if self._row.mends else 0.0))
         if self._row.within is not None:
             limit = max(self._row.within, self._row.least * self._fleet.speedup)
             if self.outcome.answered is None or self.outcome.answered > limit:
