@@ -243,9 +243,7 @@ class ArduCopter(Installed):
 
     def command(self, number: int) -> tuple[list[str], dict[str, str], Path]:
         home, where = self._homes[number], self._own_folder(number)
-        (where / "parameters.parm").write_text(
-            "".join(f"{line}\n" for line in (*self.parameters, f"SYSID_THISMAV {number + 1}")), "ascii"
-        )
+        (where / "parameters.parm").write_text("".join(f"{line}\n" for line in self.parameters), "ascii")
         more = os.environ.get("MMRS_ARDUCOPTER_PARAMETERS", "")
         files = [*filter(None, more.split(",")), str(where / "parameters.parm")]
         command = [

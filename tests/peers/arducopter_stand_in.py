@@ -1,0 +1,46 @@
+"""Takes the command line of ArduCopter's simulation, and flies one of our vehicles instead.
+
+It stands in for the binary in a test of what starts that, and proves nothing about ArduPilot.
+"""
+
+from __future__ import annotations
+
+import argparse
+import socket
+import threading
+from pathlib import Path
+
+from mmrs_core.sitl import Settings, SimulatedVehicle
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    for name in ("--model", "--home", "--speedup", "--defaults", "--sysid", "--serial0", "--serial1", "-I"):
+        parser.add_argument(name, required=True)
+    parser.add_argument("--wipe", action="store_true", required=True)
+    given = parser.parse_args()
+    assert given.model == "quad"
+    assert all(Path(file).is_file() for file in given.defaults.split(","))
+    latitude, longitude, altitude, _ = map(float, given.home.split(","))
+    settings = Settings("copter", latitude, longitude, int(given.sysid), altitude=altitude)
+    host, port = address(given.serial0)
+    vehicle = SimulatedVehicle(port, settings, host=host, speedup=float(given.speedup))
+    send, second = vehicle.radio._transmit, socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def send_to_both(data: bytes) -> None:
+        send(data)
+        second.sendto(data, address(given.serial1))
+
+    vehicle.radio._transmit = send_to_both
+    with vehicle:
+        threading.Event().wait()
+
+
+def address(device: str) -> tuple[str, int]:
+    kind, host, port = device.split(":")
+    assert kind == "udpclient", device
+    return host, int(port)
+
+
+if __name__ == "__main__":
+    main()
