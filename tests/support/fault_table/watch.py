@@ -140,7 +140,7 @@ class Watch:
             self._turned = pilot.time - self._struck.time
 
     def _logged(self) -> bool:
-        if not self._row.event or not self._fleet.process.running():
+        if "" in self._row.event.split("|") or not self._fleet.process.running():
             return True
         steps = self._fleet.steps(self._robot)
         return bool(steps) and steps[-1]["label"] == "fault"
