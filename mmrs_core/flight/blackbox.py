@@ -24,6 +24,7 @@ from __future__ import annotations
 import json
 import os
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, is_dataclass
@@ -90,7 +91,9 @@ class BlackBox:
 
     def write(self, kind: str, **content: object) -> None:
         """Append one line; nothing is raised where that fails."""
-        wall = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        wall = (
+            datetime.fromtimestamp(time.time(), UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        )
         line = {**self._head, "time": round(self._now(), 3), "wall": wall, "kind": kind}
         data = json.dumps(line | self._mark | {name: plain(value) for name, value in content.items()})
         with self._lock:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from .blackbox import BlackBox
+from .bus import Beginning
 from .clock import Clock
 from .conditions import Condition
 from .log import Log
@@ -15,6 +16,7 @@ from .slots import Slots
 from .vehicle import State
 
 Say = Callable[[str], None]
+Meet = Callable[[Callable[[str], None]], Beginning]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +28,7 @@ class Desk:
         stop: set when the robot is to stop.
         say: tells people what goes on.
         know: adds to what the vehicle tells of itself what people have answered.
+        meet: returns when all robots begin, or None where they do not wait for each other.
         dry: whether there is no vehicle.
     """
 
@@ -38,4 +41,5 @@ class Desk:
     stop: threading.Event
     say: Say
     know: Callable[[State], State] = lambda state: state
+    meet: Meet | None = None
     dry: bool = False

@@ -32,6 +32,9 @@ class DryVehicle:
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Do nothing: there is no link to lose."""
 
+    def answer_breach(self, response: str) -> None:
+        """Do nothing: there is no fence."""
+
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
         """Keep the mission."""
         self._items = mission

@@ -24,7 +24,7 @@ from .radios import Radios
 from .resuming import slots_of
 from .screen import say
 from .session import Shared, run_robot
-from .slots import LocalSlots, Slots, recorded_of, shared_slots, strangers_of
+from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
 
 
 def main(
@@ -85,7 +85,7 @@ def _run_all(robots: Sequence[Robot], shared: Shared) -> list[int]:
 
 def _slots(
     parser: argparse.ArgumentParser, robots: Sequence[Robot], options: Options, stack: ExitStack
-) -> Slots:
+) -> BusSlots:
     if options.bus.used:
         from .bus.over_zenoh import Endpoints, ZenohCarrier
 

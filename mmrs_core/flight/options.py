@@ -82,6 +82,7 @@ class Options:
         on_stop: ``hold``, ``return`` or ``land``.
         battery_patience: real seconds to wait for a changed battery when no other robot works.
         fence: whether to upload it.
+        sync: whether all robots begin at one instant.
         inject: faults to be made on purpose.
     """
 
@@ -96,6 +97,7 @@ class Options:
     tolerances: Tolerances
     reach: Reach
     bus: Bus
+    sync: bool
     inject: Injections
 
 
@@ -119,6 +121,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--acceptance", type=float, help="metres from a place that count as there; else by the travel mode")
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
     add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
+    add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
@@ -154,6 +157,7 @@ def options_of(
         tolerances=Tolerances(given.acceptance, given.home_tolerance),
         reach=reach,
         bus=_bus(given),
+        sync=given.sync,
         inject=_inject(parser, reach, given),
     )
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import partial
 
 from .corners import goes_through
-from .desk import Desk
+from .desk import Desk, Meet
 from .doing import Doing
-from .faults import BATTERY_LOW, Fault, Refused
+from .faults import BATTERY_LOW, FENCE_BREACHED, Fault, Refused
 from .journal import Journal
 from .missions import Item
 from .obedience import Obedience
@@ -16,6 +16,7 @@ from .objects import look_at, place_of
 from .places import at_height, distance, ends_of
 from .program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from .recording import fix
+from .responses import policy_for
 from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
 from .uploads import Flight, fence_of, mission_of, rally_of
 from .vehicle import Vehicle
@@ -74,6 +75,8 @@ class Pilot:
         self._prepare()
         if self._desk.log.steps:
             self._take_up_again()
+        elif self._desk.meet is not None:
+            self._meet(self._desk.meet)
         step: Step | None = self._steps[self.journal.move]
         while step is not None:
             step = self._perform(step)
@@ -87,12 +90,36 @@ class Pilot:
             self._watch.renew()
             self.waits.tell_vehicle()
             self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+            self._tell_fence(bool(polygons))
             if not self._watch.restarted:
                 break
         else:
             raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
+
+    def _tell_fence(self, fence: bool) -> None:
+        """Tell the vehicle what to do by itself when it is outside its fence."""
+        if not fence:
+            return
+        try:
+            self._vehicle.answer_breach(policy_for(FENCE_BREACHED, self._robot).response)
+        except Refused as error:
+            self._desk.say(f"{self._robot.id!a}: {error}")
+
+    def _meet(self, meet: Meet) -> None:
+        """Begin together with all other robots."""
+        told: set[str] = set()
+
+        def guard(missing: str) -> None:
+            self._vehicle.rest(0.0)
+            if missing and missing not in told:
+                told.add(missing)
+                self._desk.say(f"{self._robot.id!a} is ready to begin with the others: {missing}")
+
+        begun = meet(guard)
+        why = f"{begun.late * 1e3:.1f} ms after the instant, clocks known to {begun.uncertainty * 1e3:.1f} ms"
+        self.journal.decide("TOGETHER", why, "begins")
 
     def _take_up_again(self) -> None:
         """Be where the interrupted leg began, by the way that the robot came in this sortie."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 import threading
+from contextlib import suppress
 
 _print_lock = threading.Lock()
 
 
 def say(line: str) -> None:
     """Tell people something, one line at a time."""
-    with _print_lock:
+    # Nobody may read any more, or the disk that is written to be full: robots fly on all the same.
+    with _print_lock, suppress(OSError, ValueError):
         print(line, file=sys.stderr, flush=True)

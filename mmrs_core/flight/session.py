@@ -15,9 +15,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .ardupilot import MavlinkVehicle
 from .blackbox import BlackBox, black_box_path
+from .bus import begin_together
 from .conditions import Condition
 from .crews import Crews
-from .desk import Desk
+from .desk import Desk, Meet
 from .dry import DryVehicle
 from .ending import CODES, FAILED, OK, Crew, Ending
 from .faults import CRASHED, Fault, Refused
@@ -33,7 +34,7 @@ from .radios import Radios
 from .recording import Recording
 from .resuming import progress_of
 from .screen import say
-from .slots import Slots
+from .slots import BusSlots
 from .vehicle import Vehicle
 from .watch import Watch
 
@@ -45,7 +46,7 @@ class Shared:
     """What all robots of a process share; `stop` is set when they are to stop."""
 
     options: Options
-    slots: Slots
+    slots: BusSlots
     judgement: Judgement
     decides: Mapping[str, Condition]
     radios: Radios
@@ -180,6 +181,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         stop=shared.stop,
         say=say,
         know=lambda state: replace(state, answers=inbox.answers),
+        meet=_meeting(robot, shared),
         dry=options.dry,
     )
     box.write("start", **_facts(robot, options, link))
@@ -195,6 +197,13 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch.track = lambda: pilot.track
     watch.decide = pilot.journal.decide
     return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
+
+
+def _meeting(robot: Robot, shared: Shared) -> Meet | None:
+    robots = robot.fleet or (robot.id,)
+    if not shared.options.sync:
+        return None
+    return lambda guard: begin_together(shared.slots.node, robot.id, shared.options.run, robots, guard)
 
 
 def _box(robot: Robot, options: Options, stack: ExitStack) -> BlackBox:

@@ -50,6 +50,10 @@ class Vehicle(Protocol):
         """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""
         ...
 
+    def answer_breach(self, response: str) -> None:
+        """Have the vehicle respond so by itself when it is outside its fence."""
+        ...
+
     def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move."""
         ...

@@ -107,6 +107,16 @@ def test_a_value_that_is_measured_is_recorded_with_its_place(controllers, hangar
     assert record["place"]["latitude"] == pytest.approx(42.37009, abs=1e-5)
 
 
+def test_robots_that_begin_together_know_how_well_they_did(controllers):
+    made = controllers(two_drones())
+    code, said = made.run("fleet.py", "--dry-run", "--sync", "--speedup", "50")
+    assert code == 0, said
+    for robot in ("alpha", "beta"):
+        (begun,) = made.box(robot, "decision")
+        assert (begun["what"], begun["response"]) == ("TOGETHER", "begins")
+    assert made.replayed().complaints == ()
+
+
 def test_logs_are_never_overwritten(controllers):
     made = controllers(two_drones())
     assert made.run("fleet.py", "--dry-run")[0] == 0
