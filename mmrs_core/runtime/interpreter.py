@@ -154,7 +154,8 @@ class _Run:
     def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
         while not robot.point.is_final and self._made < self._terms.steps:
             was_suspended = robot.suspended
-            step = robot.due(self._clock.now(), self._peers)
+            robot.looked = self._clock.now()
+            step = robot.due(robot.looked, self._peers)
             if robot.suspended and not was_suspended:
                 self._stopping.answer(robot, robot.fault or Fault("BATTERY_LOW"))
             if step is None or not self._order(robot, step):
@@ -234,8 +235,8 @@ class _Run:
 
     def _wake_time(self, robot: RunningRobot) -> float:
         now = self._clock.now()
-        event = robot.next_event(now)
-        if event is None or event <= now:
+        event = robot.next_event(robot.looked)
+        if event is None or event <= robot.looked:
             event = now + PACE
         unsure = robot.delivery is not None or robot.question or robot.held
         if unsure or (not self._whole and robot.point.phase is Phase.OUT):

@@ -39,6 +39,7 @@ class RunningRobot:
     Attributes:
         point: where it is in its program.
         lamport: its logical time.
+        looked: when it was looked at last; what happens after that has yet to be seen.
         wake: when it is worth looking at it again.
         deadline: when its present wait ends by a fault; inf: never.
         lacking: names of the slots that it waited for when last looked at.
@@ -61,7 +62,7 @@ class RunningRobot:
         self.backend = backend
         self.point = entry(program, program.start)
         self.lamport = 0
-        self.wake = 0.0
+        self.looked = self.wake = 0.0
         self.deadline = inf
         self.lacking: tuple[str, ...] = ()
         self.fault: Fault | None = None

@@ -213,6 +213,13 @@ def test_simulated_robots_run_in_real_time_too(live):
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 
+def test_what_ends_while_it_is_looked_at_is_not_missed(live):
+    """A movement of a hundredth of a millisecond ends between two looks at the clock."""
+    behaviour = program(robot("r", [hold(f"h{number}", 1e-3) for number in range(200)]))
+    run = live(behaviour, SIMULATION, speedup=FAST)
+    assert run.end().outcome is Outcome.SUCCESS
+
+
 def test_a_step_follows_the_backends_wake_at_once(live):
     run = live(WALK, Script(walk=0.2))
     run.wait_for_step("r begin walk")
