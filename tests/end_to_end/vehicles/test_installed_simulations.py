@@ -6,6 +6,7 @@ import subprocess
 import sys
 from math import hypot
 
+import pytest
 from example_flight.fleets import PEERS, ArduCopter
 from example_flight.mission import Home
 
@@ -16,6 +17,7 @@ from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.testing.programs import target_input, two_drones
 
 
+@pytest.mark.thorough
 def test_its_vehicles_are_started_reached_and_recorded(tmp_path, monkeypatch):
     binary = tmp_path / "arducopter"
     binary.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{PEERS}/arducopter_stand_in.py" "$@"\n')

@@ -102,12 +102,9 @@ def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["--fault", "gps"], "no such fault"),
         (["--fault", "Drone7:gps-lost@3"], "no robot 'Drone7'"),
         (["--wind", "strong"], "not two numbers"),
-        (["--home", "42.37"], "not two numbers"),
         (["--kind", "plane"], "no such kind"),
-        (["--kind", "rover", "--firmware", "px4"], "no such firmware"),
         (["--parameter", "RTL_ALT"], "is not NAME=NUMBER"),
         (["--speedup", "0"], "speedup"),
     ],

@@ -94,7 +94,7 @@ def test_its_satellites_are_switched_as_those_of_ardupilots_simulation(ground, s
     assert vehicle.autopilot.located == bool(value)
 
 
-def rate_of(ground, kind: str, seconds: float = 2.0) -> float:
+def rate_of(ground, kind: str, seconds: float = 1.2) -> float:
     until, count = time.monotonic() + seconds, 0
     while time.monotonic() < until:
         count += ground.of(kind, max(0.0, until - time.monotonic())) is not None
@@ -103,11 +103,11 @@ def rate_of(ground, kind: str, seconds: float = 2.0) -> float:
 
 def test_a_message_comes_as_often_as_it_is_asked_for(ground, switch_on):
     switch_on(speedup=1.0)
-    assert rate_of(ground, "ATTITUDE") == pytest.approx(4.0, abs=1.0)
+    assert rate_of(ground, "ATTITUDE") == pytest.approx(4.0, abs=1.5)
     assert ground.command(511, 30, 1e6 / 15.0).result == 0
-    assert rate_of(ground, "ATTITUDE") == pytest.approx(15.0, abs=2.5)
+    assert rate_of(ground, "ATTITUDE") == pytest.approx(15.0, abs=4.0)
     assert ground.command(511, 30, -1).result == 0
-    assert rate_of(ground, "ATTITUDE", 1.0) <= 1.0
+    assert rate_of(ground, "ATTITUDE", 0.8) <= 1.3
 
 
 def test_a_message_that_it_does_not_have_cannot_be_had(ground, switch_on):
