@@ -21,7 +21,7 @@ from .link import Link
 from .obedience import Obedience, Ordered
 from .pilot import Pilot
 from .program import Robot
-from .responses import HOLD, NOTHING, respond, response_to
+from .responses import HOLD, NOTHING, RETURN, respond, response_to
 from .vehicle import Vehicle
 from .watch import Watch
 
@@ -59,12 +59,16 @@ class Ending:
     """Carries out what policies and people have a robot do.
 
     Attributes:
-        suspended: whether the program goes on when the battery has been changed.
+        suspended: whether the program may go on when the battery has been changed.
+        where: for people, ``home`` or ``down``, when it is there.
+        down: whether what was to be done is done, so that the battery can be changed.
     """
 
     def __init__(self, crew: Crew, leave: Callable[[], None]) -> None:
         """End nothing yet; `leave` tells the others that the robot sets no more slots."""
         self.suspended = False
+        self.down = False
+        self.where = ""
         self._crew = crew
         self._leave = leave
         self._handled: set[str] = set()
@@ -91,6 +95,7 @@ class Ending:
                 if self.suspended and fault.event != BATTERY_LOW:
                     self.suspended = False
                     self._log(fault)
+        self.down, self.where = True, "home" if response == RETURN else "down"
         crew.say("stopped" if first.event == STOPPED else "ended early")
         return CODES.get(first.event, FAILED)
 
@@ -177,6 +182,8 @@ class Ending:
         crew.watch.let_go()
         crew.obedience.hands_off = True
         crew.say("hands off until its motors are off; interrupt to end")
+        if self.suspended:
+            crew.say("its program can go on later: start again with --resume")
         try:
             while crew.vehicle.state().armed and not crew.desk.stop.is_set():
                 crew.link.wait(lambda: None, crew.desk.clock.patience(0.0, WATCH_SECONDS))

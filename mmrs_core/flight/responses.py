@@ -90,7 +90,8 @@ def respond(
 def _go_back(
     response: str, robot: Robot, vehicle: Vehicle, track: list[tuple[str, Place]], repeat: Repeat
 ) -> bool:
-    if not track and not (robot.vehicle == "copter" and vehicle.state().armed):
+    flies = robot.vehicle == "copter"
+    if (flies and not vehicle.state().armed) or not (track or flies):
         return vehicle.hold()
     for place in tuple(way_back(robot, response, track)):
         repeat(partial(vehicle.go_to, place, robot.cruise, None, True))

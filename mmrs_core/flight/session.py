@@ -94,7 +94,7 @@ class Session:
         while True:
             ending = Ending(crew, lambda: self._shared.slots.leave(crew.robot.id))
             code = self._carry_out(ending)
-            if not ending.suspended or not self._goes_on():
+            if not (ending.suspended and ending.down) or not self._goes_on(ending.where):
                 break
         if crew.link is not None and crew.link.dropped:
             crew.desk.box.write("counted", frames=crew.link.dropped)
@@ -113,14 +113,14 @@ class Session:
         self._crew.say("done")
         return OK
 
-    def _goes_on(self) -> bool:
-        """Return whether the robot, which came home for its battery, was told to go on; if so, let it."""
+    def _goes_on(self, where: str) -> bool:
+        """Return whether the robot, which came down for its battery, was told to go on; if so, let it."""
         crew, shared = self._crew, self._shared
         crew.watch.silence, crew.obedience.hands_off = True, True
         crew.watch.let_go()
         shared.crews.suspend(crew.robot.id)
         patience = time.monotonic() + shared.options.battery_patience
-        crew.say("came home for its battery: change it, then order resume, or start again with --resume")
+        crew.say(f"came {where} for its battery: change it, then order resume, or start again with --resume")
         while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
             try:
                 if crew.obedience.awaits_resume():

@@ -15,6 +15,8 @@ from .vehicle import Vehicle
 
 GLANCE_SECONDS = 0.1
 PEER_SECONDS = 30.0
+LEAST_PEER_SECONDS = 2.0
+"""Real seconds that other processes have at least, however fast the vehicles run."""
 
 
 class Waits:
@@ -54,7 +56,7 @@ class Waits:
 
         def check(silent: tuple[str, ...]) -> None:
             self._vehicle.rest(0.0)
-            if self._desk.clock.now() - begun > self.patience(PEER_LOST, PEER_SECONDS):
+            if self._desk.clock.now() - begun > self._peer_seconds():
                 shown = ", ".join(map(ascii, silent))
                 self.raise_unless_carried_on(Fault(PEER_LOST, f"no answer from {shown}"))
 
@@ -141,8 +143,11 @@ class Waits:
     def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
         shown = ", ".join(map(ascii, names))
         self._check_patience(shown, begun)
-        if self._desk.clock.now() - alone > self.patience(PEER_LOST, PEER_SECONDS):
+        if self._desk.clock.now() - alone > self._peer_seconds():
             self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
+
+    def _peer_seconds(self) -> float:
+        return self._desk.clock.patience(self.patience(PEER_LOST, PEER_SECONDS), LEAST_PEER_SECONDS)
 
     def _check_patience(self, what: str, begun: float) -> None:
         if self._desk.stop.is_set():

@@ -1,0 +1,69 @@
+"""When a battery is low: by the reserve, and by the way back from where the robot is."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmrs_core.flight.energy import Reserve, seconds_back, way_back
+from mmrs_core.flight.program import Local, Robot
+from mmrs_core.flight.vehicle import State
+
+HOME = Local(0.0, 0.0, 0.0)
+TRACK = [("up", Local(0.0, 0.0, 10.0)), ("a", Local(300.0, 0.0, 10.0)), ("b", Local(300.0, 100.0, 10.0))]
+
+
+def robot(**more):
+    given = {"endurance": 1000.0, "cruise": 5.0, "descent": 1.0, "reserve": 0.1} | more
+    return Robot("r", "r.jsonl", "copter", HOME, "start", (), **given)
+
+
+def state(energy, *, time=100.0, place=TRACK[-1][1], armed=True, **wind):
+    return State(time, place, 5.0, 0.0, energy, armed=armed, **wind)
+
+
+def test_the_way_back_is_the_way_that_the_robot_came_and_the_descent():
+    assert seconds_back(robot(), state(0.5), "RETURN", TRACK) == pytest.approx(400.0 / 5.0 + 10.0)
+    assert seconds_back(robot(), state(0.5), "LAND", TRACK) == pytest.approx(10.0)
+
+
+def test_an_emergency_area_ends_the_way_back_where_it_is_left_for():
+    given = robot(escapes=(("a", Local(300.0, -50.0, 10.0)),))
+    assert list(way_back(given, "EMERGENCY_AREA", TRACK))[-1] == Local(300.0, -50.0, 10.0)
+    assert seconds_back(given, state(0.5), "EMERGENCY_AREA", TRACK) == pytest.approx((100 + 50) / 5.0 + 10.0)
+
+
+def test_head_wind_makes_the_way_longer_and_tail_wind_no_shorter():
+    against = seconds_back(robot(), state(0.5, wind=2.5, wind_from=180.0), "RETURN", TRACK)
+    behind = seconds_back(robot(), state(0.5, wind=2.5, wind_from=0.0), "RETURN", TRACK)
+    assert against == pytest.approx(100.0 / 5.0 + 300.0 / 2.5 + 10.0)
+    assert behind == pytest.approx(90.0)
+
+
+def test_the_reserve_counts_wherever_the_robot_is():
+    assert Reserve(robot()).low(state(0.11, place=TRACK[0][1]), "LAND", TRACK[:1]) == ""
+    assert "less than 10%" in Reserve(robot()).low(state(0.09, place=TRACK[0][1]), "LAND", TRACK[:1])
+
+
+def test_the_point_of_no_return_comes_before_the_reserve_far_from_home():
+    assert Reserve(robot()).low(state(0.15), "RETURN", TRACK) == ""
+    assert "point of no return: 13%" in Reserve(robot()).low(state(0.13), "RETURN", TRACK)
+
+
+def test_a_battery_that_empties_faster_than_the_type_says_is_believed():
+    watched = Reserve(robot())
+    assert watched.low(state(1.0, time=0.0), "RETURN", TRACK) == ""
+    assert "point of no return" in watched.low(state(0.5, time=50.0), "RETURN", TRACK)
+
+
+def test_there_is_no_point_of_no_return_for_who_stays():
+    assert Reserve(robot()).low(state(0.11), "HOLD", TRACK) == ""
+
+
+def test_a_wind_that_is_too_strong_is_a_reason_to_turn_round_at_once():
+    why = Reserve(robot()).low(state(0.9, wind=6.0, wind_from=180.0), "RETURN", TRACK)
+    assert "the wind is stronger than the robot" in why
+
+
+@pytest.mark.parametrize("known", [state(None), state(0.01, armed=False)])
+def test_nothing_is_low_that_nobody_knows_or_that_stands_on_the_ground(known):
+    assert Reserve(robot()).low(known, "RETURN", TRACK) == ""

@@ -1,0 +1,145 @@
+"""Where a robot is in its program, by its log."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from mmrs_core.flight.faults import Fault, Refused
+from mmrs_core.flight.log import Log, read
+from mmrs_core.flight.program import (
+    Choose,
+    GoTo,
+    Land,
+    Local,
+    Notify,
+    Operate,
+    Robot,
+    Start,
+    Step,
+    Stop,
+    TakeOff,
+    Then,
+)
+from mmrs_core.flight.resuming import Progress, progress_of, rest_of_way, slots_of, still_on, track_of
+
+FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
+TRIGGER = Operate("camera", "every metre", 206, (1.0,))
+ROBOT = Robot(
+    "r",
+    "r.jsonl",
+    "copter",
+    Local(0.0, 0.0, 0.0),
+    "start",
+    (
+        Step("start", Start(), then=Then("up")),
+        Step("up", TakeOff(10.0), then=Choose("calm", "far", "near")),
+        Step("far", GoTo(FAR), before=(TRIGGER,), after=(Notify((("s", "go"),)),), then=Then("near")),
+        Step("near", GoTo(NEAR), then=Then("down")),
+        Step("down", Land(), then=Then("stop")),
+        Step("stop", Stop()),
+    ),
+)
+WAY = (
+    ("begin", "start", ""),
+    ("end", "start", ""),
+    ("take", "start", "up"),
+    ("begin", "up", ""),
+    ("end", "up", ""),
+    ("choose", "up", "true"),
+    ("act", "far", "pre:0"),
+    ("begin", "far", ""),
+    ("end", "far", ""),
+    ("ntf", "far", "post:0"),
+    ("take", "far", "near"),
+    ("begin", "near", ""),
+)
+
+
+def records(count=12, *more):
+    lines = (*WAY[:count], *more)
+    fields = ("label", "move", "detail")
+    return [
+        dict(zip(fields, line, strict=True)) | {"robot": "r", "seq": n, "lamport": n + 1}
+        for n, line in enumerate(lines)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("count", "expected"),
+    [
+        (0, Progress("start")),
+        (3, Progress("up")),
+        (6, Progress("far")),
+        (7, Progress("far", before=1)),
+        (8, Progress("far", before=1, begun=True)),
+        (9, Progress("far", before=1, begun=True, ended=True)),
+        (10, Progress("far", before=1, begun=True, ended=True, after=1)),
+        (12, Progress("near", begun=True)),
+    ],
+)
+def test_every_prefix_of_a_log_says_where_the_robot_is(count, expected):
+    assert progress_of(ROBOT, records(count)) == expected
+
+
+def test_the_other_arm_of_a_choice_is_gone_on_with():
+    assert progress_of(ROBOT, records(5, ("choose", "up", "false"))).move == "near"
+
+
+def test_a_log_that_ends_by_a_fault_or_at_the_end_is_over():
+    assert progress_of(ROBOT, records(8, ("fault", "far", "TAKEN_OVER"))).over == "it has ended by TAKEN_OVER"
+    rest = (("end", "near", ""), ("take", "near", "down"), ("begin", "down", ""), ("end", "down", ""))
+    last = (("take", "down", "stop"), ("begin", "stop", ""), ("end", "stop", ""))
+    assert progress_of(ROBOT, records(12, *rest, *last)).over == "it has come to its end"
+
+
+@pytest.mark.parametrize(
+    "line", [("begin", "near", ""), ("take", "start", "down"), ("act", "start", "pre:x"), ("ntf", "up", "")]
+)
+def test_a_log_of_another_program_is_refused(line):
+    with pytest.raises(Refused, match="is no step of this program"):
+        progress_of(ROBOT, records(1, line, ("end", "start", "")))
+
+
+def test_the_way_of_a_sortie_begins_at_its_take_off_and_ends_where_the_last_leg_did():
+    assert track_of(ROBOT, records()) == [("up", Local(0.0, 0.0, 10.0)), ("far", FAR)]
+
+
+def test_a_robot_in_the_air_goes_on_from_the_leg_that_it_is_on():
+    places = [place for _, place in track_of(ROBOT, records())]
+    assert rest_of_way(places, Local(50.0, 1.0, 10.0), NEAR) == [FAR]
+    assert rest_of_way(places, Local(50.0, 25.0, 10.0), NEAR) == [FAR]
+    with pytest.raises(Refused, match="40 m from the way"):
+        rest_of_way(places, Local(50.0, -40.0, 10.0), NEAR)
+
+
+def test_what_a_camera_did_by_itself_is_told_again():
+    assert list(still_on(ROBOT, records())) == [TRIGGER]
+    assert list(still_on(ROBOT, records(6))) == []
+
+
+def test_slots_are_as_the_logs_leave_them():
+    assert slots_of([ROBOT], records()) == ({("s", "go")}, 12)
+    assert slots_of([ROBOT], records(9)) == (set(), 9)
+
+
+def test_a_log_goes_on_after_its_last_whole_line(tmp_path):
+    path = tmp_path / "r.jsonl"
+    log = Log(path, "run-0", "r")
+    log.write("begin", "start", lamport=1, time=1.0)
+    log.close()
+    with path.open("a") as file:
+        file.write('{"run": "run-0", ')
+    again = Log(path, "run-0", "r", resume=True)
+    again.write("end", "start", lamport=2, time=0.5)
+    again.close()
+    assert [(step["seq"], step["time"]) for step in read(path)] == [(0, 1.0), (1, 1.0)]
+
+
+def test_a_log_with_a_gap_is_not_gone_on_with(tmp_path):
+    path = tmp_path / "r.jsonl"
+    line = {"run": "x", "robot": "r", "seq": 1, "lamport": 1, "time": 0, "label": "begin", "move": "start"}
+    path.write_text(json.dumps(line | {"detail": "", "slot": ""}) + "\n", "ascii")
+    with pytest.raises(Fault, match=r"r\.jsonl:1: is not the next step"):
+        read(path)
