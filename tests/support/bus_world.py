@@ -107,6 +107,7 @@ class Walker:
         if self.delivery is not None:
             return self._deliver()
         if self.point.is_final:
+            self.node.leave(self.program.id)
             return False
         waits = ()
         if self.point.phase is Phase.OUT:

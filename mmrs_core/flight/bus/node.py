@@ -308,7 +308,7 @@ class Node:
         id = CommandId(self._run, robot, self.incarnation, 0)
         contacts = self._members[robot].contacts - self._watching.left
         there = {each for each in contacts if each in self._owners or self._watching.is_here(each)}
-        requests = {each: Message(robot, each, Leave(id)) for each in sorted(there)}
+        requests = {each: Message(robot, each, Leave(id, self._owners.lamport)) for each in sorted(there)}
         return Notice(requests, until=self.now() + FAREWELL_SECONDS)
 
     def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer:
@@ -316,17 +316,20 @@ class Node:
             if isinstance(request, Meet):
                 return self._meeting.answer(request)
             if isinstance(request, Leave):
-                return self._see_off(robot, request.id.sender)
+                return self._see_off(robot, request)
             if isinstance(request, Begin):
                 self._watching.left.discard(request.id.sender)
             return self._owners.answer(robot, request, self.now(), here=here)
 
-    def _see_off(self, robot: str, sender: str) -> Answer:
+    def _see_off(self, robot: str, farewell: Leave) -> Answer:
+        sender = farewell.id.sender
+        # First the time: a notify that needs no answer any more must be later than all the robot did.
+        answer = self._owners.see_off(robot, sender, farewell.lamport)
         self._watching.left.add(sender)
         if sender not in self._owners:
             for errand in self._errands:
                 errand.gone(sender)
-        return self._owners.see_off(robot, sender)
+        return answer
 
     def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[str], None]:
         def take(text: str) -> None:

@@ -68,6 +68,7 @@ class Owner:
 
     Attributes:
         start: number of the last start that the journal tells of; 0: there was none.
+        lamport: the latest logical time of robots that told this one that they have ended.
     """
 
     def __init__(
@@ -95,7 +96,7 @@ class Owner:
             ValueError: the journal is damaged or belongs to another run.
         """
         self.robot = owned.robot
-        self.start = 0
+        self.start = self.lamport = 0
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
         self._lost = lost or (lambda sender, now: False)
         self._slots = {name: _Slot(SlotState(lamport=floor)) for name in owned.slots}
@@ -170,11 +171,11 @@ class Owner:
             self._apply_recorded(begun)
         return Answer("done")
 
-    def leave(self, sender: str) -> Answer:
-        """Note that a robot has ended."""
+    def leave(self, sender: str, lamport: int) -> Answer:
+        """Note that a robot has ended at that logical time."""
         if sender not in self._left:
-            self._journal.keep({"left": sender})
-            self._left.add(sender)
+            self._journal.keep({"left": sender, "lamport": lamport})
+            self._see_off(sender, lamport)
         return Answer("done")
 
     def repeat(self, sent: Commit) -> None:
@@ -296,6 +297,10 @@ class Owner:
         elif latest[:2] == place[:2] and id in self._applied:
             self._latest[id.sender] = (*latest[:3], False)
 
+    def _see_off(self, sender: str, lamport: int) -> None:
+        self._left.add(sender)
+        self.lamport = max(self.lamport, lamport)
+
     def _end_if_lost(self, slot: _Slot, now: float) -> None:
         kept = slot.kept
         if kept is not None and (now - kept.heard > KEPT_SECONDS or self._lost(kept.id.sender, now)):
@@ -308,7 +313,7 @@ class Owner:
         if "started" in line:
             self.start = line["started"]
         elif "left" in line:
-            self._left.add(line["left"])
+            self._see_off(line["left"], line["lamport"])
         elif "set" in line:
             self._apply(Commit(_id(line), tuple(line["set"]), line["active"], line["lamport"]))
         elif "freed" in line:

@@ -45,7 +45,6 @@ class Owners:
             ValueError: a journal is damaged, or holds another run or an earlier start of a robot that
                 is not started again.
         """
-        self.lamport = max((each.lamport for each in recorded.values()), default=0)
         self._owners = {
             member.owned.robot: Owner(
                 member.owned,
@@ -57,6 +56,8 @@ class Owners:
             )
             for member in members
         }
+        logged = (each.lamport for each in recorded.values())
+        self.lamport = max((*logged, *(owner.lamport for owner in self._owners.values())), default=0)
         self._watching = watching
         watching.left.update(*(owner.left for owner in self._owners.values()))
         self.incarnation = self._started(recorded, alone=trusting)
@@ -79,9 +80,10 @@ class Owners:
             return owner.withdraw(request)
         return owner.begin(request)
 
-    def see_off(self, robot: str, sender: str) -> Answer:
-        """Have a robot of this process know that another has ended."""
-        return self._owners[robot].leave(sender)
+    def see_off(self, robot: str, sender: str, lamport: int) -> Answer:
+        """Have a robot of this process know that another has ended at that logical time."""
+        self.use(lamport)
+        return self._owners[robot].leave(sender, lamport)
 
     def state(self, slot: SlotId, now: float) -> SlotState:
         """Return the state of a slot.

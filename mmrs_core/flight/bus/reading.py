@@ -182,6 +182,6 @@ _READERS: Mapping[str, Callable[[CommandId, Mapping[str, Any]], Request]] = {
     "commit": _commit,
     "withdraw": lambda id, content: Withdraw(id, number_in(content, "round")),
     "begin": _begin,
-    "leave": lambda id, content: Leave(id),
+    "leave": lambda id, content: Leave(id, number_in(content, "lamport")),
     "meet": lambda id, content: Meet(id, number_in(content, "robots")),
 }

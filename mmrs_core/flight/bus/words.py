@@ -102,9 +102,14 @@ class Begin:
 
 @dataclass(frozen=True, slots=True)
 class Leave:
-    """Tells an owner that a robot has ended, so that it neither sets nor needs slots any more."""
+    """Tells an owner that a robot has ended, so that it neither sets nor needs slots any more.
+
+    Attributes:
+        lamport: the latest logical time of the robot; whoever sets its slots all the same does so later.
+    """
 
     id: CommandId
+    lamport: int
 
 
 @dataclass(frozen=True, slots=True)

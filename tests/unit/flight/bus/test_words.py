@@ -31,7 +31,7 @@ REQUESTS = st.one_of(
     st.builds(Commit, IDS, SLOTS, st.booleans(), NUMBERS),
     st.builds(Withdraw, IDS, NUMBERS),
     st.builds(Begin, IDS, st.lists(st.tuples(NAMES, st.booleans(), NUMBERS), max_size=3).map(tuple)),
-    st.builds(Leave, IDS),
+    st.builds(Leave, IDS, NUMBERS),
     st.builds(Meet, IDS, NUMBERS),
 )
 
