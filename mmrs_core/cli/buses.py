@@ -13,6 +13,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import UnreadableError, UnsupportedError
+from mmrs_core.flight.bus.carrier import Carrier
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
@@ -48,6 +49,7 @@ def bus_for(
     folder: Path,
     wishes: BusWishes,
     resumed: tuple[StepRecord, ...] | None,
+    wrap: Callable[[Carrier], Carrier] = lambda carrier: carrier,
 ) -> ProgramBus:
     """Return the bus of this process.
 
@@ -55,6 +57,7 @@ def bus_for(
         here: the robots of this process.
         folder: of the logs.
         resumed: the steps of these robots before the run was broken off; None: it was not.
+        wrap: puts something in front of what carries messages to other processes.
 
     Raises:
         typer.BadParameter: if robots wait for robots of other processes, and no bus is asked for.
@@ -73,7 +76,7 @@ def bus_for(
     endpoints = Endpoints(wishes.listen, wishes.connect, wishes.config)
     carrier = ZenohCarrier(program.name, run, sorted(robot.id for robot in program.robots), endpoints)
     try:
-        return shared_bus(program, here, run, folder, carrier, resumed)
+        return shared_bus(program, here, run, folder, wrap(carrier), resumed)
     except ValueError as error:
         raise UnreadableError(f"{folder}: {error}") from error
 

@@ -16,6 +16,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.behaviours import Loaded
+from mmrs_core.cli.bus_faults import bus_faults
 from mmrs_core.cli.buses import BusWishes, begin_all, bus_for
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.interruption import INTERRUPTED
@@ -121,7 +122,10 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     run = resumed[0].run if resumed else wishes.run
     orders = Orders(_on_stop(wishes.on_stop))
     with ExitStack() as stack:
-        bus = bus_for(program, here, run, wishes.folder, wishes.bus, resumed if wishes.resume else None)
+        clock = RealClock(wishes.speedup, max((record.time for record in resumed), default=0.0))
+        wrap = bus_faults(wishes.options.get("inject", ""), program, wishes.bus.shared, clock, stack)
+        given = resumed if wishes.resume else None
+        bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
         stack.callback(bus.close)
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
         observer = _Observer(workshop, writer)
@@ -130,7 +134,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
             bus,
             conditions_for(program, workshop.contributions, wishes.assume, asks=True),
-            clock=RealClock(wishes.speedup, max((record.time for record in resumed), default=0.0)),
+            clock=clock,
             orders=orders,
             run=run,
             folder=wishes.folder,

@@ -47,13 +47,13 @@ def main(
     for fault in judgement.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
-        stop = threading.Event()
+        stop, rehearsal = threading.Event(), Rehearsal(options.inject, options.clock, say)
         shared = Shared(
             options=options,
-            slots=_slots(parser, robots, options, stack),
+            slots=_slots(parser, robots, options, rehearsal, stack),
             judgement=judgement,
             decides=judgement.decides(robots),
-            rehearsal=(rehearsal := Rehearsal(options.inject, options.clock, say)),
+            rehearsal=rehearsal,
             radios=_radios(options, rehearsal),
             crews=(crews := Crews([robot.id for robot in robots])),
             stop=stop,
@@ -84,14 +84,19 @@ def _run_all(robots: Sequence[Robot], shared: Shared) -> list[int]:
 
 
 def _slots(
-    parser: argparse.ArgumentParser, robots: Sequence[Robot], options: Options, stack: ExitStack
+    parser: argparse.ArgumentParser,
+    robots: Sequence[Robot],
+    options: Options,
+    rehearsal: Rehearsal,
+    stack: ExitStack,
 ) -> BusSlots:
     if options.bus.used:
         from .bus.over_zenoh import Endpoints, ZenohCarrier
 
         fleet = {robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
-        carrier = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached)
+        zenoh = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached)
+        carrier = rehearsal.wrap_carrier(zenoh, [robot.id for robot in robots])
         try:
             bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))
         except OSError as error:

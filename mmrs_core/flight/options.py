@@ -259,7 +259,8 @@ def _signer(parser: argparse.ArgumentParser, path: Path | None) -> Signer | None
 
 def _inject(parser: argparse.ArgumentParser, reach: Reach, given: Any) -> Injections:
     try:
-        return injections(given.inject, reach.urls, dry=given.dry_run)
+        alone = not (_bus(given).used or given.sync)
+        return injections(given.inject, reach.urls, dry=given.dry_run, alone=alone)
     except ValueError as error:
         parser.error(f"--inject {error}")
 

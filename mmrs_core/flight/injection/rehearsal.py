@@ -6,13 +6,15 @@ import threading
 from collections.abc import Callable, Collection, Iterable, Mapping
 from math import inf
 
+from ..bus.carrier import Carrier
 from ..clock import Clock
 from ..link import Link
 from ..ports import Port
 from . import gps
+from .carrier import InjectedCarrier
 from .port import InjectedPort, Line
 from .process import Effect, effect_of
-from .spec import OF_PROCESS, OF_VEHICLE, Injection, Injections
+from .spec import OF_BUS, OF_PROCESS, OF_VEHICLE, Injection, Injections
 
 Note = Callable[[str, Mapping[str, object]], None]
 """Records a fault made on purpose: its text, and what is to be said about it."""
@@ -31,6 +33,7 @@ class Rehearsal:
         self._say = say
         self._notes: dict[str, Note] = {}
         self._links: dict[str, Link] = {}
+        self._carriers: list[InjectedCarrier] = []
         self._ends: list[tuple[float, Injection, Effect | None]] = []
         self._closed = threading.Event()
         self._noting = threading.Lock()
@@ -77,6 +80,15 @@ class Rehearsal:
 
         return InjectedPort(port, self._clock, incoming, outgoing, told)
 
+    def wrap_carrier(self, carrier: Carrier, robots: Collection[str]) -> Carrier:
+        """Return a carrier of these robots' bus, with its faults."""
+        faults = self._injections.of_bus().faults
+        if not faults:
+            return carrier
+        seed = f"{self._injections.seed} {' '.join(sorted(robots))} bus"
+        self._carriers.append(InjectedCarrier(carrier, faults, self._clock, seed))
+        return self._carriers[-1]
+
     def attend(self, robot: str, link: Link) -> None:
         """Keep the link of a robot's vehicle, for faults of the vehicle itself."""
         self._links[robot] = link
@@ -103,6 +115,9 @@ class Rehearsal:
             effect.begin()
         if fault.name in OF_VEHICLE:
             self._switch(fault, on=False)
+        if fault.name in OF_BUS:
+            for carrier in self._carriers:
+                carrier.cut()
         if fault.ends < inf or fault.name in OF_PROCESS:
             self._ends.append((fault.ends, fault, effect))
 
@@ -111,6 +126,9 @@ class Rehearsal:
             effect.end()
         if fault.name in OF_VEHICLE and not self._closed.is_set():
             self._switch(fault, on=True)
+        if fault.name in OF_BUS and not self._closed.is_set():
+            for carrier in self._carriers:
+                carrier.mend()
         self._tell(fault, "ends")
 
     def _switch(self, fault: Injection, on: bool) -> None:

@@ -9,19 +9,21 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 
-PARTS = ("loss", "duplicate", "corrupt")
+PARTS = ("loss", "duplicate", "corrupt", "bus-loss", "bus-duplicate")
 CUTS = ("cut", "cut-in", "cut-out")
-OF_LINK = (*PARTS, "delay", *CUTS)
+OF_LINK = ("loss", "duplicate", "corrupt", "delay", *CUTS)
 OF_VEHICLE = ("gps-lost",)
+OF_BUS = ("bus-loss", "bus-duplicate", "bus-delay", "bus-cut")
 OF_PROCESS = ("freeze", "disk-full", "clock-jump")
-TIMED = (*CUTS, *OF_VEHICLE, *OF_PROCESS)
-NAMES = (*OF_LINK, *OF_VEHICLE, *OF_PROCESS)
+TIMED = (*CUTS, "bus-cut", *OF_VEHICLE, *OF_PROCESS)
+NAMES = (*OF_LINK, *OF_BUS, *OF_VEHICLE, *OF_PROCESS)
 
 HELP = (
     "make faults on purpose: loss=0.15, duplicate=0.05, corrupt=0.01 (parts of what is sent and heard),"
     " delay=0.2~0.1 (seconds, more or less), cut@60+20 (nothing passes from second 60 of the run on, for"
     " 20 s; cut-in, cut-out: one way), freeze@60+5, disk-full@60+20, clock-jump@60+3600, gps-lost@60+20"
-    " (simulated vehicles only), seed=7; several with commas, ROBOT:loss=0.15 for one robot"
+    " (simulated vehicles only), bus-loss=0.1, bus-duplicate=0.1, bus-delay=0.5, bus-cut@60+20, seed=7;"
+    " several with commas, ROBOT:loss=0.15 for one robot"
 )
 
 _NUMBER = r"\d+(?:\.\d+)?"
@@ -69,18 +71,25 @@ class Injections:
         """Return what happens to the link that these robots share."""
         return tuple(f for f in self.faults if f.name in OF_LINK and (not f.robot or f.robot in robots))
 
+    def of_bus(self) -> Injections:
+        """Return what happens to the bus only."""
+        return Injections(self.seed, tuple(f for f in self.faults if f.name in OF_BUS))
+
     def timed(self) -> tuple[Injection, ...]:
         """Return what begins at a second of the run, earliest first."""
         return tuple(sorted((f for f in self.faults if f.name in TIMED), key=lambda fault: fault.begins))
 
 
-def injections(texts: Sequence[str], urls: Mapping[str, str], *, dry: bool = False) -> Injections:
+def injections(
+    texts: Sequence[str], urls: Mapping[str, str], *, dry: bool = False, alone: bool = False
+) -> Injections:
     """Return what ``--inject`` asks for.
 
     Args:
         texts: each one or several faults, with commas between them.
         urls: of the links, by robot.
         dry: whether there are no vehicles.
+        alone: whether there are no robots in other processes.
 
     Raises:
         ValueError: something is not understood, or makes no sense.
@@ -95,6 +104,8 @@ def injections(texts: Sequence[str], urls: Mapping[str, str], *, dry: bool = Fal
                 faults.append(_fault(robot, word))
     for fault in faults:
         _check(fault, faults, urls, dry)
+        if alone and fault.name in OF_BUS:
+            raise ValueError(f"{fault.text}: robots of one process use no bus; it needs --bus")
     return Injections(seed, tuple(faults))
 
 
@@ -140,13 +151,13 @@ def _check(fault: Injection, all: Sequence[Injection], urls: Mapping[str, str], 
     """Raise ValueError where a fault makes no sense."""
     if fault.name in PARTS and not fault.amount <= 1.0:
         raise ValueError(f"{fault.text}: is a part of all, so at most 1")
-    if fault.spread and (fault.name != "delay" or fault.spread > fault.amount):
+    if fault.spread and (not fault.name.endswith("delay") or fault.spread > fault.amount):
         raise ValueError(f"{fault.text}: only a delay differs, and by no more than itself")
     if fault.name not in TIMED and sum(f.name == fault.name and f.robot == fault.robot for f in all) > 1:
         raise ValueError(f"{fault.text}: is asked for twice")
     if dry and fault.name in (*OF_LINK, *OF_VEHICLE):
         raise ValueError(f"{fault.text}: a dry run has no link and no vehicle")
-    if fault.name in OF_PROCESS and fault.robot:
+    if fault.name in (*OF_PROCESS, *OF_BUS) and fault.robot:
         raise ValueError(f"{fault.text}: concerns all robots of the process; say it without a robot")
     if fault.name == "freeze" and fault.ends == inf:
         raise ValueError(f"{fault.text}: say for how many seconds, or nothing would ever thaw it")
