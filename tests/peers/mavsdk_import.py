@@ -12,6 +12,9 @@ from pathlib import Path
 
 from mavsdk import ComponentType, Configuration, ConnectionResult, Mavsdk
 from mavsdk.plugins.mission_raw import MissionRaw
+from mavsdk.plugins.mission_raw.mission_raw import MissionRawError
+
+TRIES = 5
 
 
 def item(found) -> list[object]:
@@ -27,6 +30,16 @@ def imported(missions: MissionRaw, path: Path):
     return missions.import_qgroundcontrol_mission_from_string(text)
 
 
+def again(transfer):
+    """Return what a transfer gives, tried again where MAVSDK gives up, as it soon does."""
+    for _ in range(TRIES - 1):
+        try:
+            return transfer()
+        except MissionRawError as error:
+            print(error, flush=True)
+    return transfer()
+
+
 def main(port: str, paths: list[str]) -> None:
     mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
     added = mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
@@ -37,8 +50,8 @@ def main(port: str, paths: list[str]) -> None:
     for path in paths:
         found = imported(missions, Path(path))
         lists = {"mission": found.mission_items, "fence": found.geofence_items, "rally": found.rally_items}
-        missions.upload_mission(found.mission_items)
-        lists["downloaded"] = missions.download_mission()
+        again(lambda found=found: missions.upload_mission(found.mission_items))
+        lists["downloaded"] = again(missions.download_mission)
         shown = {what: [item(each) for each in items] for what, items in lists.items()}
         print("peer " + json.dumps(shown), flush=True)
 

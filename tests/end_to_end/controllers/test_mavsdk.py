@@ -60,7 +60,7 @@ class Peer:
     def next(self):
         line = ""
         while not line.startswith("peer "):
-            line = self.lines.get(timeout=30.0)
+            line = self.lines.get(timeout=60.0)
             print(line, end="")
         return json.loads(line.removeprefix("peer "))
 
