@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext, suppress
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,8 @@ import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
-from mmrs_core.sitl.faults import ENDS, FAULTS
+from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.faults import ENDS, FAULTS, Faults
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.schedule import Planned, Schedule, order, planned
 from mmrs_core.sitl.vehicle import SimulatedVehicle
@@ -45,7 +47,7 @@ class Rehearsal:
             typer.BadParameter: a fault is none, or befalls nobody.
         """
         self._vehicles = vehicles
-        plan = [_planned(text, [name for name, _ in vehicles]) for text in faults]
+        plan = [_planned(text, vehicles) for text in faults]
         self._schedules = {
             name: Schedule(vehicle, [fault for fault in plan if fault.robot in ("", name)])
             for name, vehicle in vehicles
@@ -128,14 +130,28 @@ class Rehearsal:
             tell(f"{vehicle.autopilot.time:7.1f} s '{name}': {state_of(vehicle.autopilot)}")
 
 
-def _planned(text: str, robots: Sequence[str]) -> Planned:
+def _planned(text: str, vehicles: Sequence[tuple[str, SimulatedVehicle]]) -> Planned:
+    names = [name for name, _ in vehicles]
     try:
         fault = planned(text)
+        if fault.robot and fault.robot not in names:
+            raise ValueError(f"{text}: no robot '{fault.robot}'; there are {', '.join(names)}")
+        for name, vehicle in vehicles:
+            if fault.robot in ("", name):
+                _try_out(fault, vehicle)
     except ValueError as error:
         raise typer.BadParameter(f"--fault {error}") from error
-    if fault.robot and fault.robot not in robots:
-        raise typer.BadParameter(f"--fault {text}: no robot '{fault.robot}'; there are {', '.join(robots)}")
     return fault
+
+
+def _try_out(fault: Planned, vehicle: SimulatedVehicle) -> None:
+    """Do nothing if a vehicle like this can have the fault.
+
+    Raises:
+        ValueError: it does not take its values.
+    """
+    like = Autopilot(vehicle.autopilot.settings)
+    Faults(like, nullcontext()).begin(fault.name, *fault.values)
 
 
 def _typed_lines() -> queue.SimpleQueue[str]:
@@ -143,9 +159,12 @@ def _typed_lines() -> queue.SimpleQueue[str]:
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
 
     def read() -> None:
-        for line in sys.stdin:
-            lines.put(line)
+        with suppress(OSError):  # in the background of a terminal nobody can type
+            for line in sys.stdin:
+                lines.put(line)
 
+    if hasattr(signal, "SIGTTIN"):
+        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
     if sys.stdin is not None and not sys.stdin.closed:
         threading.Thread(target=read, name="typed lines", daemon=True).start()
     return lines

@@ -103,6 +103,7 @@ def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
     ("arguments", "complaint"),
     [
         (["--fault", "Drone7:gps-lost@3"], "no robot 'Drone7'"),
+        (["--fault", "battery=half@3"], "half"),
         (["--wind", "strong"], "not two numbers"),
         (["--kind", "plane"], "no such kind"),
         (["--parameter", "RTL_ALT"], "is not NAME=NUMBER"),
@@ -113,6 +114,22 @@ def test_a_wrong_command_line_is_a_usage_error(arguments, complaint):
     code, out, said = finish(start("--port", str(free_port()), "--for", "0.1", *arguments))
     assert (code, out) == (2, "")
     assert complaint in said
+
+
+IN_A_TERMINAL = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"
+
+
+def test_it_goes_on_in_the_background_of_a_terminal():
+    """A process in the background that reads from its terminal is stopped, unless it sees to that."""
+    command = f"{sys.executable} -m mmrs_core sitl --port {free_port()} --for 2 & wait %1"
+    shell = [sys.executable, "-c", IN_A_TERMINAL, "bash", "--norc", "-i", "-c", command]
+    with subprocess.Popen(shell, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            out, _ = process.communicate(timeout=30.0)
+        finally:
+            process.kill()
+    assert "under way" in out
+    assert process.returncode == 0
 
 
 def test_faults_are_listed():
