@@ -61,8 +61,7 @@ class Helm:
 
     def mode(self) -> str:
         """Return the vehicle's mode in the runtime's words, or its number where there is none."""
-        number = self._telemetry.mode()
-        return next((name for name, each in self._modes.items() if each.number == number), str(number))
+        return modes.word_of(self._link, self._kind, self._telemetry.mode())
 
     def enter(self, mode: str) -> None:
         """Change the mode; the vehicle forgets the speed it was told.
@@ -106,7 +105,9 @@ class Helm:
             )
             if cause is not None:
                 raise Fault(cause, f"the vehicle left mode {left} by itself, for mode {self.mode()}")
-            raise Fault(TAKEN_OVER, f"the vehicle left mode {left}: somebody else has taken over")
+            raise Fault(
+                TAKEN_OVER, f"the vehicle left mode {left} for {self.mode()}: somebody else has taken over"
+            )
 
     def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
         """Wait until a test holds.

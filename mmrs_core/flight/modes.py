@@ -53,6 +53,41 @@ def modes_of(link: Link, kind: str) -> Mapping[str, Mode]:
     return {name: Mode(number, (1.0, float(number))) for name, number in MODES[kind].items()}
 
 
+OTHERS: Mapping[str, Mapping[int, str]] = {
+    "copter": {
+        0: "stabilize",
+        1: "acro",
+        2: "altitude hold",
+        5: "loiter",
+        6: "return",
+        16: "position hold",
+        21: "smart return",
+    },
+    "sub": {0: "stabilize", 1: "acro", 2: "depth hold", 19: "manual"},
+    "rover": {0: "manual", 1: "acro", 3: "steering", 5: "loiter", 11: "return", 12: "smart return"},
+}
+PX4_OTHERS: Mapping[tuple[int, int], str] = {
+    (1, 0): "manual",
+    (2, 0): "altitude",
+    (3, 0): "position",
+    (4, 2): "take-off",
+    (4, 5): "return",
+    (5, 0): "acro",
+    (7, 0): "stabilize",
+}
+"""Modes that programs never ask for, for people."""
+
+
+def word_of(link: Link, kind: str, number: int) -> str:
+    """Return a mode in words, or its number where nobody here has a word for it."""
+    for word, mode in modes_of(link, kind).items():
+        if mode.number == number:
+            return word
+    if is_px4(link):
+        return {px4_number(*each): word for each, word in PX4_OTHERS.items()}.get(number, str(number))
+    return OTHERS[kind].get(number, str(number))
+
+
 FAILSAFES: Mapping[str, frozenset[int]] = {
     "copter": frozenset({2, 6, 9, 17, 21}),
     "rover": frozenset({4, 11, 12}),

@@ -158,7 +158,7 @@ def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_
         helm.check()
     autopilot.wire.beat(autopilot=PX4, mode=POSITION, armed=True)
     eventually(lambda: telemetry.mode() == POSITION)
-    with pytest.raises(Fault, match="left mode take-off"):
+    with pytest.raises(Fault, match="left mode take-off for position"):
         helm.check()
 
 
