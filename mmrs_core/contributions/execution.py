@@ -230,6 +230,8 @@ class Live:
         run: identifier of the run.
         folder: of the logs; None where none are kept.
         resumed: whether the run was broken off before, so that robots may be anywhere on their ways.
+        passed: moves that this robot ended before, in order.
+        begun: the move that it had begun then; empty where it had ended its last one.
         links: how robots are reached, as in ``--connect``, by robot of this process.
         shared: what backends of the same run share, by names of their own; empty at first.
     """
@@ -240,6 +242,8 @@ class Live:
     run: str
     folder: Path | None = None
     resumed: bool = False
+    passed: tuple[str, ...] = ()
+    begun: str = ""
     links: Mapping[str, str] = field(default_factory=dict)
     shared: dict[str, object] = field(default_factory=dict)
 

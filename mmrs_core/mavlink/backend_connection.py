@@ -28,6 +28,7 @@ from mmrs_core.flight.recording import Recording
 from mmrs_core.flight.signing import Signer, signer_for
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend_identity import system_of
 from mmrs_core.mavlink.backend_options import LinkOptions, link_options
 from mmrs_core.mavlink.backend_robot import Equipment, MavlinkBackend
 from mmrs_core.mavlink.built import built, robot_of
@@ -195,6 +196,9 @@ def _equipment(
         locators=locators,
         box=box,
         resumed=live.resumed,
+        passed=live.passed,
+        begun=live.begun,
+        system=_system_before(given, live),
         say=live.say,
         wake=live.wake,
         action=lambda action: cast(Action, built(action_of(action, context))),
@@ -210,6 +214,12 @@ def _once(begin: Callable[[], None], shared: dict[str, object]) -> Callable[[], 
             begin()
 
     return start
+
+
+def _system_before(given: BackendInput, live: Live) -> int:
+    if not live.resumed or live.folder is None:
+        return 0
+    return system_of(black_box_path(live.folder / log_name(given.robot.id)))
 
 
 def _box(given: BackendInput, live: Live, clock: Clock) -> BlackBox | None:

@@ -42,10 +42,23 @@ class WayBack:
         job.append(lambda: job.then(*self._parts(sortie_of(self._robot, passed), begun)))
         return job
 
+    def check(self, passed: Sequence[str], begun: str) -> None:
+        """Make sure that there is a way back, without a word to the vehicle.
+
+        Raises:
+            Refused: there is none that anybody has checked.
+        """
+        track = self._moves.track
+        self._parts(sortie_of(self._robot, passed), begun)
+        self._moves.track = track
+
     def _parts(self, sortie: Sequence[str], begun: str) -> list[Callable[[], None]]:
         here = self._vehicle.state().place
         low = here.height <= IN_THE_AIR
-        if not sortie or (low and bool(begun) and self._moves.kind(begun) is Land):
+        if low and bool(begun) and self._moves.kind(begun) is Land:
+            return []
+        if not sortie:
+            self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
             return []
         came = list(self._places(self._robot.home, sortie))
         first = self._steps[sortie[0]].movement

@@ -16,7 +16,7 @@ from mmrs_core.flight import modes
 from mmrs_core.flight.ardupilot import MavlinkVehicle
 from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
+from mmrs_core.flight.faults import FENCE_BREACHED, LINK_LOST, POSITION_LOST, TAKEN_OVER, Refused
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.link import Link
 from mmrs_core.flight.objects import Locator
@@ -27,6 +27,7 @@ from mmrs_core.flight.responses import NEEDS_POSITION, policy_for, respond
 from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
 from mmrs_core.flight.watch import Watch
 from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend_identity import recognise
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
 from mmrs_core.mavlink.backend_recovery import WayBack
@@ -55,6 +56,8 @@ class Equipment:
         locators: what finds objects, by description.
         box: None where no logs are kept.
         resumed: whether the vehicle may be in the air at first.
+        passed, begun: what it had done by then.
+        system: of the vehicle when the run began; 0: nobody knows.
         action: an action of the behaviour as one of the vehicle's program.
         start: to be called once the robot gets ready, for faults that are made on purpose.
         let_go: to be called before the link is closed.
@@ -70,6 +73,9 @@ class Equipment:
     locators: Mapping[str, Locator]
     box: BlackBox | None
     resumed: bool
+    passed: tuple[str, ...]
+    begun: str
+    system: int
     say: Callable[[str], None]
     wake: Callable[[], None]
     action: Callable[[Action], VehicleAction]
@@ -92,6 +98,7 @@ class MavlinkBackend:
         self._worker.changed = equipment.wake
         equipment.link.guard = self._worker.guard
         self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
+        self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
         mission, self._flights = mission_of(robot)
         self._mission = mission
         self._steps = {step.move: step for step in robot.steps}
@@ -204,8 +211,7 @@ class MavlinkBackend:
         self._response = ""
         self._handled.clear()
         self._move = begun or (passed[-1] if passed else "")
-        way = WayBack(self._robot, self._moves, self._with.vehicle, self._options.home_tolerance)
-        job = way.job(passed, begun)
+        job = self._way.job(passed, begun)
         job.first(self._take_up)
         self._begin(job, afresh=True)
 
@@ -273,16 +279,42 @@ class MavlinkBackend:
         self._with.radios.meet(self._with.link, self._with.url, patience)
 
     def _set_up(self) -> None:
+        """Have the vehicle know what it must, once it is known to be the robot's."""
         vehicle, robot = self._with.vehicle, self._robot
         self._watch.renew()
-        vehicle.answer_lost_link(self._alone.response, self._alone.after)
+        self._recognise()
         if self._with.resumed:
             vehicle.hold()
-        vehicle.prepare(fence_of(robot) if self._options.fence else (), rally_of(robot), self._mission)
+        vehicle.answer_lost_link(self._alone.response, self._alone.after)
+        fence = fence_of(robot) if self._options.fence else ()
+        vehicle.prepare(fence, rally_of(robot), self._mission)
+        if fence:
+            self._tell_fence()
         self._note_start()
         self._ready = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
+
+    def _tell_fence(self) -> None:
+        """Tell the vehicle what to do by itself when it is outside its fence."""
+        try:
+            self._with.vehicle.answer_breach(policy_for(FENCE_BREACHED, self._robot).response)
+        except Refused as error:
+            self._with.say(f"{error}")
+
+    def _recognise(self) -> None:
+        """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
+        resumed, tolerance = self._with.resumed, self._options.home_tolerance
+        recognise(
+            self._with.link,
+            self._with.vehicle,
+            self._robot,
+            inf if resumed else tolerance,
+            in_the_air=resumed,
+            system=self._with.system,
+        )
+        if resumed and not self._ready:
+            self._way.check(self._with.passed, self._with.begun)
 
     def _note_start(self) -> None:
         beat = self._with.link.latest("HEARTBEAT")
@@ -292,6 +324,7 @@ class MavlinkBackend:
             "vehicle": self._robot.vehicle,
             "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
             "home": self._robot.home,
+            "system": self._with.link.system,
         }
         self.note("start", content)
 

@@ -111,13 +111,16 @@ def _connected(
     shared: dict[str, object] = {}
     robots: dict[str, Backend] = {}
     for id, given in venture.inputs.items():
+        own = [record for record in venture.resumed if record.robot == id]
         live = Live(
             clock=venture.clock,
             wake=attention.for_robot(id),
             say=_named(venture.say, id),
             run=venture.run,
             folder=venture.folder,
-            resumed=any(record.robot == id for record in venture.resumed),
+            resumed=bool(own),
+            passed=tuple(record.move for record in own if record.label == "end"),
+            begun=own[-1].move if own and own[-1].label == "begin" else "",
             links=venture.links,
             shared=shared,
         )

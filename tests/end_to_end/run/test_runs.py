@@ -10,11 +10,14 @@ import time
 
 import pytest
 from fault_table.fleet import free_port, wait_for
-from fault_table.project import OUT, TOUR, Pad
+from fault_table.project import OUT, TOUR, Pad, home_of
 
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.sitl.commands import obey
 
 PATIENCE = 60.0
+TAKE_OFF = 22
 HOLDING = 17
 """ArduPilot's number of BRAKE."""
 
@@ -148,6 +151,46 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     again = vehicle.autopilot.track[before:]
     assert min((n - TOUR[0][0]) ** 2 + (e - TOUR[0][1]) ** 2 for _, n, e, _ in again) < 4.0
     assert all(least_distance(vehicle, place) < 2.0 for place in (OUT, *TOUR))
+
+
+@pytest.mark.parametrize(("system", "why"), [(7, "was system 1"), (1, "a pilot may have it")])
+def test_a_vehicle_that_is_not_the_robots_is_not_touched_by_a_resumed_run(fleet, system, why):
+    flown = fleet(Pad("a"))
+    killed = flown.start()
+    own = begun(flown, "a", "out")
+    killed.signal(signal.SIGKILL)
+    killed.end(PATIENCE)
+    own.stop()
+    latitude, longitude = home_of(0)
+    settings = Settings("copter", latitude, longitude, system)
+    with SimulatedVehicle(int(flown._links["a"].rpartition(":")[2]), settings, speedup=10.0) as other:
+        fly_by_hand(other)
+        before = dict(other.autopilot.parameters), len(other.autopilot.stores[0])
+        resumed = flown.start("--resume")
+        assert resumed.end(PATIENCE) == 1, resumed.said
+        assert why in resumed.said[-1]
+        assert (dict(other.autopilot.parameters), len(other.autopilot.stores[0])) == before
+        assert other.autopilot.mode_name == "loiter"
+
+
+def test_a_vehicle_in_the_air_is_not_taken_for_a_new_run(fleet):
+    flown = fleet(Pad("a"))
+    fly_by_hand(flown.vehicles["a"])
+    assert flown.start().end(PATIENCE) == 1
+    assert "in the air already" in flown.process.said[-1]
+    assert flown.vehicles["a"].autopilot.mode_name == "loiter"
+
+
+def fly_by_hand(vehicle):
+    """Have a pilot take off and loiter with a vehicle."""
+    assert wait_for(lambda: vehicle.autopilot.ready, PATIENCE)
+    with vehicle.lock:
+        pilot = vehicle.autopilot
+        pilot.set_mode(pilot.numbers["guided"])
+        pilot.arm()
+        obey(pilot, TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 15.0))
+    assert wait_for(lambda: vehicle.autopilot.body.position[2] > 10.0, PATIENCE)
+    vehicle.faults.take_stick("loiter")
 
 
 def test_a_folder_with_logs_is_not_flown_over(fleet):

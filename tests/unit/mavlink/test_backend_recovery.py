@@ -126,6 +126,21 @@ def test_on_the_ground_elsewhere_it_is_refused():
         recovered("s1", "s2", Vehicle(30.0, 0.0, 0.0))
 
 
+def test_a_way_back_is_looked_for_before_the_vehicle_hears_a_word():
+    vehicle = Vehicle(-60.0, 20.0, 20.0)
+    moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    with pytest.raises(Refused, match="bring it home"):
+        WayBack(ROBOT, moves, vehicle, 20.0).check(MOVES[: MOVES.index("s1") + 1], "s2")
+    assert vehicle.went == []
+    assert moves.track == []
+
+
+def test_a_vehicle_that_has_not_begun_must_be_at_home():
+    moves = Moves(ROBOT, Vehicle(500.0), Clock(1e6), {}, lambda kind, name, content: None)
+    with pytest.raises(Refused, match="bring it home"):
+        WayBack(ROBOT, moves, Vehicle(500.0), 20.0).check(["start"], "up")
+
+
 def test_the_corner_of_a_trajectory_is_on_the_way():
     vehicle = Vehicle(40.0, 0.0, 15.0)
     recovered("far", "end", vehicle)
