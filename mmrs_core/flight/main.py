@@ -100,7 +100,7 @@ def _slots(
         try:
             bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))
         except OSError as error:
-            parser.error(f"--log {options.log}: {error.strerror or error}")
+            parser.error(f"{error.filename}: {error.strerror}" if error.filename else str(error))
         except ValueError as error:
             parser.error(f"--log {options.log}: {error}")
         stack.callback(bus.close)

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import pytest
 
+from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,
@@ -146,3 +147,37 @@ def test_notifications_of_another_run_are_not_heard(controllers, endpoint, tmp_p
         alpha.send_signal(signal.SIGTERM)
         end(alpha)
     assert made.replayed(partial=True).faults == {"beta": "WAIT_TOO_LONG"}
+
+
+@pytest.mark.parametrize(
+    "killed", ["robot_beta.py", pytest.param("robot_alpha.py", marks=pytest.mark.thorough)]
+)
+def test_a_program_that_was_killed_is_resumed_on_the_bus(controllers, endpoint, killed):
+    made = controllers(waiting())
+    common = ("--dry-run", "--speedup", "150")
+    ways = {"robot_alpha.py": ("--bus-listen", endpoint), "robot_beta.py": ("--bus-connect", endpoint)}
+    with ExitStack() as stack:
+        running = {
+            name: stack.enter_context(made.start(name, *common, *way, "--log", str(made.logs / name)))
+            for name, way in ways.items()
+        }
+        await_line(running["robot_beta.py"], "waits for 'go'")
+        await_line(running["robot_alpha.py"], "'stay'")
+        dead = running[killed]
+        dead.kill()
+        dead.communicate()
+        again = (*common, *ways[killed], "--log", str(made.logs / killed), "--resume")
+        running[killed] = stack.enter_context(made.start(killed, *again))
+        for process in running.values():
+            code, said = end(process)
+            assert code == 0, said
+    result = replay(made.program, read_logs([made.logs / name for name in ways]))
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+
+
+def test_a_configuration_that_is_none_is_told_with_its_name(controllers, tmp_path):
+    file = tmp_path / "bus.json5"
+    file.write_text("no configuration")
+    code, said = controllers(two_drones()).run("robot_alpha.py", "--dry-run", "--bus-config", str(file))
+    assert code == 2
+    assert f"{file}: cannot be read as a configuration of Zenoh" in said
