@@ -112,6 +112,12 @@ def _carry_on(policy: Element, models: ModelSet) -> Iterator[Finding]:
         yield finding(policy, f"lets {whom} go on until the battery is empty")
 
 
+def _way_back(policy: Element, models: ModelSet) -> Iterator[Finding]:
+    response = text(policy, "response")
+    if text(policy, "event") == "POSITION_LOST" and response in ("RETURN", "EMERGENCY_AREA"):
+        yield finding(policy, f"{response} needs a way, and the robot does not know where it is")
+
+
 CONSTRAINTS = (
     Constraint(
         "RL017",
@@ -197,5 +203,12 @@ CONSTRAINTS = (
         _carry_on,
         "let the robot return, land or go to an emergency area",
         Severity.WARNING,
+    ),
+    Constraint(
+        "RL029",
+        "A robot that has lost its position is sent nowhere.",
+        (ROBOT, "Policy"),
+        _way_back,
+        "let it land, surface, hold or stop its thrust",
     ),
 )
