@@ -126,6 +126,36 @@ def peer(execution: str, folder: Path, number: int, response: str, ends: str) ->
     return outcome
 
 
+def split_network(execution: str, folder: Path, faults: str, after: float, event: str, ends: str) -> Outcome:
+    """Have two robots in two processes, and a bus between them that is cut or poor."""
+    outcome = Outcome(f"bus between processes: {faults}", execution, f"PEER_LOST → RETURN after {after:g} s")
+    pads = [
+        Pad("r0", "wait", (("PEER_LOST", "RETURN", after),)),
+        Pad("g0", "give", (("PEER_LOST", "RETURN", after),), 60.0, gives="r0"),
+    ]
+    with Fleet(folder, pads, execution) as fleet:
+        vehicle, endpoint = fleet.vehicles["r0"], f"tcp/127.0.0.1:{free_tcp_port()}"
+        waiting = fleet.start("--bus-listen", endpoint, "--inject", faults, robot="r0")
+        giving = fleet.start("--bus-connect", endpoint, robot="g0")
+        _reached(fleet, "r0", AT)
+        since = struck(vehicle)
+        waiting.end(40.0)
+        giving.end(20.0)
+        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        outcome.happened = story(vehicle, since)
+        steps = fleet.steps("r0")
+        outcome.line = json.dumps(steps[-1]) if steps else ""
+        found = [str(step["detail"]).partition(":")[0] for step in steps if step["label"] == "fault"]
+        if found != ([event] if event else []):
+            outcome.problems.append(f"the step log has faults {found}, not {event or 'none'}")
+        if ending(vehicle, since) != ends:
+            outcome.problems.append(f"does not end as wanted: {ends}")
+        outcome.problems += [f"the logs do not replay: {each}" for each in fleet.replayed().complaints]
+        if outcome.problems:
+            outcome.problems.append("said: " + " | ".join([*waiting.said[-12:], *giving.said[-6:]]))
+    return outcome
+
+
 @dataclass(frozen=True, slots=True)
 class Journey:
     """A story with several processes: execution and folder to what became of it."""
@@ -153,6 +183,13 @@ def _journeys() -> tuple[Journey, ...]:
         made.append(
             Journey(f"peer {signal.Signals(number).name}, {response}", fly, response == "EMERGENCY_AREA")
         )
+    for name, faults, after, event in (
+        ("bus cut for 20 s", "bus-cut@45+20", 60.0, ""),
+        ("bus cut for good", "bus-cut@45", 5.0, "PEER_LOST"),
+        ("poor bus", "bus-loss=0.3,bus-delay=0.5~0.5,bus-duplicate=0.3,seed=7", 60.0, ""),
+    ):
+        fly = lambda e, f, x=faults, a=after, v=event: split_network(e, f, x, a, v, "home")  # noqa: E731
+        made.append(Journey(name, fly))
     return tuple(made)
 
 
