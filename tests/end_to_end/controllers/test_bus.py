@@ -153,7 +153,9 @@ def test_notifications_of_another_run_are_not_heard(controllers, endpoint, tmp_p
     "killed", ["robot_beta.py", pytest.param("robot_alpha.py", marks=pytest.mark.thorough)]
 )
 def test_a_program_that_was_killed_is_resumed_on_the_bus(controllers, endpoint, killed):
-    made = controllers(waiting())
+    patient = (Policy("PEER_LOST", "LAND", 1e5),)
+    robots = tuple(replace(robot, policies=patient) for robot in waiting().robots)
+    made = controllers(replace(waiting(), robots=robots))
     common = ("--dry-run", "--speedup", "150")
     ways = {"robot_alpha.py": ("--bus-listen", endpoint), "robot_beta.py": ("--bus-connect", endpoint)}
     with ExitStack() as stack:
