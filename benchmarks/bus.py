@@ -15,6 +15,7 @@ import argparse
 import json
 import os
 import resource
+import signal
 import socket
 import subprocess
 import sys
@@ -58,12 +59,14 @@ def main() -> None:
     given = parser.parse_args()
     if given.part:
         part = json.loads(given.part)
-        {"answer": answer, "fleet": run_part}[part.pop("do")](**part)
+        {"answer": answer, "fleet": run_part, "sit": sit}[part.pop("do")](**part)
         return
     print(
         f"the bus, {date.today()}, seed {given.seed}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n"
     )
     latencies(given.notifies)
+    print()
+    losses(10)
     print()
     fleet(given.robots, given.seed)
 
@@ -207,6 +210,43 @@ def _synced(path: Path) -> float:
         file.flush()
         os.fsync(file.fileno())
     return time.monotonic() - begun
+
+
+def losses(count: int) -> None:
+    """Print how soon a robot is noticed to be gone whose process is killed, or frozen."""
+    print(f"until a robot is noticed to be gone, {count} killed and 3 frozen; milliseconds")
+    for word, number, times in (("killed", signal.SIGKILL, count), ("frozen", signal.SIGSTOP, 3)):
+        found = sorted(_lost_after(number) for _ in range(times))
+        print(f"{word:<44}{1e3 * median(found):>9.1f}{1e3 * found[-1]:>9.1f} at most")
+
+
+def _lost_after(number: signal.Signals) -> float:
+    endpoint = f"tcp/127.0.0.1:{_port()}"
+    _, b = _robots()
+    with tempfile.TemporaryDirectory() as folder:
+        slots = shared_slots(
+            [b], "run-0", Path(folder), ZenohCarrier("bench", "run-0", "ab", Endpoints((endpoint,)))
+        )
+        with _started({"do": "sit", "endpoint": endpoint, "folder": str(Path(folder) / "a")}) as process:
+            while slots.node.missing(["a"]):
+                time.sleep(0.01)
+            time.sleep(0.3)
+            begun = time.monotonic()
+            process.send_signal(number)
+            while not slots.lost(["a"]):
+                slots.await_change(1.0)
+            taken = time.monotonic() - begun
+            process.kill()
+        slots.close()
+    return taken
+
+
+def sit(endpoint: str, folder: str) -> None:
+    """Be a robot that is there, until the process is killed."""
+    a, _ = _robots()
+    carrier = ZenohCarrier("bench", "run-0", "ab", Endpoints(connect=(endpoint,)))
+    shared_slots([a], "run-0", Path(folder), carrier)
+    time.sleep(600.0)
 
 
 def fleet(robots: int, seed: int) -> None:
