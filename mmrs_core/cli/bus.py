@@ -6,6 +6,7 @@ import json as json_format
 import re
 import signal
 import threading
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,9 +15,10 @@ import typer
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.parameters import Behaviour, behaviour_file
 from mmrs_core.cli.settings import Json, settings_of
-from mmrs_core.errors import LinkLostError, UnreadableError
+from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from types import FrameType
 
     from mmrs_core.behaviour.program import Program
@@ -82,8 +84,8 @@ def keys(
     """
     from datetime import UTC, datetime
 
-    from mmrs_core.cli.bus_certificates import make_keys
-
+    with _needing("cryptography"):
+        from mmrs_core.cli.bus_certificates import make_keys
     holders = tuple(_holder(text) for text in robots)
     _refuse_doubles(holders)
     try:
@@ -126,8 +128,9 @@ def gateway(
     """
     from mmrs_core.cli.behaviours import load_program
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.flight.bus.over_zenoh import Endpoints
 
+    with _needing("eclipse-zenoh"):
+        from mmrs_core.flight.bus.over_zenoh import Endpoints
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
@@ -160,9 +163,10 @@ def state(
 
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
-    from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
     from mmrs_core.flight.bus.words import digest
 
+    with _needing("eclipse-zenoh"):
+        from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
         answers = states_of(mission, run, endpoints, seconds, robots or ())
@@ -177,6 +181,15 @@ def state(
     else:
         _say_states(shown, missing)
     return LinkLostError.exit_code if missing or not shown else 0
+
+
+@contextmanager
+def _needing(distribution: str) -> Iterator[None]:
+    """Say what to install where something that is imported here is missing."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise UnsupportedError(f"mmrs bus: needs {distribution}; pip install 'mmrs-core[bus]'") from error
 
 
 def _holder(text: str) -> Holder:
