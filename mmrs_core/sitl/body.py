@@ -38,6 +38,7 @@ class Body:
         onward: where it goes from there without a stop; None: it stops there.
         origin: where its leg begins, to which it keeps; None: it goes straight to its target.
         corner_pace: metres per second at which it turns from the leg before.
+        cut: metres from a corner at which it goes by.
         speed: commanded, metres per second over ground; climb, descent: limits of the vertical speed.
         wind: velocity of the air, metres per second north, east and up.
         airspeed: the fastest that it is in the air.
@@ -51,6 +52,7 @@ class Body:
     onward: Vector | None = None
     origin: Vector | None = None
     corner_pace: float = 0.0
+    cut: float = CUT
     wanted_heading: float | None = None
     speed: float = 5.0
     climb: float = 2.5
@@ -156,7 +158,7 @@ class Body:
         half = sqrt(max(0.0, (1.0 - cosine) / 2.0))
         if half < STRAIGHT:
             return self.speed, 0.0
-        pace = min(self.speed, sqrt(2.0 * self.acceleration * CUT) / half)
+        pace = min(self.speed, sqrt(2.0 * self.acceleration * self.cut) / half)
         pace = min(pace, sqrt(0.45 * length * self.acceleration / half))
         return pace, pace * pace * half / self.acceleration
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.autopilot import Autopilot, bearing
+from mmrs_core.sitl.body import CUT
 from mmrs_core.sitl.items import MISSION, MOVING, Item
 
 CLOSE = 0.2
+MEASURED_RADIUS = 2.0
+"""Metres for which it was measured how corners are cut; with another, it is taken to be in proportion."""
+
 TURN_SECONDS = 10.0
 """A circle of LOITER_TURNS takes so long: it is flown on the spot."""
 
@@ -93,7 +99,7 @@ def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
     if takes_off:
         place = (*body.position[:2], place[2])
     body.target = place
-    body.onward = _onward(pilot, item)
+    body.onward, body.cut = _onward(pilot, item), CUT * _radius(pilot.parameters) / MEASURED_RADIUS
     wanted = bearing(body.position, pilot.roi or place)
     if wanted is not None:
         body.wanted_heading = wanted
@@ -103,6 +109,14 @@ def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
         return False
     pilot.held += seconds
     return pilot.held >= _hold_of(item)
+
+
+def _radius(values: Mapping[str, float]) -> float:
+    """Return the metres from a place at which it counts as passed, as parameters have it."""
+    for name, metres in (("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0)):
+        if name in values:
+            return values[name] * metres
+    return MEASURED_RADIUS
 
 
 def _onward(pilot: Autopilot, item: Item) -> tuple[float, float, float] | None:

@@ -65,6 +65,8 @@ _COPTER: Mapping[str, float] = {
     "AVOID_MARGIN": 2.0,
     "AVOID_BEHAVE": 0,
     "OA_TYPE": 0,
+    "OA_MARGIN_MAX": 5.0,
+    "FLTMODE_GCSBLOCK": 0,
     "PRX1_TYPE": 0,
     "CAM1_TYPE": 1,
 }
@@ -81,6 +83,7 @@ _ROVER: Mapping[str, float] = {
     "AVOID_ENABLE": 0,
     "AVOID_MARGIN": 2.0,
     "OA_TYPE": 0,
+    "OA_MARGIN_MAX": 5.0,
 }
 _SUB: Mapping[str, float] = {
     "FS_GCS_ENABLE": 1,
@@ -111,6 +114,7 @@ _PX4: Mapping[str, float] = {
     "COM_DISARM_PRFLT": 10.0,
     "COM_DISARM_LAND": 2.0,
     "COM_OBS_AVOID": 0,
+    "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
     "MIS_TAKEOFF_ALT": 2.5,
     "RTL_RETURN_ALT": 15.0,

@@ -43,6 +43,12 @@ def test_a_corner_with_a_hold_is_reached(bench):
     assert bench.closest_to(CORNER) <= 0.2
 
 
+def test_a_smaller_radius_cuts_less(bench):
+    bench.pilot.parameters["WPNAV_RADIUS"] = 50.0
+    flown(bench, *bench.go_to(*LEGS), bench.item(LOITER, LEGS[-1]), until=4)
+    assert 0.3 < bench.closest_to(CORNER) < 0.5
+
+
 def test_the_slower_it_goes_the_less_it_cuts(bench):
     flown(bench, plain(SPEED, 1, 2.0), *bench.go_to(*LEGS), bench.item(LOITER, LEGS[-1]), until=5)
     assert bench.closest_to(CORNER) < 0.7
