@@ -16,7 +16,7 @@ OURS = frozenset({modes.GUIDED, modes.AUTO, modes.HOLD, modes.LAND, modes.SURFAC
 
 
 def recognise(
-    link: Link, vehicle: MavlinkVehicle, robot: Robot, tolerance: float, *, in_the_air: bool, system: int
+    link: Link, vehicle: MavlinkVehicle, robot: Robot, tolerance: float, *, under_way: bool, system: int
 ) -> None:
     """Make sure that a vehicle is the robot's, and that nobody flies it; only messages are asked for.
 
@@ -25,7 +25,7 @@ def recognise(
         vehicle: at its end.
         robot: its program.
         tolerance: metres that it may be from home.
-        in_the_air: whether it may be there, as where a run is resumed.
+        under_way: whether its motors may run, as where a run is resumed.
         system: that it had when the run began; 0: nobody knows.
 
     Raises:
@@ -37,13 +37,13 @@ def recognise(
     if system and link.system != system:
         raise Refused(f"the vehicle is system {link.system}, and the robot's was system {system}")
     preparation.check_identity(link, telemetry, robot.vehicle, robot.home, tolerance)
-    if not telemetry.airborne():
+    if not telemetry.armed():
         return
-    if not in_the_air:
-        raise Refused("the vehicle is in the air already: somebody else flies it")
+    if not under_way:
+        raise Refused("the vehicle's motors run already: somebody else has it")
     mode = vehicle.state().mode
     if mode not in OURS and telemetry.mode() not in modes.of_failsafes(link, robot.vehicle):
-        raise Refused(f"the vehicle is in the air in mode {mode}: a pilot may have it")
+        raise Refused(f"the vehicle's motors run, and it is in mode {mode}: a pilot may have it")
 
 
 def system_of(box: Path) -> int:

@@ -310,7 +310,7 @@ class MavlinkBackend:
             self._with.vehicle,
             self._robot,
             inf if resumed else tolerance,
-            in_the_air=resumed,
+            under_way=resumed,
             system=self._with.system,
         )
         if resumed and not self._ready:

@@ -173,11 +173,11 @@ def test_a_vehicle_that_is_not_the_robots_is_not_touched_by_a_resumed_run(fleet,
         assert other.autopilot.mode_name == "loiter"
 
 
-def test_a_vehicle_in_the_air_is_not_taken_for_a_new_run(fleet):
+def test_a_vehicle_whose_motors_run_is_not_taken_for_a_new_run(fleet):
     flown = fleet(Pad("a"))
     fly_by_hand(flown.vehicles["a"])
     assert flown.start().end(PATIENCE) == 1
-    assert "in the air already" in flown.process.said[-1]
+    assert "motors run already" in flown.process.said[-1]
     assert flown.vehicles["a"].autopilot.mode_name == "loiter"
 
 
