@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
+from collections.abc import Mapping, Sequence
 from math import dist
 
 from fault_table.fleet import Fleet
@@ -140,10 +141,12 @@ class Watch:
             self._turned = pilot.time - self._struck.time
 
     def _logged(self) -> bool:
-        if "" in self._row.event.split("|") or not self._fleet.process.running():
+        if not self._fleet.process.running():
             return True
         steps = self._fleet.steps(self._robot)
-        return bool(steps) and steps[-1]["label"] == "fault"
+        if self._row.ends == "done":
+            return _complete(steps)
+        return "" in self._row.event.split("|") or (bool(steps) and steps[-1]["label"] == "fault")
 
     def _check_hands_off(self, since: float) -> None:
         sent = talked(self._vehicle, since + HANDS_OFF_SECONDS)
@@ -159,6 +162,8 @@ class Watch:
             problems.append(f"the step log has faults {faults}, not {row.event or 'none'}")
         elif faults and steps[-1]["label"] != "fault":
             problems.append(f"a step follows the fault: {steps[-1]}")
+        if row.ends == "done" and not _complete(steps):
+            problems.append("the program was not carried out to its end")
         box = self._fleet.box(self._robot)
         lines = [line for line in box if line["kind"] == ("order" if row.order else "decision")]
         fitting = [line for line in lines if row.response and line.get("response") == row.response]
@@ -167,3 +172,7 @@ class Watch:
             problems.append(f"the black box has no decision to {row.response}: {lines}")
         if row.order and not any(line["order"] == row.order and line["confirmed"] for line in lines):
             problems.append(f"the black box has no order {row.order}: {lines}")
+
+
+def _complete(steps: Sequence[Mapping[str, object]]) -> bool:
+    return bool(steps) and (steps[-1]["label"], steps[-1]["move"]) == ("end", "stop")
