@@ -189,7 +189,7 @@ def _needing(distribution: str) -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise UnsupportedError(f"mmrs bus: needs {distribution}; pip install 'mmrs-core[bus]'") from error
+        raise UnsupportedError(f"bus: needs {distribution}; pip install 'mmrs-core[bus]'") from error
 
 
 def _holder(text: str) -> Holder:

@@ -160,17 +160,20 @@ def test_a_gateway_that_is_killed_is_a_lost_peer(gateway, client, peer, until):
     assert until(lambda: peer.lost(["a"])) < 1.0
 
 
+@pytest.mark.thorough
 def test_a_gateway_that_is_frozen_is_a_lost_peer(gateway, client, peer, until):
     until(lambda: not peer.missing(["a"]))
     os.kill(gateway[0].pid, signal.SIGSTOP)
     assert until(lambda: peer.lost(["a"])) < 2 * LEASE
 
 
+@pytest.mark.thorough
 def test_a_gateway_without_a_program_keeps_no_robot(gateway, peer):
     time.sleep(1.0)
     assert peer.missing(["a"]) == ("a",)
 
 
+@pytest.mark.thorough
 def test_a_program_notices_that_its_peer_has_gone(client, peer, until):
     until(lambda: not peer.missing(["a"]))
     time.sleep(0.2)

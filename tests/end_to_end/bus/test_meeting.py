@@ -28,6 +28,7 @@ class Ready:
         self.begun = time.monotonic()
 
 
+@pytest.mark.thorough
 def test_robots_of_several_processes_begin_at_one_instant(ends):
     ready = [Ready(ends.open(robot), robot) for robot in NAMES]
     for each in ready:

@@ -30,6 +30,7 @@ def test_robots_with_certificates_notify_each_other(secured, notify):
     assert b.state(("b", "go")).active
 
 
+@pytest.mark.thorough
 def test_a_third_robot_reaches_both(secured, until, notify):
     ends, a, b = secured
     c = ends.open("c")

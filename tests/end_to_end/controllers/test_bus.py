@@ -107,6 +107,7 @@ def test_a_robot_notices_that_a_peer_was_killed(controllers, endpoint):
     assert made.replayed(partial=True).faults == {"beta": "PEER_LOST"}
 
 
+@pytest.mark.thorough
 def test_a_robot_notices_that_a_peer_is_frozen_and_does_not_wait_for_it_at_the_end(controllers, endpoint):
     made = controllers(waiting(Policy("PEER_LOST", "LAND", 3.0)))
     with ExitStack() as stack:
