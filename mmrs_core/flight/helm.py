@@ -68,16 +68,24 @@ class Helm:
 
         Raises:
             Refused: the vehicle does not go into the mode.
+            Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
         """
-        wanted = self._modes[mode]
+        wanted, before, accepted = self._modes[mode], self._telemetry.mode(), self._accepted
         if mode == modes.GUIDED:
             self.habits.begin_guiding()
         self.let_go()
         for _ in range(MODE_TRIES):
             command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
-            if self._link.wait(
-                lambda: self._telemetry.mode() == wanted.number, self._link.clock.patience(MODE_SECONDS)
-            ):
+            self._link.wait(
+                lambda: (
+                    self._telemetry.mode() == wanted.number
+                    or self._telemetry.mode() not in {before, *accepted}
+                ),
+                self._link.clock.patience(MODE_SECONDS),
+            )
+            if (number := self._telemetry.mode()) not in {before, wanted.number, *accepted}:
+                raise self._left(number, modes.word_of(self._link, self._kind, before))
+            if self._telemetry.mode() == wanted.number:
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
                 if mode != modes.GUIDED:
                     self.habits.end_guiding()
@@ -98,16 +106,17 @@ class Helm:
         if not self._accepted or number in self._accepted:
             return
         if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
-            self.habits.end_guiding()
-            left = self._mode or "take-off"
-            cause = (
-                self._telemetry.failsafe() if number in modes.of_failsafes(self._link, self._kind) else None
-            )
-            if cause is not None:
-                raise Fault(cause, f"the vehicle left mode {left} by itself, for mode {self.mode()}")
-            raise Fault(
-                TAKEN_OVER, f"the vehicle left mode {left} for {self.mode()}: somebody else has taken over"
-            )
+            raise self._left(number, self._mode or "take-off")
+
+    def _left(self, number: int, mode: str) -> Fault:
+        """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
+        self.habits.end_guiding()
+        cause = self._telemetry.failsafe()
+        if cause is not None and number in modes.answers_to(self._link, self._kind, cause):
+            return Fault(cause, f"the vehicle left mode {mode} by itself, for mode {self.mode()}")
+        return Fault(
+            TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: somebody else has taken over"
+        )
 
     def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
         """Wait until a test holds.

@@ -8,6 +8,8 @@ from typing import TypeAlias
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from .faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
+from .faults import LINK_LOST as LOST_LINK
 from .link import Link
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
@@ -101,6 +103,32 @@ def of_failsafes(link: Link, kind: str) -> frozenset[int]:
     if is_px4(link):
         return frozenset(px4_number(main, sub) for main, sub in PX4_FAILSAFES)
     return FAILSAFES[kind]
+
+
+ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
+    "copter": {
+        POSITION_LOST: frozenset({9}),
+        FENCE_BREACHED: frozenset({6, 9, 17, 21}),
+        BATTERY_LOW: frozenset({6, 9, 21}),
+        LOST_LINK: frozenset({6, 9, 17, 21}),
+    },
+    "rover": {event: frozenset({4, 11, 12}) for event in (FENCE_BREACHED, BATTERY_LOW, LOST_LINK)}
+    | {POSITION_LOST: frozenset({4})},
+    "sub": {event: frozenset({9}) for event in (POSITION_LOST, BATTERY_LOW, LOST_LINK)},
+}
+"""Modes into which an ArduPilot goes by itself, by the event that it answers so.
+
+A pilot who takes over because of an event goes into another: that the event is there is no reason to
+take the vehicle back. What a pilot may choose as well (to hold the height without a position) is left
+out, although ArduPilot can be told to answer so.
+"""
+
+
+def answers_to(link: Link, kind: str, event: str) -> frozenset[int]:
+    """Return the numbers of the modes into which a vehicle goes by itself when an event happens."""
+    if is_px4(link):
+        return of_failsafes(link, kind)
+    return ANSWERS[kind].get(event, frozenset())
 
 
 def px4_number(main: int, sub: int) -> int:

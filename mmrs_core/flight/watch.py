@@ -116,9 +116,10 @@ class Watch:
         self._check_link(self._link)
         if self._hands_off:
             return
+        # Whoever has the vehicle goes before all policies, also where both are seen at once.
+        self._check_pilot(self._vehicle, self._link, self._signs)
         for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
             self._weigh(event, why)
-        self._check_pilot(self._vehicle, self._link, self._signs)
 
     def _low(self) -> str:
         assert self._vehicle is not None
@@ -175,20 +176,30 @@ class Watch:
         tells = vehicle.telemetry
         if not tells.armed() or tells.mode() == FIRST_MODE:
             # One that has started anew has lost its position, too: that is no cause.
-            link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
-            return self._cause(vehicle, signs)
+            if link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS)):
+                return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
+            return None
         by_itself = tells.mode() in modes.of_failsafes(link, self._robot.vehicle)
         seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
-        return link.wait(lambda: self._cause(vehicle, signs), seconds)
+        return link.wait(lambda: self._cause(vehicle, link, signs), seconds)
 
-    def _cause(self, vehicle: MavlinkVehicle, signs: Signs) -> tuple[str, str] | None:
-        """Return the event that the vehicle's own failsafe answers, if it is one that policies answer."""
-        left = _left(vehicle)
+    def _cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
+        """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
+        if signs.restarted and self.moving:
+            return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
+        left, mode = _left(vehicle), vehicle.telemetry.mode()
         told = [(left.event, str(left))] if left is not None and left.event != TAKEN_OVER else []
-        found = next(((event, why) for event, why in (*signs.seen(moving=self.moving), *told) if why), None)
-        if found is None or not self._heeds(found[0]):
+        for event, why in (*signs.seen(moving=self.moving), *told):
+            if why and mode in modes.answers_to(link, self._robot.vehicle, event):
+                return self._answered(event, why)
+        return None
+
+    def _answered(self, event: str, why: str) -> tuple[str, str] | None:
+        """Return an event with its reason, unless the robot does not heed it, or carries on."""
+        if not self._heeds(event):
             return None
-        return None if policy_for(found[0], self._robot, self.current()).response == CONTINUE else found
+        borne = policy_for(event, self._robot, self.current()).response == CONTINUE
+        return None if borne else (event, why)
 
 
 def _left(vehicle: MavlinkVehicle) -> Fault | None:

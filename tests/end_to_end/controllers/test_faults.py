@@ -261,3 +261,32 @@ def test_stop_before_there_is_a_vehicle_ends_the_program(controllers):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=30)
     assert process.returncode == 130
+
+
+@pytest.mark.parametrize(
+    ("fault", "mode", "policy"),
+    [
+        ("gps-lost", "alt_hold", Policy("POSITION_LOST", "LAND")),
+        pytest.param(
+            "gps-lost", "stabilize", Policy("POSITION_LOST", "LAND", 5.0), marks=pytest.mark.thorough
+        ),
+        pytest.param("obstacle", "loiter", Policy("OBSTACLE", "HOLD", 10.0), marks=pytest.mark.thorough),
+    ],
+)
+def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
+    controllers, hangar, fault, mode, policy
+):
+    made = controllers(one_drone(policy))
+    vehicles, links = hangar(made.program, speedup=5.0)
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(vehicles["alpha"]))
+        vehicles["alpha"].faults.begin(fault)
+        time.sleep(0.1)
+        vehicles["alpha"].faults.take_stick(mode)
+        changes = len(vehicles["alpha"].autopilot.modes)
+        assert any("hands off" in line for line in process.stderr)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    assert len(vehicles["alpha"].autopilot.modes) == changes
+    assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
