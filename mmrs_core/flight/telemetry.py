@@ -161,12 +161,17 @@ class Telemetry:
         found = self._link.latest("GLOBAL_POSITION_INT")
         return None if found is None else (found.alt - found.relative_alt) * 1e-3
 
-    def speed(self) -> float:
-        """Return the speed in metres per second."""
+    def velocity(self) -> tuple[float, float, float]:
+        """Return the speed north, east and up in metres per second."""
         found = self._link.latest(self._position)
         if found is None:
-            return 0.0
-        return float(hypot(found.vx, found.vy, found.vz) * (0.01 if self._geographic else 1.0))
+            return (0.0, 0.0, 0.0)
+        unit = 0.01 if self._geographic else 1.0
+        return (found.vx * unit, found.vy * unit, -found.vz * unit)
+
+    def speed(self) -> float:
+        """Return the speed in metres per second."""
+        return float(hypot(*self.velocity()))
 
     def heading(self) -> float | None:
         """Return the heading in degrees clockwise from north; None where the vehicle does not say."""

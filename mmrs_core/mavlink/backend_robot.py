@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import hypot, inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -16,18 +16,21 @@ from mmrs_core.flight import modes
 from mmrs_core.flight.ardupilot import MavlinkVehicle
 from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.energy import way_back
 from mmrs_core.flight.faults import FENCE_BREACHED, LINK_LOST, POSITION_LOST, TAKEN_OVER, Refused
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.link import Link
 from mmrs_core.flight.objects import Locator
+from mmrs_core.flight.places import offset
 from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.radios import Radios
+from mmrs_core.flight.recognition import recognise
 from mmrs_core.flight.responses import NEEDS_POSITION, policy_for, respond
+from mmrs_core.flight.steering import STILL
 from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
 from mmrs_core.flight.watch import Watch
 from mmrs_core.mavlink.backend_ground import Ground
-from mmrs_core.mavlink.backend_identity import recognise
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
 from mmrs_core.mavlink.backend_recovery import WayBack
@@ -45,6 +48,12 @@ _MODES = {
     "SURFACE": (modes.SURFACE,),
 }
 """Modes that show that a vehicle obeys."""
+
+_GOES = ("RETURN", "EMERGENCY_AREA")
+"""Responses in a mode that the vehicle may have been in before."""
+
+NEAR = 1.0
+"""Metres from the first place of the way back at which nobody can see whether a vehicle goes there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +114,7 @@ class MavlinkBackend:
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
-        self._response = ""
+        self._response, self._told = "", 0.0
         self._holding = self._hands_off = False
         self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
@@ -178,6 +187,7 @@ class MavlinkBackend:
             return
         found = self._worker.fault
         self._response, self._holding, self._under_way = response, False, ()
+        self._told = now
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, response)
         if found is not None and found.event == LINK_LOST:
@@ -192,10 +202,16 @@ class MavlinkBackend:
         self._with.link.wake()
 
     def obeys(self, now: float) -> bool:
-        """Return whether the vehicle is in the mode of the response, or has carried it out."""
+        """Return whether the vehicle has carried out the response, or was seen to begin it since."""
         if self._worker.fault is not None or not self._worker.started:
             return False
-        return self._worker.done or self._with.vehicle.state().mode in _MODES.get(self._response, ())
+        if self._worker.done:
+            return True
+        if self._with.link.silent_for() >= now - self._told:
+            return False
+        if self._with.vehicle.state().mode not in _MODES.get(self._response, ()):
+            return False
+        return self._response not in _GOES or self._heads_back()
 
     def watched(self, now: float) -> bool:
         """Return whether the motors run, and the vehicle holds or a pilot has it.
@@ -357,6 +373,15 @@ class MavlinkBackend:
         vehicle, track = self._with.vehicle, self._moves.track
         self._holding = respond(response, self._robot, vehicle, track, lambda movement: movement())
         self._watch.moving = self._holding
+
+    def _heads_back(self) -> bool:
+        """Return whether the vehicle comes nearer to the first place of its way back."""
+        here, track = self._with.vehicle.state().place, self._moves.track
+        goal = next(iter(way_back(self._robot, self._response, track)), self._robot.home)
+        away = offset(here, goal)
+        velocity = self._with.vehicle.telemetry.velocity()
+        nearing = sum(pace * way for pace, way in zip(velocity, away, strict=True))
+        return hypot(*away) <= NEAR or (hypot(*velocity) > STILL and nearing > 0.0)
 
     def _stand_or_go(self, move: str) -> None:
         """Say whether the robot is under way, and where its sorties begin."""

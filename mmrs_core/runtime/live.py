@@ -24,7 +24,7 @@ from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
-from mmrs_core.runtime.orders import ANSWER, Orders
+from mmrs_core.runtime.orders import ENDINGS, HOLD, RESUME, Order, Orders
 from mmrs_core.runtime.terms import Ending, Terms
 
 
@@ -142,17 +142,55 @@ def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
             robot.prepare(clock.now())
             waiting.append(id)
     venture.orders.called = clock.wake
+    early = _EarlyOrders(venture, robots)
     while waiting:
         for id in waiting:
             _refuse_fault(id, robots[id], clock.now())
         waiting = [id for id in waiting if not robots[id].finished(clock.now())]
-        for order in venture.orders.taken():
-            for id in order.robots:
-                order.refuse(id, "is not ready yet")
-            if order.kind != ANSWER:
-                raise KeyboardInterrupt
+        early.look()
         if waiting:
             clock.sleep_until(clock.now() + PACE)
+    early.pass_on()
+
+
+class _EarlyOrders:
+    """Orders that come before anything moves."""
+
+    def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
+        self._venture, self._robots = venture, robots
+        self._later: list[Order] = []
+        self._ended: set[str] = set()
+
+    def look(self) -> None:
+        """Obey what can be obeyed on the ground; once every robot is to end, nothing begins.
+
+        Raises:
+            KeyboardInterrupt: if every robot was ordered to end its program.
+        """
+        for order in self._venture.orders.taken():
+            if order.kind in (HOLD, RESUME):
+                for id in order.robots:
+                    order.refuse(id, "is not ready yet")
+            else:
+                self._keep(order)
+        if self._ended >= set(self._robots):
+            self._venture.say("stopped before anything moved")
+            raise KeyboardInterrupt
+
+    def pass_on(self) -> None:
+        """Have the interpreter end the programs that were ordered to end, and know the answers."""
+        for order in self._later:
+            self._venture.orders.give(order.kind, order.robots, question=order.question, answer=order.answer)
+
+    def _keep(self, order: Order) -> None:
+        self._later.append(order)
+        for id in order.robots:
+            if id in self._robots:
+                order.confirm(id)
+            else:
+                order.refuse(id, "no such robot here")
+        if order.kind in ENDINGS:
+            self._ended.update(order.robots)
 
 
 def _refuse_fault(id: str, robot: Backend, now: float) -> None:

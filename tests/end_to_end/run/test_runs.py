@@ -108,6 +108,16 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
+@pytest.mark.thorough
+def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
+    flown = fleet(Pad("a"), speedup=8.0)
+    process = flown.start()
+    vehicle = begun(flown, "a", "out")
+    vehicle.faults.cut_link()
+    assert not control(flown, "return", "--seconds", "1")["a"]["confirmed"]
+    assert process.end(PATIENCE) == 5, process.said
+
+
 def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
     flown = fleet(Pad("a"), Pad("b", "wait"), Pad("g", "give", stay=100.0, gives="b"))
     process = flown.start()

@@ -249,6 +249,45 @@ def test_no_robot_begins_before_all_are_ready(live):
     assert run.end().outcome is Outcome.SUCCESS
 
 
+TWO = program(robot("a", [do("walk")]), robot("b", [do("walk")]))
+
+
+def test_an_order_to_hold_before_anything_moves_is_refused_and_ends_nothing(live):
+    run = live(TWO, Script(ready=0.3))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    assert run.order(HOLD, "a").refused == {"a": "is not ready yet"}
+    assert run.end().outcome is Outcome.SUCCESS
+
+
+def test_a_robot_that_is_to_come_home_before_it_left_does_not_leave(live):
+    run = live(TWO, Script(ready=0.3))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    assert list(run.order(RETURN, "a").confirmed) == ["a"]
+    assert run.end().faults == {"a": Fault("ORDERED", "order to return")}
+    assert "a begin walk" not in run.shown()
+    assert "b end walk" in run.shown()
+
+
+def test_nothing_begins_once_every_robot_was_told_to_stop(live):
+    run = live(TWO, Script(ready=inf))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.orders.give(STOP, ["a"])
+    run.orders.give(STOP, ["b"])
+    run.end()
+    assert isinstance(run.error, KeyboardInterrupt)
+    assert run.records == []
+    assert "stopped before anything moved" in run.said
+
+
+def test_an_answer_that_comes_before_the_question_counts(live):
+    behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:q", "x", "stop")}))
+    run = live(behaviour, Script(ready=0.3), conditions=standard_conditions(["answer:q"]))
+    run.wait_for(lambda: run.script.robots)
+    run.orders.give("answer", ["r"], question="q", answer=True)
+    assert run.end().outcome is Outcome.SUCCESS
+    assert "r choose h true" in run.shown()
+
+
 @pytest.mark.parametrize(("which", "error"), [("LINK_LOST", LinkLostError), ("REFUSED", MmrsError)])
 def test_a_robot_that_does_not_get_ready_ends_the_run_before_anything_moves(live, which, error):
     run = live(program(robot("a", [do("h")]), robot("b", [do("h")])), Script(ready=inf))
