@@ -279,6 +279,7 @@ class Robot:
         descent: metres per second at which it comes down; None where nobody knows.
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
+        straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
         mission: name of it; fleet: all robots of it, this one included.
         travel: how carefully it travels.
     """
@@ -301,6 +302,7 @@ class Robot:
     fence: tuple[tuple[Place, ...], ...] = ()
     rally: tuple[Place, ...] = ()
     escapes: tuple[tuple[str, Place], ...] = ()
+    straight: bool = True
     mission: str = field(default="", kw_only=True)
     fleet: tuple[str, ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)

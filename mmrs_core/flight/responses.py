@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from .energy import way_back
@@ -19,10 +20,16 @@ CONTINUE = "CONTINUE"
 HOLD = "HOLD"
 LAND = "LAND"
 NOTHING = "NOTHING"
+ESCAPE = "EMERGENCY_AREA"
 RETURN = "RETURN"
 
 DEFAULTS: Mapping[str, str] = {LINK_LOST: RETURN, BATTERY_LOW: RETURN, TAKEN_OVER: NOTHING}
 """Responses where no policy says anything; to anything else, robots hold."""
+
+BLOCKED = (
+    "cannot fly straight to an emergency area from everywhere on its way: where nobody hears it, its vehicle"
+    " goes back the way it came instead"
+)
 
 NEEDS_POSITION = frozenset({RETURN, "EMERGENCY_AREA", HOLD})
 """Responses that nobody can carry out who does not know where it is."""
@@ -39,6 +46,16 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
         if policy.event == event:
             return policy
     return Policy(event, DEFAULTS.get(event, HOLD))
+
+
+def alone(policy: Policy, robot: Robot) -> Policy:
+    """Return what the vehicle is told to do by itself about a lost link.
+
+    It flies to the nearest rally point in a straight line and knows nothing of forbidden areas: where
+    such a line may be blocked, it goes back the way it came instead.
+    """
+    blocked = policy.response == ESCAPE and not robot.straight
+    return replace(policy, response=RETURN) if blocked else policy
 
 
 def response_to(event: str, robot: Robot, first: Sequence[Policy] = ()) -> str:

@@ -10,7 +10,7 @@ from .desk import Desk
 from .faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from .journal import Journal
 from .program import Choose, Policy, Robot, Then
-from .responses import CONTINUE, policy_for
+from .responses import BLOCKED, CONTINUE, alone, policy_for
 from .vehicle import Vehicle
 
 GLANCE_SECONDS = 0.1
@@ -79,7 +79,10 @@ class Waits:
 
     def tell_vehicle(self) -> None:
         """Tell the vehicle what it must do without us, here."""
-        policy = policy_for(LINK_LOST, self._robot, self.policies)
+        wanted = policy_for(LINK_LOST, self._robot, self.policies)
+        policy = alone(wanted, self._robot)
+        if policy != wanted:
+            self._desk.say(f"{self._robot.id!a}: {BLOCKED}")
         self._vehicle.answer_lost_link(policy.response, policy.after)
 
     def _follow(self, policies: tuple[Policy, ...]) -> None:

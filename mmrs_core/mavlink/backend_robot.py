@@ -26,7 +26,7 @@ from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.radios import Radios
 from mmrs_core.flight.recognition import recognise
-from mmrs_core.flight.responses import NEEDS_POSITION, policy_for, respond
+from mmrs_core.flight.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
 from mmrs_core.flight.steering import STILL
 from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
 from mmrs_core.flight.watch import Watch
@@ -100,7 +100,7 @@ class MavlinkBackend:
         self._robot, self._with, self._options = robot, equipment, options
         self._policies: Sequence[Policy] = ()
         self._watch = self._new_watch()
-        self._alone = self._wanted = policy_for(LINK_LOST, robot)
+        self._alone = self._wanted = alone(policy_for(LINK_LOST, robot), robot)
         self._worker = Worker(
             f"robot {robot.id!a}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
         )
@@ -301,6 +301,8 @@ class MavlinkBackend:
         self._recognise()
         if self._with.resumed:
             vehicle.hold()
+        if self._alone != policy_for(LINK_LOST, robot, self._policies):
+            self._with.say(BLOCKED)
         vehicle.answer_lost_link(self._alone.response, self._alone.after)
         fence = fence_of(robot) if self._options.fence else ()
         vehicle.prepare(fence, rally_of(robot), self._mission)
@@ -400,7 +402,7 @@ class MavlinkBackend:
     def _follow(self, policies: Sequence[Policy]) -> None:
         """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
         self._policies = policies
-        self._wanted = policy_for(LINK_LOST, self._robot, policies)
+        self._wanted = alone(policy_for(LINK_LOST, self._robot, policies), self._robot)
 
     def _instruct(self) -> None:
         if self._wanted != self._alone:

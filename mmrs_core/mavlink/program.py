@@ -13,7 +13,7 @@ from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.earth import metres
-from mmrs_core.mavlink.escapes import escapes_of
+from mmrs_core.mavlink.escapes import escapes_of, straight_lines_are_clear
 from mmrs_core.mavlink.fencing import fence_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
@@ -197,6 +197,15 @@ def _head(
     yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
     yield "escapes", tuple(escapes_of(context, input, points, clearance))
+    if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points, clearance):
+        yield "straight", False
+
+
+def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:
+    """Return whether the vehicle is to reach an emergency area by itself, anywhere."""
+    everywhere = policies_of(robot, input)
+    somewhere = (policy for each in robot.transitions.values() for policy in each.policies)
+    return ("LINK_LOST", "EMERGENCY_AREA") in ((p.event, p.response) for p in (*everywhere, *somewhere))
 
 
 def _endurance(context: RobotContext) -> Iterator[tuple[str, object]]:
