@@ -15,6 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from . import modes, preparation, safeguards
 from .commands import Unanswered, command, name_of
 from .faults import NO_PROGRESS, Fault, Refused
+from .following import Following
 from .helm import MODE_SECONDS, Helm
 from .link import ANYBODY, Link, Message
 from .missions import Item, mark_of
@@ -171,7 +172,7 @@ class MavlinkVehicle:
 
         Raises:
             Refused: the vehicle has another mission by now, or does not begin with that item.
-            Fault: no item was reached for too long.
+            Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
         """
         self._helm.arm()
         self._check_mission()
@@ -179,9 +180,10 @@ class MavlinkVehicle:
         if not self._link.wait(lambda: self._item() == first, self._link.clock.patience(MODE_SECONDS)):
             raise Refused(f"the vehicle does not go to item {first} of its mission")
         self._helm.enter(modes.AUTO)
+        following = Following(self._telemetry, self._places(first, last), self._item, first)
         done = first - 1
         while done < last:
-            now = self._await_item_after(done + 1)
+            now = self._await_item_after(done + 1, following)
             for seq in range(done + 1, now):
                 reached(seq)
             done = now - 1
@@ -299,6 +301,14 @@ class MavlinkVehicle:
                 return Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
         return None
 
+    def _places(self, first: int, last: int) -> dict[int, Place]:
+        """Return where the items of a run are, by their number, as far as they are anywhere."""
+        return {
+            seq: Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
+            for seq, item in enumerate(self._mission[: last + 1])
+            if seq >= first and (item.x or item.y)
+        }
+
     def _check_mission(self) -> None:
         """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
 
@@ -310,9 +320,10 @@ class MavlinkVehicle:
         if self._mark and found and found != self._mark:
             raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
 
-    def _await_item_after(self, seq: int) -> int:
+    def _await_item_after(self, seq: int, following: Following) -> int:
         def behind() -> int | None:
-            return self._item() if self._item() > seq else None
+            now = following.look()
+            return now if now > seq else None
 
         found = self._link.wait(behind, 10 * PATIENCE_SECONDS)
         self._helm.check()

@@ -19,6 +19,8 @@ PATIENCE_SECONDS = 60.0
 RESEND_SECONDS = 1.0
 STILL = 0.3
 CLOSE_DEGREES = 5.0
+ABREAST_METRES = 0.1
+"""How near a place must be that is gone through: chains of short legs around a corner would add up more."""
 
 
 class Steering:
@@ -43,13 +45,14 @@ class Steering:
         self._helm.pace(speed)
         self._speed = speed
         self._point(look)
-        way = distance(self._telemetry.here(), place)
+        begun = self._telemetry.here()
+        way = distance(begun, place)
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         while True:
             self._steer(place, look)
             if look is not None and isinstance(look.at, Local):
                 self._point(look)
-            if self._link.wait(lambda: self._arrived(place, through), RESEND_SECONDS):
+            if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
                 break
             self._helm.check()
             if self._link.clock.now() > limit:
@@ -124,9 +127,15 @@ class Steering:
     def _send_target(self, place: Place, yaw: float) -> None:
         self._helm.habits.aim(place, radians(yaw), self._speed)
 
-    def _arrived(self, place: Place, through: bool) -> bool:
-        near = distance(self._telemetry.here(), place) <= self._acceptance
-        return near and (through or self._telemetry.speed() <= STILL)
+    def _arrived(self, place: Place, begun: Place | None) -> bool:
+        """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
+        here = self._telemetry.here()
+        away = distance(here, place)
+        if away > self._acceptance:
+            return False
+        if self._telemetry.speed() <= STILL:
+            return True
+        return begun is not None and (away <= ABREAST_METRES or _is_past(begun, here, place))
 
     def _faces(self, wanted: float) -> bool:
         return abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < CLOSE_DEGREES
@@ -134,6 +143,12 @@ class Steering:
     def _heading(self) -> float:
         told = self._telemetry.heading()
         return (self._yaw or 0.0) if told is None else told
+
+
+def _is_past(begun: Place, here: Place, place: Place) -> bool:
+    """Return whether a vehicle on a leg from `begun` is abreast of its end, or has passed it."""
+    leg, left = offset(begun, place), offset(here, place)
+    return sum(p * q for p, q in zip(leg, left, strict=True)) <= 0.0
 
 
 def _yaw(here: Place, look: Look) -> float:

@@ -1,0 +1,48 @@
+"""Another ground station moves a robot's mission on, or back: nobody has checked where that leads."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.program import Transition
+from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
+
+AUTO, BRAKE = 3, 17
+PLACES = [(0.0, 60.0, 20.0), (60.0, 60.0, 20.0), (60.0, 0.0, 20.0), (30.0, -30.0, 20.0), (0.0, -60.0, 20.0)]
+
+
+def mission():
+    moves = [take_off("up", 20.0), *(go_to(f"p{n}", place) for n, place in enumerate(PLACES))]
+    moves.append(move("down", "Land", uri=MULTICOPTER))
+    fluid = {n: Transition(n, n + 1, fluid=True) for n in range(2, 6)}
+    return program(robot_program("alpha", moves, transitions=fluid))
+
+
+@pytest.mark.parametrize(
+    ("after", "to", "words"), [(1, 4, "set ahead to item"), (4, 1, "set back from item")]
+)
+def test_a_mission_that_somebody_else_moves_ends_in_a_hold_and_is_not_logged_as_flown(
+    controllers, hangar, after, to, words
+):
+    made = controllers(mission())
+    vehicles, links = hangar(made.program, speedup=5.0)
+    autopilot = vehicles["alpha"].autopilot
+    with made.start("fleet.py", *links, "--on-stop", "land") as process:
+        while not (autopilot.mode == AUTO and autopilot.item > after):
+            assert process.poll() is None
+            threading.Event().wait(0.02)
+        autopilot.item = to if to < after else autopilot.item + 2
+        while autopilot.mode == AUTO:
+            assert process.poll() is None
+            threading.Event().wait(0.02)
+        assert autopilot.mode == BRAKE
+        process.terminate()
+        _, said = process.communicate(timeout=60)
+    assert words in said
+    steps = read_logs([made.logs])
+    ended = [step.move for step in steps if step.label == "end" and step.move.startswith("p")]
+    assert len(ended) < len(PLACES)
+    assert "NO_PROGRESS" in [step.detail for step in steps if step.label == "fault"]

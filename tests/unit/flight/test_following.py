@@ -1,0 +1,83 @@
+"""Whether what a vehicle says of its mission is true: it must have been where it says that it has been."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmrs_core.flight import Local
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.following import Following
+
+PLACES = {2: Local(50.0, 0.0, 20.0), 3: Local(100.0, 0.0, 20.0), 4: Local(100.0, 50.0, 20.0)}
+
+
+class Vehicle:
+    """Says where it is and at which item."""
+
+    def __init__(self) -> None:
+        self.place = Local(0.0, 0.0, 20.0)
+        self.item = 1
+
+    def here(self) -> Local:
+        return self.place
+
+
+@pytest.fixture
+def flight():
+    """Return a function that moves a vehicle, says its item, and gives the item that is believed."""
+    vehicle = Vehicle()
+    following = Following(vehicle, PLACES, lambda: vehicle.item, 1)
+
+    def move(north: float, east: float, item: int) -> int:
+        vehicle.place, vehicle.item = Local(north, east, 20.0), item
+        return following.look()
+
+    return move
+
+
+def test_items_that_were_passed_are_believed(flight):
+    assert [flight(n, 0.0, 2) for n in (10.0, 30.0, 49.0)] == [2, 2, 2]
+    assert flight(51.0, 0.0, 3) == 3
+    assert flight(98.5, 1.0, 4) == 4
+    assert flight(100.0, 49.0, 5) == 5
+
+
+def test_an_item_is_believed_a_little_later_where_its_place_was_passed_between_two_positions(flight):
+    assert flight(30.0, 0.0, 2) == 2
+    assert flight(40.0, 0.0, 3) == 2
+    assert flight(60.0, 0.0, 3) == 3
+
+
+def test_an_item_that_is_nowhere_is_believed_at_once(flight):
+    assert flight(0.0, 0.0, 2) == 2
+
+
+def test_a_mission_that_was_set_ahead_is_a_fault_before_anything_is_believed(flight):
+    assert flight(10.0, 0.0, 2) == 2
+    assert flight(10.1, 0.1, 4) == 2
+    with pytest.raises(Fault, match="set ahead to item 4: the vehicle has not been near item 2"):
+        flight(12.0, 1.0, 4)
+
+
+def test_a_mission_that_was_set_back_is_a_fault(flight):
+    assert flight(51.0, 0.0, 3) == 3
+    with pytest.raises(Fault, match="set back from item 3 to 1"):
+        flight(52.0, 0.0, 1)
+
+
+def test_an_item_that_is_not_known_for_a_moment_is_none(flight):
+    assert flight(51.0, 0.0, 3) == 3
+    assert flight(60.0, 0.0, -1) == 3
+
+
+def test_a_corner_may_be_cut_as_vehicles_do(flight):
+    flight(51.0, 0.0, 3)
+    assert flight(98.0, 2.0, 3) == 3
+    assert flight(99.0, 4.0, 4) == 4
+
+
+def test_over_a_poor_link_a_place_may_lie_beside_the_way_between_two_positions(flight):
+    flight(51.0, 0.0, 3)
+    flight(85.0, 0.0, 3)
+    flight(100.0, 15.0, 4)
+    assert flight(100.0, 20.0, 4) == 4
