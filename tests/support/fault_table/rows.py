@@ -253,6 +253,7 @@ def _wait_rows() -> list[Row]:
             "PEER_LOST",
             ends,
             within=20.0,
+            least=SILENCE,
             program="wait",
             strikes_peer=True,
         )
