@@ -98,8 +98,10 @@ class Result:
             word = "broken off" if robot in ending.suspended else "fault"
             say(f"  {word} of '{robot}': {fault}")
         for robot in ending.suspended:
-            way = _CAME_DOWN[ending.responses[robot]]
-            say(f"  '{robot}' {way} for its battery; --resume goes on where it stopped")
+            way = _CAME_DOWN.get(ending.responses[robot])
+            changes = way is not None and ending.faults[robot].which == "BATTERY_LOW"
+            why = f"{way} for its battery" if changes else "has not gone on"
+            say(f"  '{robot}' {why}; --resume goes on where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
         for robot in ending.unconfirmed:

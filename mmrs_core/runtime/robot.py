@@ -50,7 +50,8 @@ class RunningRobot:
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
         released: whether somebody ordered it to stop, so that it need not be watched.
         held: whether somebody ordered it to hold.
-        suspended: whether its program is broken off until its battery was changed.
+        suspended: whether its program is broken off, until its battery was changed, or because it could not
+            be taken up again.
         stopping: whether it has still to confirm that it has stopped.
         recovering: whether it is on its way back to where its program was broken off.
         question: identifier of the condition that it waits to be decided; empty: of none.
@@ -154,10 +155,9 @@ class RunningRobot:
         if not isinstance(found, Fault):
             return found
         response = self._answers().response(found)
-        if self._rules.suspends and found.which == "BATTERY_LOW" and response in COMES_DOWN:
-            self._give_up()
-            self.fault, self.response, self.suspended, self.recovering = found, response, True, False
-            self._answered.add(found.which)
+        changes_battery = found.which == "BATTERY_LOW" and response in COMES_DOWN
+        if self.recovering or (self._rules.suspends and changes_battery):
+            self._suspend(found, response)
             return None
         return self._ended(found, response)
 
@@ -173,6 +173,12 @@ class RunningRobot:
             return inf
         event = self.backend.next_event(now)
         return min(event, self.deadline) if event is not None else None
+
+    def _suspend(self, found: Fault, response: str) -> None:
+        """Break the program off; its log ends where it can be taken up again."""
+        self._give_up()
+        self.fault, self.response, self.suspended, self.recovering = found, response, True, False
+        self._answered.add(found.which)
 
     def overtaken_by(self, found: Fault) -> bool:
         """Return whether a fault is answered now although the robot still answers another one."""

@@ -489,6 +489,22 @@ def test_a_run_is_resumed_from_its_log(live):
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 
+def test_a_robot_that_cannot_be_taken_up_again_can_be_tried_again_later(live):
+    first = suspended(live)
+    first.end()
+    records = tuple(first.records)
+    bus = InProcessBus(SURVEY)
+    restore(bus, SURVEY, records)
+    second = live(SURVEY, Script(recovered=inf), resumed=records, bus=bus)
+    second.wait_for(lambda: len(second.script.robots) == 2 and second.script.robots["b"].recovered)
+    second.script.robots["a"].fail("REFUSED")
+    second.script.robots["b"]._finish("recovered")
+    ending = second.end()
+    assert ending.suspended == ("a",)
+    assert ending.faults["a"].which == "REFUSED"
+    assert [record.label for record in second.records if record.robot == "a"] == []
+
+
 @pytest.mark.parametrize("kept", range(1, 14))
 def test_a_run_is_resumed_after_any_of_its_steps(live, kept):
     behaviour = program(
