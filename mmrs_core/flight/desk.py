@@ -29,6 +29,8 @@ class Desk:
         say: tells people what goes on.
         know: adds to what the vehicle tells of itself what people have answered.
         meet: returns when all robots begin, or None where they do not wait for each other.
+        recognise: makes sure that the vehicle is the robot's, before it is told anything; is given
+            whether its motors may run.
         dry: whether there is no vehicle.
     """
 
@@ -42,4 +44,5 @@ class Desk:
     say: Say
     know: Callable[[State], State] = lambda state: state
     meet: Meet | None = None
+    recognise: Callable[[bool], None] = lambda under_way: None
     dry: bool = False

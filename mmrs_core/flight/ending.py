@@ -99,6 +99,18 @@ class Ending:
         crew.say("stopped" if first.event == STOPPED else "ended early")
         return CODES.get(first.event, FAILED)
 
+    def refuse(self, fault: Fault) -> int:
+        """Leave a vehicle alone that is not the robot's; return the exit code.
+
+        A log that others will go on with is left as it is.
+        """
+        self._tell(fault, NOTHING)
+        self.suspended = bool(self._crew.desk.log.steps)
+        if not self.suspended:
+            self._log(fault)
+        self._crew.say("ended early")
+        return FAILED
+
     def _carry_out(self, fault: Fault, response: str) -> None:
         crew = self._crew
         self._handled.add(fault.event)

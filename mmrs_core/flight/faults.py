@@ -37,6 +37,10 @@ class Refused(Fault):
         super().__init__(REFUSED, message)
 
 
+class Strange(Refused):
+    """The vehicle is not the robot's, or somebody else may have it: it must be told nothing."""
+
+
 class Stopped(Fault):
     """Somebody asked the robot to stop."""
 

@@ -8,7 +8,7 @@ from functools import partial
 from .corners import goes_through
 from .desk import Desk, Meet
 from .doing import Doing
-from .faults import BATTERY_LOW, FENCE_BREACHED, Fault, Refused
+from .faults import BATTERY_LOW, FENCE_BREACHED, Fault, Refused, Strange
 from .journal import Journal
 from .missions import Item
 from .obedience import Obedience
@@ -70,8 +70,7 @@ class Pilot:
         Raises:
             Fault: it cannot be carried out to its end.
         """
-        if self._desk.log.steps and self._vehicle.state().armed:
-            self._vehicle.carry_on()
+        self._recognise()
         self._prepare()
         if self._desk.log.steps:
             self._take_up_again()
@@ -81,6 +80,25 @@ class Pilot:
         while step is not None:
             step = self._perform(step)
         self._vehicle.finish()
+
+    def _recognise(self) -> None:
+        """Make sure that the vehicle is the robot's and where it may be, and have it wait there.
+
+        Raises:
+            Strange: it is not.
+        """
+        records = self._desk.log.steps
+        try:
+            self._desk.recognise(bool(records))
+            if not (records and self._vehicle.state().armed):
+                return
+            track = track_of(self._robot, records) or [("", self._robot.home)]
+            here, below = self._vehicle.state().place, at_height(self._robot.home, 0.0)
+            if len(track) > 1 or distance(at_height(here, 0.0), below) > OFF_ITS_WAY:
+                rest_of_way([place for _, place in track], here, self._next_place())
+        except Refused as error:
+            raise Strange(str(error)) from error
+        self._vehicle.carry_on()
 
     def _prepare(self) -> None:
         """Set the vehicle up; again where it has started anew meanwhile."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from math import inf
 from platform import python_version
 from traceback import format_exception
 
@@ -21,7 +22,7 @@ from .crews import Crews
 from .desk import Desk, Meet
 from .dry import DryVehicle
 from .ending import CODES, FAILED, OK, Crew, Ending
-from .faults import CRASHED, Fault, Refused
+from .faults import CRASHED, Fault, Refused, Strange
 from .injection import Rehearsal
 from .judgement import Judgement
 from .link import Link
@@ -31,6 +32,7 @@ from .options import Options
 from .pilot import Pilot
 from .program import Geographic, Robot
 from .radios import Radios
+from .recognition import recognise, system_of
 from .recording import Recording
 from .resuming import progress_of
 from .screen import say
@@ -105,6 +107,8 @@ class Session:
     def _carry_out(self, ending: Ending) -> int:
         try:
             self._crew.pilot.fly()
+        except Strange as fault:
+            return ending.refuse(fault)
         except Fault as fault:
             return ending.end(fault)
         except Exception as error:
@@ -182,6 +186,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         say=say,
         know=lambda state: replace(state, answers=inbox.answers),
         meet=_meeting(robot, shared),
+        recognise=_recognition(robot, options, link, vehicle),
         dry=options.dry,
     )
     box.write("start", **_facts(robot, options, link))
@@ -204,6 +209,19 @@ def _meeting(robot: Robot, shared: Shared) -> Meet | None:
     if not shared.options.sync:
         return None
     return lambda guard: begin_together(shared.slots.node, robot.id, shared.options.run, robots, guard)
+
+
+def _recognition(
+    robot: Robot, options: Options, link: Link | None, vehicle: Vehicle
+) -> Callable[[bool], None]:
+    system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
+
+    def look(under_way: bool) -> None:
+        if link is not None and isinstance(vehicle, MavlinkVehicle):
+            near = inf if under_way and vehicle.state().armed else options.tolerances.home
+            recognise(link, vehicle, robot, near, under_way=under_way, system=system)
+
+    return look
 
 
 def _box(robot: Robot, options: Options, stack: ExitStack) -> BlackBox:
@@ -251,5 +269,6 @@ def _facts(robot: Robot, options: Options, link: Link | None) -> dict[str, objec
         "vehicle": robot.vehicle,
         "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
         "home": robot.home,
+        "system": link.system if link is not None else None,
         "versions": {"python": python_version(), "pymavlink": version("pymavlink")},
     }

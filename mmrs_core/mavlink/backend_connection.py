@@ -24,11 +24,11 @@ from mmrs_core.flight.objects import Locator, where_expected
 from mmrs_core.flight.ports import Port, address_of, split_system
 from mmrs_core.flight.program import Action, Geographic, Robot
 from mmrs_core.flight.radios import Radios
+from mmrs_core.flight.recognition import system_of
 from mmrs_core.flight.recording import Recording
 from mmrs_core.flight.signing import Signer, signer_for
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend_ground import Ground
-from mmrs_core.mavlink.backend_identity import system_of
 from mmrs_core.mavlink.backend_options import LinkOptions, link_options
 from mmrs_core.mavlink.backend_robot import Equipment, MavlinkBackend
 from mmrs_core.mavlink.built import built, robot_of

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from mmrs_core.flight import modes, preparation
-from mmrs_core.flight.ardupilot import MavlinkVehicle
-from mmrs_core.flight.faults import Refused
-from mmrs_core.flight.link import Link
-from mmrs_core.flight.program import Geographic, Robot
+from . import modes, preparation
+from .ardupilot import MavlinkVehicle
+from .faults import Refused
+from .link import Link
+from .program import Geographic, Robot
 
 OURS = frozenset({modes.GUIDED, modes.AUTO, modes.HOLD, modes.LAND, modes.SURFACE})
 """Modes that programs use; a vehicle in the air in any other may have a pilot."""
