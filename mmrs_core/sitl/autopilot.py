@@ -8,7 +8,8 @@ ground, and disarms when it stands about.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import atan2, cos, degrees, radians
+from functools import lru_cache
+from math import atan2, cos, degrees, radians, sin, sqrt
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -20,7 +21,9 @@ from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
 from mmrs_core.sitl.settings import PX4, Settings
 
-METRES_PER_DEGREE = 111_319.49
+EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
+"""Of the ellipsoid of WGS 84: metres, and its flatness."""
+
 NEAR_GROUND = 0.05
 
 STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
@@ -148,14 +151,14 @@ class Autopilot:
     def degrees_at(self, place: Vector) -> tuple[float, float]:
         """Return latitude and longitude of a place."""
         north, east, _ = place
-        scale = METRES_PER_DEGREE * cos(radians(self.settings.latitude))
-        return self.settings.latitude + north / METRES_PER_DEGREE, self.settings.longitude + east / scale
+        of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
+        return self.settings.latitude + north / of_latitude, self.settings.longitude + east / of_longitude
 
     def local(self, latitude: float, longitude: float, up: float) -> Vector:
         """Return metres north, east and up of home."""
-        scale = METRES_PER_DEGREE * cos(radians(self.settings.latitude))
-        north = (latitude - self.settings.latitude) * METRES_PER_DEGREE
-        return (north, (longitude - self.settings.longitude) * scale, up)
+        of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
+        north = (latitude - self.settings.latitude) * of_latitude
+        return (north, (longitude - self.settings.longitude) * of_longitude, up)
 
     def place_of(self, item: Item) -> Vector:
         """Return where an item is; one without a place, or without coordinates, is here or above here."""
@@ -267,6 +270,15 @@ class Autopilot:
             self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
             return False
         return len(items) > self.first_item
+
+
+@lru_cache(maxsize=1024)
+def metres_per_degree(latitude: float) -> tuple[float, float]:
+    """Return the length of a degree of latitude and of one of longitude, on the ellipsoid of WGS 84."""
+    flat = 1.0 - SQUARED_ECCENTRICITY * sin(radians(latitude)) ** 2
+    meridian = EQUATOR * (1.0 - SQUARED_ECCENTRICITY) / flat**1.5
+    parallel = EQUATOR / sqrt(flat) * cos(radians(latitude))
+    return radians(meridian), radians(parallel)
 
 
 def bearing(here: Vector, there: Vector) -> float | None:

@@ -14,18 +14,19 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from math import cos, radians
+from math import cos, radians, sin
 from pathlib import Path
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from pyproj import Geod
 
 from example_flight.mission import Home
 from mmrs_core.sitl import Host, Settings, SimulatedVehicle
 
 PEERS = Path(__file__).parents[2] / "peers"
 ENERGY = 20_000.0
-METRES_PER_DEGREE = 111_319.49
 ALTITUDE = 720.0
+WGS84 = Geod(ellps="WGS84")
 
 
 def free_port() -> int:
@@ -156,9 +157,12 @@ class Recorder:
                     self.track.append(self._place(message))
 
     def _place(self, message) -> tuple[float, float, float, float]:
-        scale = METRES_PER_DEGREE * cos(radians(self._home.latitude))
-        north = (message.lat * 1e-7 - self._home.latitude) * METRES_PER_DEGREE
-        east = (message.lon * 1e-7 - self._home.longitude) * scale
+        here = [(message.lon * 1e-7, message.lat * 1e-7)]
+        azimuths, _, lengths = WGS84.inv(
+            [self._home.longitude], [self._home.latitude], *zip(*here, strict=True)
+        )
+        north = lengths[0] * cos(radians(azimuths[0]))
+        east = lengths[0] * sin(radians(azimuths[0]))
         return (message.time_boot_ms * 1e-3, north, east, message.relative_alt * 1e-3)
 
 

@@ -19,8 +19,8 @@ from mmrs_core.resources import shipped
 from mmrs_core.scene import AreaUse
 
 EXAMPLE = "carbon-dioxide"
-SLACK = 0.6
-"""Metres that a vehicle may be off its leg: the radius in which places count as reached, and a little."""
+SLACK = 0.05
+"""Metres by which a measured track may be off: the record is in millimetres and tenths of a second."""
 
 Track = Sequence[tuple[float, float, float, float]]
 

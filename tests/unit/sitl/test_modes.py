@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot
+from math import atan2, degrees, hypot
 
 import pytest
+from pyproj import Geod
 from simulated import Bench
 
 from mmrs_core.sitl.commands import steer
@@ -23,6 +24,15 @@ def out(**settings) -> Bench:
 
 def rally(bench: Bench, place) -> None:
     bench.pilot.stores[2] = [replace(bench.item(5100, place), frame=3)]
+
+
+def test_its_metres_are_those_of_the_ellipsoid():
+    bench = Bench()
+    latitude, longitude = bench.pilot.degrees_at((1000.0, -2000.0, 0.0))
+    azimuth, _, length = Geod(ellps="WGS84").inv(13.35, 42.37, longitude, latitude)
+    assert length == pytest.approx(hypot(1000.0, 2000.0), abs=0.3)
+    assert azimuth == pytest.approx(degrees(atan2(-2000.0, 1000.0)), abs=0.02)
+    assert bench.pilot.local(latitude, longitude, 0.0) == pytest.approx((1000.0, -2000.0, 0.0))
 
 
 def test_guided_goes_where_it_is_steered_and_looks_where_it_is_told():
