@@ -141,11 +141,14 @@ ON_ANY_LOSS = "FS_ACTION"
 NEAREST = "RALLY_INCL_HOME"
 """Whether home counts as a rally point when a copter returns to the nearest of them."""
 
+FARTHEST = "RALLY_LIMIT_KM"
+"""Beyond which a copter goes home instead, where that is nearer; 0: never."""
+
 LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
     "copter": {
         "CONTINUE": {ON_LOST_LINK: 0},
         "RETURN": {ON_LOST_LINK: 3},
-        "EMERGENCY_AREA": {NEAREST: 0, ON_LOST_LINK: 1},
+        "EMERGENCY_AREA": {NEAREST: 0, FARTHEST: 0, ON_LOST_LINK: 1},
         "LAND": {ON_LOST_LINK: 5},
         "HOLD": {ON_LOST_LINK: 7},
     },

@@ -107,7 +107,11 @@ def test_a_vehicle_that_tells_no_failsafes_is_told():
     ("autopilot", "response", "expected"),
     [
         (ARDUPILOT, "RETURN", {"FS_GCS_ENABLE": 3.0, "FS_GCS_TIMEOUT": 20.0}),
-        (ARDUPILOT, "EMERGENCY_AREA", {"RALLY_INCL_HOME": 0.0, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 20.0}),
+        (
+            ARDUPILOT,
+            "EMERGENCY_AREA",
+            {"RALLY_INCL_HOME": 0.0, "RALLY_LIMIT_KM": 0.0, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 20.0},
+        ),
         (PX4, "LAND", {"NAV_DLL_ACT": bytewise(3), "COM_DL_LOSS_T": bytewise(20)}),
     ],
 )
@@ -143,6 +147,6 @@ def test_a_response_that_the_vehicle_does_not_confirm_is_refused():
 
 @pytest.mark.parametrize("kind", ["copter", "rover", "sub"])
 def test_every_parameter_that_is_set_is_one_that_is_told_or_of_little_account(kind):
-    told = {each.name for each in safeguards.OF_ARDUPILOT[kind]} | {"RALLY_INCL_HOME"}
+    told = {each.name for each in safeguards.OF_ARDUPILOT[kind]} | {"RALLY_INCL_HOME", "RALLY_LIMIT_KM"}
     answers = [*modes.LINK_LOST[kind].values(), *modes.BREACH[kind].values()]
     assert {name for values in answers for name in values} <= told
