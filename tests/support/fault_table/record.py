@@ -41,6 +41,9 @@ MOMENTS: Mapping[str, Moment] = {
         pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0
     ),
     "at its place": _near(OUT),
+    "landing at home": lambda pilot: (
+        pilot.mode == 9 and 3.0 < pilot.body.position[2] < 9.0 and hypot(*pilot.body.position[:2]) < NEAR_HOME
+    ),
     "waiting": _near(OUT),
     "on a mission (AUTO)": lambda pilot: pilot.mode == 3 and pilot.body.distance_to(TOUR[1]) < 6.0,
     "charging": lambda pilot: (
@@ -115,6 +118,12 @@ def story(vehicle: SimulatedVehicle, since: Struck) -> str:
     north, east, up = pilot.body.position
     end = WORDS[ending(vehicle, since)]
     return "; ".join([*modes[:6], f"{end} ({north:.1f} m north, {east:.1f} m east, {up:.1f} m up)"])
+
+
+def strayed(vehicle: SimulatedVehicle, since: Struck) -> float:
+    """Return the metres, sideways, to which a vehicle has gone from where it was."""
+    track = [place for time, *place in vehicle.autopilot.track if time > since.time]
+    return max((hypot(n - since.place[0], e - since.place[1]) for n, e, _ in track), default=0.0)
 
 
 def talked(vehicle: SimulatedVehicle, since: float) -> list[str]:

@@ -33,6 +33,7 @@ class Row:
         fast: whether it is among those that are always tested.
         hands_off: whether nothing but heartbeats may be sent once the controller has noticed.
         strikes_peer: whether the fault is that of the robot which this one waits for.
+        stays: metres, sideways, from which the vehicle must not go away.
         suspends: whether the robot only comes down for a new battery, which is no fault in its log.
         responds: the response, where it cannot be that of the policy.
         says: what the process must say, where logs cannot.
@@ -55,6 +56,7 @@ class Row:
     fast: bool = False
     hands_off: bool = False
     strikes_peer: bool = False
+    stays: float | None = None
     suspends: bool = False
     responds: str = ""
     says: str = ""

@@ -167,7 +167,42 @@ def _pilot_rows() -> list[Row]:
         )
         for during, response in ((AT, "RETURN"), (AUTO, "EMERGENCY_AREA"))
     ]
+    rows += [
+        Row(
+            f"{fault}, then pilot's stick",
+            AT,
+            policy,
+            strike,
+            "TAKEN_OVER",
+            "holds",
+            within=None,
+            mends=(after, stick),
+            hands_off=True,
+        )
+        for fault, policy, strike, after, stick in (
+            ("satellites lost", _policy("POSITION_LOST", "LAND"), _satellites, 0.4, _by_hand),
+            ("obstacle reported", _policy("OBSTACLE", "HOLD", 10.0), _obstacle, 3.0, _stick),
+            ("obstacle reported", _policy("OBSTACLE", "EMERGENCY_AREA", 10.0), _obstacle, 3.0, _stick),
+        )
+    ]
     return rows
+
+
+def _landing_rows() -> list[Row]:
+    return [
+        Row(
+            "battery low as it lands at home",
+            "landing at home",
+            _policy("BATTERY_LOW", response),
+            _battery,
+            "",
+            "home",
+            within=None,
+            stay=2.0,
+            stays=3.0,
+        )
+        for response in ("RETURN", "LAND")
+    ]
 
 
 def _event_rows(
@@ -319,6 +354,7 @@ ROWS: tuple[Row, ...] = (
         [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
         "",
     ),
+    *_landing_rows(),
     *_device_rows(),
     *_wait_rows(),
     Row(

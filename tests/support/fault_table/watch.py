@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from math import dist
 
 from fault_table.fleet import Fleet
-from fault_table.record import MOMENTS, Struck, answered, ending, story, struck, talked
+from fault_table.record import MOMENTS, Struck, answered, ending, story, strayed, struck, talked
 from fault_table.row import Outcome, Row
 from mmrs_core.flight.ordering import give
 
@@ -96,6 +96,8 @@ class Watch:
         self.outcome.rested = self._rest[1] - self._struck.time if self._rest else None
         if (self._rest[0] if self._rest else "") != self._row.rest:
             problems.append(f"does not end as wanted: {self._row.rest}")
+        if self._row.stays is not None and strayed(self._vehicle, self._struck) > self._row.stays:
+            problems.append(f"goes {strayed(self._vehicle, self._struck):.0f} m away")
         if self._row.hands_off:
             self._check_hands_off(self._struck.time + (self._row.mends[0] if self._row.mends else 0.0))
         if self._row.within is not None:
