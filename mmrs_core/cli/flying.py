@@ -29,6 +29,7 @@ from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture
 from mmrs_core.runtime.obedience import STOPPED
 from mmrs_core.runtime.orders import STOP, Orders
+from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.terms import Ending
 
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
@@ -234,6 +235,14 @@ def _resumed(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[S
     result = replay(program, records, partial=True)
     if not result.accepted and len(here) == len(program.robots):
         raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
+    try:
+        over = over_by(program, records)
+    except ValueError as error:
+        raise InvalidModelError(f"{wishes.folder}: {error}") from error
+    for robot, why in over.items():
+        tell(f"'{robot}': {f'its program has ended by {why}' if why else 'has come to its end'}")
+    if set(over) >= set(here):
+        raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
 

@@ -21,6 +21,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.peers import Peers
+from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.robot import Rules, RunningRobot
 from mmrs_core.runtime.stopping import Stopping
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
@@ -65,7 +66,8 @@ def interpret(
             rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, live=live)
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
-    return _Run(program, robots, bus, clock, terms).go()
+    over = {id: why for id, why in over_by(program, terms.resumed).items() if id not in backends}
+    return _Run(program, robots, bus, clock, terms, over).go()
 
 
 def _refuse_unknown(
@@ -88,12 +90,19 @@ def _refuse_unknown(
 
 class _Run:
     def __init__(
-        self, program: Program, robots: list[RunningRobot], bus: Bus, clock: Clock, terms: Terms
+        self,
+        program: Program,
+        robots: list[RunningRobot],
+        bus: Bus,
+        clock: Clock,
+        terms: Terms,
+        over: Mapping[str, str],
     ) -> None:
         self._robots, self._bus, self._clock, self._terms = robots, bus, clock, terms
         self._by_id = {robot.id: order for order, robot in enumerate(robots)}
-        self._whole = len(robots) == len(program.robots)
-        self._peers = Peers(program, self._by_id, bus)
+        self._over = over
+        self._whole = len(robots) + len(over) == len(program.robots)
+        self._peers = Peers(program, {*self._by_id, *over}, bus)
         self._obedience = Obedience(robots, terms.orders, clock)
         self._stopping = Stopping(robots, clock, self._obedience, terms.say)
         self._made = 0
@@ -128,6 +137,9 @@ class _Run:
 
     def _take_up(self) -> None:
         """Bring robots of a run that was broken off back to where they were."""
+        for id, why in self._over.items():
+            self._peers.retire(id, failed=bool(why))
+            self._bus.leave(id)
         for robot in self._robots:
             if robot.point.is_final:
                 self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
@@ -263,7 +275,7 @@ class _Run:
 
     def _attend(self, called: frozenset[str]) -> None:
         for order, robot in enumerate(self._robots):
-            affected = robot.point.phase is Phase.OUT or robot.delivery is not None
+            affected = robot.point.phase is Phase.OUT or robot.delivery or self._bus.trouble(robot.id)
             if robot.id in called or (BUS in called and affected):
                 heappush(self._ready, order)
 
@@ -315,7 +327,8 @@ class _Run:
         self._obedience.give_up()
 
     def _ending(self) -> Ending:
-        faults = {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
+        faults = {id: Fault(why) for id, why in self._over.items() if why}
+        faults |= {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
         suspended = tuple(robot.id for robot in self._robots if robot.suspended)
         done = all(robot.point.phase is Phase.DONE for robot in self._robots)
         if suspended or (not self._is_quiet() and not all(robot.point.is_final for robot in self._robots)):

@@ -25,6 +25,7 @@ from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
 from mmrs_core.runtime.orders import ENDINGS, HOLD, RESUME, Order, Orders
+from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.terms import Ending, Terms
 
 
@@ -68,16 +69,20 @@ class Venture:
 def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
     """Yield the steps of the robots; return how the run ended.
 
-    No robot begins before all are ready. When the generator ends or is closed, every robot that has not
-    come to its end has been stopped, and all links are closed.
+    No robot begins before all are ready; one whose program had ended before is left alone. When the
+    generator ends or is closed, every robot that has not come to its end has been stopped, and all links
+    are closed.
 
     Raises:
         LinkLostError: if a robot does not answer at first.
         UnsupportedError: if a robot cannot do what its program holds, or options are wrong.
         MmrsError: if a robot does not get ready.
+        ValueError: if the steps to resume from are not the program's.
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """
     attention = Attention(venture.clock)
+    over = over_by(venture.program, venture.resumed)
+    venture = replace(venture, inputs={id: each for id, each in venture.inputs.items() if id not in over})
     with ExitStack() as stack:
         robots = _connected(venture, backend, attention, stack)
         _get_ready(robots, venture)

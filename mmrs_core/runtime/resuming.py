@@ -6,12 +6,60 @@ from collections.abc import Iterable
 
 from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import Action, Program, RobotProgram
+from mmrs_core.behaviour.semantics import Point, Step, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import CommandId
 from mmrs_core.runtime.slots import InProcessBus
 
 RESTORED = "restored"
 """Incarnation of senders whose notifies were sent before the run was broken off."""
+
+
+def step_of(robot: RobotProgram, point: Point, record: StepRecord) -> Step:
+    """Return the step from a point that a record tells of, whatever slots are active.
+
+    Raises:
+        ValueError: if it is none of the program's.
+    """
+    if record.label == "fault" and record.move == robot.moves[point.move].id and not point.is_final:
+        return fault(robot, point, record.detail)
+    for step in steps(robot, point, {(robot.id, name) for name in robot.slots}):
+        if (step.label, step.move, step.detail, step.slot) == (
+            record.label,
+            record.move,
+            record.detail,
+            record.slot,
+        ):
+            return step
+    raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is none of its program's")
+
+
+def point_after(robot: RobotProgram, records: Iterable[StepRecord]) -> Point:
+    """Return where the steps of a robot lead, which stand among those of others in their order.
+
+    Raises:
+        ValueError: if they are not its program's.
+    """
+    point = entry(robot, robot.start)
+    for record in records:
+        if record.robot == robot.id:
+            point = step_of(robot, point, record).leads_to
+    return point
+
+
+def over_by(program: Program, records: Iterable[StepRecord]) -> dict[str, str]:
+    """Return the robots whose programs have ended, with the fault, or nothing where there was none.
+
+    Raises:
+        ValueError: if steps are not the program's.
+    """
+    given = tuple(records)
+    last = {record.robot: record for record in given}
+    return {
+        robot.id: last[robot.id].detail if last[robot.id].label == "fault" else ""
+        for robot in program.robots
+        if point_after(robot, given).is_final
+    }
 
 
 def restore(bus: InProcessBus, program: Program, records: Iterable[StepRecord]) -> None:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
-from mmrs_core.behaviour.semantics import NOTIFY, Phase, Point, Step, action_at, entry, fault, steps
+from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Noting, Recovering
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
 from mmrs_core.runtime.peers import Peers
+from mmrs_core.runtime.resuming import step_of
 from mmrs_core.scene import Policy
 
 
@@ -122,7 +123,7 @@ class RunningRobot:
             ValueError: if they are not.
         """
         for record in records:
-            self.follow(_followed(self._program, self.point, record), record.time)
+            self.follow(step_of(self._program, self.point, record), record.time)
             self.lamport, self.number = record.lamport, record.seq + 1
 
     def recover(self, now: float) -> None:
@@ -149,7 +150,7 @@ class RunningRobot:
         if self.ordered is not None:
             return self._ended(*self.ordered)
         try:
-            found = self._unanswered(now) or self._due(now, peers)
+            found = self._unkept() or self._unanswered(now) or self._due(now, peers)
         except LinkLostError as error:
             found = Fault("LINK_LOST", str(error))
         if not isinstance(found, Fault):
@@ -203,6 +204,12 @@ class RunningRobot:
     def _forget(self) -> None:
         self._begun, self._waits_since, self._peer_lost_at = False, None, None
         self.lacking, self.deadline, self.question = (), inf, ""
+
+    def _unkept(self) -> Fault | None:
+        """Return the fault that is left where what others tell this robot cannot be kept."""
+        why = "" if self.point.is_final else self._bus.trouble(self.id)
+        found = Fault("LOG_FAILED", why)
+        return found if why and not self._answers().bears(found) else None
 
     def _unanswered(self, now: float) -> Fault | None:
         """Return the fault that ends waiting for owners of slots; None: they have answered, or still may."""
@@ -349,17 +356,3 @@ class RunningRobot:
         if self.point.phase is Phase.OUT:
             declared = (*self._program.transitions[self.point.move].policies, *declared)
         return Answers(declared, live=self._rules.live)
-
-
-def _followed(program: RobotProgram, point: Point, record: StepRecord) -> Step:
-    """Return the step that a record tells of, whatever slots are active."""
-    waits = {(program.id, name) for name in program.slots}
-    for step in steps(program, point, waits):
-        if (step.label, step.move, step.detail, step.slot) == (
-            record.label,
-            record.move,
-            record.detail,
-            record.slot,
-        ):
-            return step
-    raise ValueError(f"robot '{program.id}': step {record.seq} of its log is none of its program's")

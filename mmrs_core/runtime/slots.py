@@ -54,6 +54,10 @@ class ProgramBus:
         """Return those of these robots that have ended or can no longer be reached."""
         return self.node.lost(robots)
 
+    def trouble(self, robot: str) -> str:
+        """Return why what others tell a robot of this process cannot be kept now; empty: it can."""
+        return self.node.trouble(robot)
+
     def leave(self, robot: str) -> None:
         """Tell everybody that a robot has ended."""
         self.node.leave(robot)

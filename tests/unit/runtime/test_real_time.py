@@ -505,6 +505,36 @@ def test_a_robot_that_cannot_be_taken_up_again_can_be_tried_again_later(live):
     assert [record.label for record in second.records if record.robot == "a"] == []
 
 
+def test_a_robot_that_ended_by_a_fault_is_left_alone_and_the_others_go_on(live):
+    first = live(TWO, Script(walk=inf))
+    first.wait_for_step("a begin walk")
+    first.wait_for_step("b begin walk")
+    first.order(LAND, "a")
+    first.script.robots["b"].fail("BATTERY_LOW")
+    first.wait_for(lambda: "'a': has done LAND" in first.said)
+    first.order(STOP, "b")
+    records = tuple(record for record in first.records if record.detail != "STOPPED")
+    second = live(TWO, Script(), resumed=records)
+    ending = second.end()
+    assert list(second.script.robots) == ["b"]
+    assert ending.outcome is Outcome.FAILED
+    assert ending.faults == {"a": Fault("ORDERED")}
+    assert "b end stop" in second.shown()
+
+
+def test_a_robot_that_waits_for_one_that_failed_before_is_told_so(live):
+    behaviour = program(
+        robot("a", [do("walk", after=(notify("b.s"),))]),
+        robot("b", [do("h")], waits={"h": ["s"]}, policies=(Policy("PEER_LOST", "LAND", 0.1),)),
+    )
+    first = live(behaviour, Script(walk=inf, h=inf))
+    first.wait_for_step("b begin h")
+    first.order(LAND, "a")
+    records = tuple(first.records)
+    second = live(behaviour, Script(), resumed=records)
+    assert second.end().faults["b"].which == "PEER_LOST"
+
+
 @pytest.mark.parametrize("kept", range(1, 14))
 def test_a_run_is_resumed_after_any_of_its_steps(live, kept):
     behaviour = program(
