@@ -32,6 +32,7 @@ class Row:
         order: is given instead of a fault; resumes: seconds of the run after which ``resume`` follows.
         fast: whether it is among those that are always tested.
         hands_off: whether nothing but heartbeats may be sent once the controller has noticed.
+        refuses: an order that is given then, and must not be obeyed.
         strikes_peer: whether the fault is that of the robot which this one waits for.
         stays: metres, sideways, from which the vehicle must not go away.
         suspends: whether the robot only comes down for a new battery, which is no fault in its log.
@@ -55,6 +56,7 @@ class Row:
     resumes: float | None = None
     fast: bool = False
     hands_off: bool = False
+    refuses: str = ""
     strikes_peer: bool = False
     stays: float | None = None
     suspends: bool = False

@@ -129,6 +129,7 @@ def _pilot_rows() -> list[Row]:
             within=None,
             stay=5.0 if during == AUTO else 20.0,
             hands_off=True,
+            refuses="return",
             fast=during == AUTO,
         )
         for during, strike, response in (
@@ -184,6 +185,21 @@ def _pilot_rows() -> list[Row]:
             ("obstacle reported", _policy("OBSTACLE", "HOLD", 10.0), _obstacle, 3.0, _stick),
             ("obstacle reported", _policy("OBSTACLE", "EMERGENCY_AREA", 10.0), _obstacle, 3.0, _stick),
         )
+    ]
+    rows += [
+        Row(
+            f"obstacle reported, held, then pilot's stick, then order {order}",
+            AT,
+            _policy("OBSTACLE", "HOLD"),
+            _obstacle,
+            "OBSTACLE",
+            "holds",
+            mends=(8.0, stick),
+            hands_off=True,
+            refuses=order,
+            responds="HOLD",
+        )
+        for stick, order in ((_stick, "return"), (_by_hand, "land"))
     ]
     return rows
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import dist
 
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Struck, answered, ending, story, strayed, struck, talked
 from fault_table.row import Outcome, Row
-from mmrs_core.flight.ordering import give
+from mmrs_core.flight.ordering import Unreachable, give
 
 HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a
@@ -42,6 +42,7 @@ class Watch:
         self._struck: Struck | None = None
         self._mended = row.mends is None
         self._resumed = row.resumes is None
+        self._refused = not row.refuses
         self._rest: tuple[str, float] | None = None
         self._target: tuple[float, float, float] | None = None
         self._turned: float | None = None
@@ -79,7 +80,7 @@ class Watch:
             self._rest = (found, now) if found else None
             return False
         stays = found == self._row.rest and now - self._rest[1] > STAYS_SECONDS
-        return stays and self._mended and self._resumed and self._logged()
+        return stays and self._mended and self._resumed and self._refused and self._logged()
 
     def observe(self) -> None:
         """Keep what the vehicle has done and what the logs say, before anybody interrupts the process."""
@@ -117,13 +118,28 @@ class Watch:
         if not self._mended and self._row.mends is not None and since > self._row.mends[0]:
             self._mended = True
             self._row.mends[1](self._victim)
+        taken = self._row.mends[0] if self._row.mends is not None else 0.0
+        if not self._refused and since > taken + HANDS_OFF_SECONDS:
+            self._refused = True
+            self._start(self._ask_in_vain, self._row.refuses)
         if not self._resumed and self._row.resumes is not None and since > self._row.resumes:
             self._resumed = True
             self._give("resume")
 
     def _give(self, order: str) -> None:
-        self._threads.append(threading.Thread(target=self._ask, args=(order,), daemon=True))
+        self._start(self._ask, order)
+
+    def _start(self, ask: Callable[[str], None], order: str) -> None:
+        self._threads.append(threading.Thread(target=ask, args=(order,), daemon=True))
         self._threads[-1].start()
+
+    def _ask_in_vain(self, order: str) -> None:
+        try:
+            replies = list(give(self._fleet.logs, order, [self._robot], seconds=3.0))
+        except Unreachable:
+            return
+        if any(reply.get("confirmed") for reply in replies):
+            self.outcome.problems.append(f"{order} is obeyed although a pilot has the vehicle: {replies}")
 
     def _ask(self, order: str) -> None:
         (reply,) = give(self._fleet.logs, order, [self._robot])
