@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from math import cos, hypot, inf, radians
 
 from .places import bearing, distance, offset
 from .program import Place, Robot
 from .vehicle import State
+from .ways import Track, way_back
 
 MARGIN = 0.05
 """Part of the whole battery that must be left when the robot has come down."""
@@ -22,8 +22,6 @@ LEAST_USED = 0.05
 
 RECOUNT_SECONDS = 1.0
 COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
-
-Track = Sequence[tuple[str, Place]]
 
 
 class Reserve:
@@ -85,22 +83,10 @@ class Reserve:
         return self._seconds
 
 
-def way_back(robot: Robot, response: str, track: Track) -> Iterator[Place]:
-    """Yield the places by which a robot goes back, the last one above where it comes down."""
-    if response not in ("RETURN", "EMERGENCY_AREA"):
-        return
-    escapes = dict(robot.escapes) if response == "EMERGENCY_AREA" else {}
-    for move, place in reversed(track):
-        yield place
-        if move in escapes:
-            yield escapes[move]
-            return
-
-
 def seconds_back(robot: Robot, state: State, response: str, track: Track) -> float:
     """Return how long a robot needs to be back on the ground; inf where the wind is too strong."""
     here, seconds = state.place, 0.0
-    for place in way_back(robot, response, track):
+    for place in way_back(robot, response, track, here):
         seconds += _seconds(robot, state, here, place)
         here = place
     if robot.vehicle != "copter":

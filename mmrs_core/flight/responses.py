@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from .energy import way_back
 from .faults import (
     BATTERY_LOW,
     LINK_LOST,
@@ -15,6 +14,7 @@ from .faults import (
 )
 from .program import Place, Policy, Robot
 from .vehicle import Vehicle
+from .ways import steps_back
 
 CONTINUE = "CONTINUE"
 HOLD = "HOLD"
@@ -110,10 +110,10 @@ def _go_back(
     flies = robot.vehicle == "copter"
     if (flies and not vehicle.state().armed) or not (track or flies):
         return vehicle.hold()
-    for place in tuple(way_back(robot, response, track)):
+    for index, place in tuple(steps_back(robot, response, track, vehicle.state().place)):
         repeat(partial(vehicle.go_to, place, robot.cruise, None, True))
-        if track[-1][1] == place and len(track) > 1:
-            track.pop()
+        if index is not None:
+            del track[index + 1 :]
     repeat(partial(_come_down, robot, vehicle))
     return False
 

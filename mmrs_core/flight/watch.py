@@ -8,12 +8,13 @@ from collections.abc import Callable, Collection, Sequence
 from . import modes
 from .ardupilot import MavlinkVehicle
 from .clock import Clock
-from .energy import COMES_DOWN, Reserve, Track
-from .faults import BATTERY_LOW, LINK_LOST, POSITION_LOST, TAKEN_OVER, VEHICLE_RESTARTED, Fault, Stopped
+from .energy import COMES_DOWN, Reserve
+from .faults import BATTERY_LOW, LINK_LOST, LOG_FAILED, POSITION_LOST, TAKEN_OVER, VEHICLE_RESTARTED, Fault, Stopped
 from .link import Link
 from .program import Policy, Robot
 from .responses import CONTINUE, policy_for
 from .signs import Signs
+from .ways import Track
 
 SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0
@@ -38,6 +39,7 @@ class Watch:
     Attributes:
         current: the policies of the wait that the robot is in.
         track: the places that the robot has passed in this sortie.
+        unkept: returns why what others tell the robot cannot be kept; empty where it can.
         decide: is told what was decided without ending the program: event, reason, response.
         moving: whether the robot is under way; one that stands on the ground may start anew.
         looking: whether it looks for the cause of a change of mode, while nothing may be sent.
@@ -48,6 +50,7 @@ class Watch:
         """Watch for a stop only, until there is a vehicle."""
         self.current: Callable[[], Sequence[Policy]] = lambda: ()
         self.track: Callable[[], Track] = lambda: ()
+        self.unkept: Callable[[], str] = lambda: ""
         self.decide: Decide = lambda event, why, response: None
         self.moving = True
         self.silence = False
@@ -111,7 +114,10 @@ class Watch:
         """
         if self._stop.is_set() and self._heeded is None:
             raise Stopped()
-        if self._link is None or self._vehicle is None or self._signs is None or self.looking:
+        if self.looking:
+            return
+        if self._link is None or self._vehicle is None or self._signs is None:
+            self._weigh(LOG_FAILED, self.unkept())
             return
         self._check_link(self._link)
         if self._hands_off:
@@ -120,6 +126,7 @@ class Watch:
         self._check_pilot(self._vehicle, self._link, self._signs)
         for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
             self._weigh(event, why)
+        self._weigh(LOG_FAILED, self.unkept())
 
     def _low(self) -> str:
         assert self._vehicle is not None

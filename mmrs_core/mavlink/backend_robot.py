@@ -16,7 +16,6 @@ from mmrs_core.flight import modes
 from mmrs_core.flight.ardupilot import MavlinkVehicle
 from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.energy import way_back
 from mmrs_core.flight.faults import FENCE_BREACHED, LINK_LOST, POSITION_LOST, TAKEN_OVER, Refused
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.link import Link
@@ -30,6 +29,7 @@ from mmrs_core.flight.responses import BLOCKED, NEEDS_POSITION, alone, policy_fo
 from mmrs_core.flight.steering import STILL
 from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
 from mmrs_core.flight.watch import Watch
+from mmrs_core.flight.ways import way_back
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
@@ -379,7 +379,7 @@ class MavlinkBackend:
     def _heads_back(self) -> bool:
         """Return whether the vehicle comes nearer to the first place of its way back."""
         here, track = self._with.vehicle.state().place, self._moves.track
-        goal = next(iter(way_back(self._robot, self._response, track)), self._robot.home)
+        goal = next(way_back(self._robot, self._response, track, here), self._robot.home)
         away = offset(here, goal)
         velocity = self._with.vehicle.telemetry.velocity()
         nearing = sum(pace * way for pace, way in zip(velocity, away, strict=True))

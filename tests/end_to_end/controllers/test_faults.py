@@ -8,6 +8,7 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
+from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
     MULTICOPTER,
     go_to,
@@ -290,3 +291,24 @@ def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
         process.communicate(timeout=60)
     assert len(vehicles["alpha"].autopilot.modes) == changes
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
+
+
+@pytest.mark.parametrize("airborne", [True, False])
+def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, airborne):
+    made = controllers(one_drone())
+    vehicles, links = hangar(made.program, disarm_delay=1000.0)
+    foreign = vehicles["alpha"].autopilot
+    wait_for(lambda: foreign.ready)
+    with vehicles["alpha"].lock:
+        foreign.set_mode(foreign.numbers["guided"])
+        foreign.arm()
+        if airborne:
+            obey(foreign, 22, (*[0.0] * 6, 20.0))
+    if airborne:
+        wait_for(lambda: foreign.body.position[2] > 15.0)
+    parameters = dict(foreign.parameters)
+    code, said = made.run("fleet.py", *links)
+    assert code == 1
+    assert "the vehicle's motors run already: somebody else has it; response: NOTHING" in said
+    assert (foreign.armed, foreign.stores[0]) == (True, [])
+    assert foreign.parameters == parameters
