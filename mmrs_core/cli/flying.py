@@ -80,7 +80,7 @@ class Result:
     @property
     def exit_code(self) -> int:
         """Return what the shell gets."""
-        faults = {fault.which for fault in self.ending.faults.values()}
+        faults = {self.ending.faults[robot].which for robot in self.ending.responses}
         if "LINK_LOST" in faults or self.ending.unconfirmed:
             return LinkLostError.exit_code
         if STOPPED in faults:
