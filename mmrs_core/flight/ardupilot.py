@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from . import modes, preparation, safeguards
 from .commands import Unanswered, command, name_of
+from .enclosure import enclose
 from .faults import NO_PROGRESS, Fault, Refused
 from .following import Following
 from .helm import MODE_SECONDS, Helm
@@ -72,10 +73,17 @@ class MavlinkVehicle:
         self._mission: Sequence[Item] = ()
         self._mark = 0
 
-    def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
 
-        A vehicle that is in the air already may be away from home.
+        A vehicle that is in the air already may be away from home. `places` are all that the program
+        leads to: the vehicle's own fences must leave them free.
 
         Raises:
             Refused: something is not accepted or read back differently, the vehicle is not where the
@@ -86,6 +94,8 @@ class MavlinkVehicle:
         preparation.await_position(self._link, self._telemetry)
         tolerance = inf if self._telemetry.airborne() else self._home_tolerance
         preparation.check_identity(self._link, self._telemetry, self._kind, self._home, tolerance)
+        for line in enclose(self._link, self._home, places, rally, polygons=bool(fence)):
+            self._tell(line)
         if geographic:
             self._mission = mission
             mission = self._helm.habits.mission(mission)

@@ -35,7 +35,13 @@ class DryVehicle:
     def answer_breach(self, response: str) -> None:
         """Do nothing: there is no fence."""
 
-    def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
         """Keep the mission."""
         self._items = mission
 

@@ -18,7 +18,7 @@ from .program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeO
 from .recording import fix
 from .responses import policy_for
 from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
-from .uploads import Flight, fence_of, mission_of, rally_of
+from .uploads import Flight, fence_of, mission_of, places_in, rally_of
 from .vehicle import Vehicle
 from .waits import Waits
 from .watch import Watch
@@ -107,7 +107,7 @@ class Pilot:
         for _ in range(STARTS):
             self._watch.renew()
             self.waits.tell_vehicle()
-            self._vehicle.prepare(polygons, rally_of(self._robot), mission)
+            self._vehicle.prepare(polygons, rally_of(self._robot), mission, places_in(self._robot))
             self._tell_fence(bool(polygons))
             if not self._watch.restarted:
                 break

@@ -9,7 +9,8 @@ from math import ceil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .missions import NO_FRAME, Item
-from .program import Geographic, GoTo, Place, Robot, Run
+from .places import at_height
+from .program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,14 @@ def fence_of(robot: Robot) -> tuple[Item, ...]:
     return tuple(
         _positional(command, vertex, float(len(polygon))) for polygon in robot.fence for vertex in polygon
     )
+
+
+def places_in(robot: Robot) -> tuple[Place, ...]:
+    """Return all places that a robot's program leads to, above home as far as it takes off to."""
+    movements = [step.movement for step in robot.steps]
+    gone = [each.at for each in movements if isinstance(each, GoTo) and not isinstance(each.at, Object)]
+    climbed = [at_height(robot.home, each.height) for each in movements if isinstance(each, TakeOff)]
+    return (*gone, *climbed)
 
 
 def rally_of(robot: Robot) -> tuple[Item, ...]:

@@ -54,8 +54,14 @@ class Vehicle(Protocol):
         """Have the vehicle respond so by itself when it is outside its fence."""
         ...
 
-    def prepare(self, fence: Sequence[Item], rally: Sequence[Item], mission: Sequence[Item]) -> None:
-        """Upload what there is to upload, and wait until the vehicle is ready to move."""
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
+        """Upload what there is to upload, and wait until the vehicle is ready to go to all places."""
         ...
 
     def take_off(self, height: float) -> None:

@@ -27,7 +27,7 @@ from mmrs_core.flight.radios import Radios
 from mmrs_core.flight.recognition import recognise
 from mmrs_core.flight.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
 from mmrs_core.flight.steering import STILL
-from mmrs_core.flight.uploads import fence_of, mission_of, rally_of
+from mmrs_core.flight.uploads import fence_of, mission_of, places_in, rally_of
 from mmrs_core.flight.watch import Watch
 from mmrs_core.flight.ways import way_back
 from mmrs_core.mavlink.backend_ground import Ground
@@ -305,7 +305,7 @@ class MavlinkBackend:
             self._with.say(BLOCKED)
         vehicle.answer_lost_link(self._alone.response, self._alone.after)
         fence = fence_of(robot) if self._options.fence else ()
-        vehicle.prepare(fence, rally_of(robot), self._mission)
+        vehicle.prepare(fence, rally_of(robot), self._mission, places_in(robot))
         if fence:
             self._tell_fence()
         self._note_start()
