@@ -374,6 +374,10 @@ class Bus(Protocol):
         """Return those of these robots that will set no more slots or cannot be reached."""
         ...
 
+    def trouble(self, robot: str) -> str:
+        """Return why what others tell a robot of this process cannot be kept now; empty: it can."""
+        ...
+
     def leave(self, robot: str) -> None:
         """Tell everybody that a robot of this process will set no more slots; idempotent."""
         ...

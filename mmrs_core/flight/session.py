@@ -200,6 +200,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     pilot = Pilot(robot, vehicle, desk, watch, obedience, fence=options.fence)
     watch.current = lambda: pilot.waits.policies
     watch.track = lambda: pilot.track
+    watch.unkept = lambda: shared.slots.trouble(robot.id)
     watch.decide = pilot.journal.decide
     return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
 

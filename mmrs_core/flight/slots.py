@@ -50,6 +50,10 @@ class Slots(Protocol):
         """Return one of these robots that will set no more slots, if there is one."""
         ...
 
+    def trouble(self, robot: str) -> str:
+        """Return why the slots of a robot cannot be kept now; empty: they can."""
+        ...
+
     def leave(self, robot: str) -> None:
         """Tell that a robot has ended, well or by a fault: it never comes back.
 
@@ -114,6 +118,10 @@ class BusSlots:
     def lost(self, robots: Iterable[str]) -> str | None:
         """Return one of these robots that has ended or cannot be reached any more, if there is one."""
         return next(iter(self.node.lost(robots)), None)
+
+    def trouble(self, robot: str) -> str:
+        """Return why the slots of a robot cannot be kept now; empty: they can."""
+        return self.node.trouble(robot)
 
     def leave(self, robot: str) -> None:
         """Tell everybody that a robot has ended."""

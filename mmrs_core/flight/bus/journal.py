@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping
+from errno import ENOSPC
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -39,6 +40,7 @@ class FileJournal:
         """Keep the path; nothing is opened yet."""
         self._path = path
         self._made = path.exists()
+        self._whole: int | None = None
 
     def lines(self) -> Iterator[Mapping[str, Any]]:
         """Yield the lines of the file; a last one that was cut off while it was written is none.
@@ -61,17 +63,23 @@ class FileJournal:
     def keep(self, line: Mapping[str, Any]) -> None:
         """Append a line and have it written to the disk, the file's name included.
 
+        What a try that fails leaves of the line is taken away, at the latest before the next one.
+
         Raises:
             OSError: it cannot be.
         """
         new = not self._made
-        with self._path.open("a", encoding="ascii", newline="\n") as file:
-            file.write(json.dumps(line, ensure_ascii=True) + "\n")
-            file.flush()
+        if self._whole is not None:
+            os.truncate(self._path, self._whole)
+        with self._path.open("ab", buffering=0) as file:
+            self._whole = file.tell()
+            content = json.dumps(line, ensure_ascii=True).encode() + b"\n"
+            if file.write(content) != len(content):
+                raise OSError(ENOSPC, os.strerror(ENOSPC), str(self._path))
             os.fsync(file.fileno())
         if new:
-            self._made = True
             _sync_folder(self._path.parent)
+        self._made, self._whole = True, None
 
     def _line(self, number: int, line: bytes) -> Mapping[str, Any]:
         try:

@@ -16,6 +16,7 @@ from .meeting import Meeting
 from .members import Member, Recorded
 from .owners import Owners
 from .reading import Unreadable, answer_in, request_in, written
+from .troubles import Keeping, Net, Tell, tell_people
 from .watching import Watching
 from .words import (
     LARGEST,
@@ -41,6 +42,9 @@ FAREWELL_SECONDS = 2.0
 
 LONGEST_SLEEP = 3600.0
 
+SORE_SECONDS = 0.5
+"""How long something that fails is left alone."""
+
 
 class Node:
     """Keeps the slots of this process's robots and commands the owners of all others.
@@ -62,6 +66,7 @@ class Node:
         now: Callable[[], float] = time.monotonic,
         threaded: bool = True,
         chance: random.Random | None = None,
+        tell: Tell = tell_people,
     ) -> None:
         """Join the bus.
 
@@ -75,6 +80,7 @@ class Node:
             now: seconds of a clock that never goes back.
             threaded: whether to repeat by itself what is not answered; else `pump` must be called.
             chance: for pauses between tries.
+            tell: tells people what goes wrong here, from any thread.
 
         Raises:
             OSError: a journal cannot be read or written, or the carrier cannot begin.
@@ -88,7 +94,16 @@ class Node:
         self._watching = Watching(lease)
         self._members = {member.owned.robot: member for member in members}
         given = recorded or {}
-        self._owners = Owners(members, run, journals, given, self._watching, trusting=self._alone)
+        self._net = Net(tell)
+        self._keeping = keeping = Keeping(self._net, now)
+        self._owners = Owners(
+            members,
+            run,
+            lambda robot: keeping.watched(robot, journals(robot)),
+            given,
+            self._watching,
+            trusting=self._alone,
+        )
         self._meeting = Meeting(now)
         self._errands: list[Errand | Notice] = []
         self._farewells: dict[str, Notice] = {}
@@ -116,6 +131,10 @@ class Node:
     def slots_of(self, robot: str) -> tuple[str, ...]:
         """Return the names of the slots of a robot of this process."""
         return self._members[robot].owned.slots
+
+    def targets_of(self, robot: str) -> frozenset[str]:
+        """Return the robots whose slots a robot of this process sets or resets."""
+        return self._members[robot].targets
 
     def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
@@ -172,6 +191,11 @@ class Node:
             strangers = (robot for robot in robots if robot not in self._members)
             return tuple(robot for robot in strangers if not self._watching.is_here(robot))
 
+    def trouble(self, robot: str) -> str:
+        """Return why a robot of this process cannot keep what is told to it; empty: it can."""
+        with self.lock:
+            return self._keeping.why(robot)
+
     def leave(self, robot: str) -> None:
         """Tell everybody that a robot has ended, whether well or by a fault; it never comes back."""
         with self.lock:
@@ -225,8 +249,7 @@ class Node:
                 self.lock.wait(0.05)
             self._closed = True
             self.lock.notify_all()
-        for robot in self._members:
-            self._carrier.vanish(robot)
+        self._vanish(self._members)
         self._carrier.close()
         if self._thread is not None and self._thread is not threading.current_thread():
             self._thread.join()
@@ -234,12 +257,22 @@ class Node:
     def ask_once(self, sender: str, owner: str, request: Meet, taken: Callable[[Answer], None]) -> None:
         """Ask a robot once; `taken` is called with the answer, from any thread, or never."""
         if owner in self._owners:
-            taken(self._answer(owner, request))
+            if (answer := self._answer(owner, request)) is not None:
+                taken(answer)
             return
-        self._carrier.ask(sender, owner, written(request), lambda text: taken(answer_in(text)))
+
+        def take(text: str) -> None:
+            try:
+                answer = answer_in(text)
+            except Unreadable:
+                return  # as good as none
+            taken(answer)
+
+        with self._net.under(f"asking {owner!a}"):
+            self._carrier.ask(sender, owner, written(request), take)
 
     def serve(self, owner: str, sender: str, request: str) -> str:
-        """Return the answer of one of this process's robots to a request, whatever it is."""
+        """Return the answer of one of this process's robots to a request, whatever it is; empty: none now."""
         try:
             found = request_in(request)
         except Unreadable as error:
@@ -254,8 +287,8 @@ class Node:
         if not isinstance(found, Meet):
             self._tell_changed()
         if isinstance(found, Commit | Begin):
-            self._carrier.publish(owner)
-        return written(answer)
+            self._publish(owner)
+        return "" if answer is None else written(answer)
 
     def noticed(self, robot: str, here: bool) -> None:
         """Take note that a robot of another process can be reached, or no longer."""
@@ -277,23 +310,49 @@ class Node:
         """Send what is due; called by itself where the bus is threaded."""
         with self.lock:
             now = self.now()
-            work = [(errand, message) for errand in self._errands for message in errand.tick(now)]
+            work = [(errand, message) for errand in self._errands for message in self._due_of(errand, now)]
             for errand, message in work:
                 if message.owner in self._owners:
                     answer = self._answer(message.owner, message.request, here=True)
-                    errand.answered(message.owner, _round(message.request), answer, now)
+                    if answer is not None:
+                        errand.answered(message.owner, _round(message.request), answer, now)
             gone = self._sweep()
             ended = self._owners.end_lost(now)
+            silent, back = self._keeping.look()
             self._keep_going()
         # Carriers may take other locks, or wait: never with ours.
         for errand, message in work:
             if message.owner not in self._owners:
-                self._carrier.ask(*_addressed(message), self._taker(errand, message))
+                self._ask(errand, message)
             elif isinstance(message.request, Commit | Begin):
-                self._carrier.publish(message.owner)
-        self._vanish(gone)
-        if work or ended:
+                self._publish(message.owner)
+        self._vanish([*gone, *silent])
+        self._appear(back)
+        if work or ended or silent or back:
             self._tell_changed()
+
+    def _due_of(self, errand: Errand | Notice, now: float) -> Iterable[Message]:
+        """Return what an errand has to send now; one that fails is left alone for a while."""
+        with self._net.under("a notify on its way"):
+            return errand.tick(now)
+        errand.due = now + SORE_SECONDS
+        return ()
+
+    def _ask(self, errand: Errand | Notice, message: Message) -> None:
+        with self._net.under(f"asking {message.owner!a}"):
+            self._carrier.ask(*_addressed(message), self._taker(errand, message))
+
+    def _publish(self, robot: str) -> None:
+        with self._net.under(f"showing the slots of {robot!a}"):
+            self._carrier.publish(robot)
+
+    def _appear(self, robots: Iterable[str]) -> None:
+        for robot in robots:
+            with self.lock:
+                ended = self._closed or robot in self._watching.left
+            if not ended:
+                with self._net.under(f"coming back as {robot!a}"):
+                    self._carrier.appear(robot)
 
     def _tell_recorded(self, robot: str, recorded: Recorded) -> None:
         id = CommandId(self._run, robot, self.incarnation, 0)
@@ -311,25 +370,36 @@ class Node:
         requests = {each: Message(robot, each, Leave(id, self._owners.lamport)) for each in sorted(there)}
         return Notice(requests, until=self.now() + FAREWELL_SECONDS)
 
-    def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer:
+    def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:
+        """Return what a robot answers; None: nothing as long as it cannot keep it, and it is asked again."""
         with self.lock:
-            if isinstance(request, Meet):
-                return self._meeting.answer(request)
-            if isinstance(request, Leave):
-                return self._see_off(robot, request)
-            if isinstance(request, Begin):
-                self._watching.left.discard(request.id.sender)
-            return self._owners.answer(robot, request, self.now(), here=here)
+            try:
+                return self._answer_of(robot, request, here=here)
+            except OSError:
+                return None  # whoever watches the journal has told
+            except Exception as error:
+                self._net.tell(f"{robot!a} cannot answer {request}: {error!r}")
+                return Answer("refused", why=f"{robot!a} cannot answer: {error!r}")
+
+    def _answer_of(self, robot: str, request: Request, *, here: bool) -> Answer:
+        if isinstance(request, Meet):
+            return self._meeting.answer(request)
+        if isinstance(request, Leave):
+            return self._see_off(robot, request)
+        if isinstance(request, Begin):
+            self._watching.left.discard(request.id.sender)
+        return self._owners.answer(robot, request, self.now(), here=here)
 
     def _see_off(self, robot: str, farewell: Leave) -> Answer:
         sender = farewell.id.sender
         # First the time: a notify that needs no answer any more must be later than all the robot did.
-        answer = self._owners.see_off(robot, sender, farewell.lamport)
+        self._owners.use(farewell.lamport)
+        # It has ended, also where that cannot be kept: then it is told again as long as it is there.
         self._watching.left.add(sender)
         if sender not in self._owners:
             for errand in self._errands:
                 errand.gone(sender)
-        return answer
+        return self._owners.see_off(robot, sender, farewell.lamport)
 
     def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[str], None]:
         def take(text: str) -> None:
@@ -355,7 +425,8 @@ class Node:
 
     def _vanish(self, robots: Iterable[str]) -> None:
         for robot in robots:
-            self._carrier.vanish(robot)
+            with self._net.under(f"leaving as {robot!a}"):
+                self._carrier.vanish(robot)
 
     def _least(self) -> int:
         return 0 if self._alone else self._owners.lamport + 1
@@ -365,7 +436,8 @@ class Node:
             self.lock.notify_all()
             callbacks = tuple(self._callbacks)
         for callback in callbacks:
-            callback()
+            with self._net.under("telling of a change"):
+                callback()
 
     def _keep_going(self) -> None:
         """Have a thread do what is due later; there is none as long as nothing is."""
@@ -384,10 +456,14 @@ class Node:
                 if left > 0:
                     self.lock.wait(min(left, LONGEST_SLEEP))
                     continue
-            self.pump()
+            with self._net.under("sending what is due"):
+                self.pump()
+                continue
+            time.sleep(SORE_SECONDS)
 
     def _next_due(self) -> float:
-        return min((self._owners.next_end(), *(errand.due for errand in self._errands)))
+        ends = (self._owners.next_end(), self._keeping.due)
+        return min((*ends, *(errand.due for errand in self._errands)))
 
 
 def _round(request: Request) -> int:

@@ -22,6 +22,7 @@ from typing import Any
 import zenoh
 
 from .carrier import Answered, Station
+from .troubles import Net, Tell, tell_people
 from .words import LONGEST, digest
 
 LEASE_MILLISECONDS = 1500
@@ -60,7 +61,14 @@ class Endpoints:
 class ZenohCarrier:
     """Carries requests as queries, which the network answers from the owner itself."""
 
-    def __init__(self, mission: str, run: str, robots: Sequence[str], endpoints: Endpoints) -> None:
+    def __init__(
+        self,
+        mission: str,
+        run: str,
+        robots: Sequence[str],
+        endpoints: Endpoints,
+        tell: Tell = tell_people,
+    ) -> None:
         """Keep what is needed to begin.
 
         Args:
@@ -68,7 +76,9 @@ class ZenohCarrier:
             run: identifier of the run.
             robots: all of the mission that this process may have to do with, its own included.
             endpoints: how peers are reached.
+            tell: tells people what goes wrong here, from any thread.
         """
+        self._net = Net(tell)
         self._prefix = f"mmrs/{digest(mission)}/{digest(run)}"
         self._names = {digest(robot): robot for robot in robots}
         self._endpoints = endpoints
@@ -118,14 +128,21 @@ class ZenohCarrier:
                 )
 
     def appear(self, robot: str) -> None:
-        """Answer for a robot, and tell that it is there."""
+        """Answer for a robot, and tell that it is there; also again after `vanish`."""
+        here = f"{self._key(robot, 'here')}/{self._start}"
+        with self._closing:
+            if self._session is None or robot in self._tokens:
+                return
+            if robot not in self._own:
+                self._answer_for(robot)
+            self._tokens[robot] = self._session.liveliness().declare_token(here)
+        self.publish(robot)
+
+    def _answer_for(self, robot: str) -> None:
         self._own.add(robot)
         serve, show = self._later(self._serve), self._later(lambda query: self._show(robot, query))
         self._declared.append(self._session.declare_queryable(self._key(robot, "from", None), serve))
         self._declared.append(self._session.declare_queryable(self._key(robot, "state"), show))
-        here = f"{self._key(robot, 'here')}/{self._start}"
-        self._tokens[robot] = self._session.liveliness().declare_token(here)
-        self.publish(robot)
 
     def vanish(self, robot: str) -> None:
         """Tell that a robot is no longer there; it still answers."""
@@ -164,18 +181,26 @@ class ZenohCarrier:
         return zenoh.handlers.Callback(lambda given: self._work.put(lambda: work(given)), indirect=False)
 
     def _serve_all(self) -> None:
-        while (work := self._work.get()) is not None:
-            work()
+        """Do what there is to do until `close`; nothing of it keeps the rest from being done."""
+        try:
+            while (work := self._work.get()) is not None:
+                with self._net.under("something that came over the bus"):
+                    work()
+        finally:
+            # Whoever answers nobody must not look as if it would.
+            for robot in list(self._tokens):
+                self.vanish(robot)
 
     def _serve(self, query: Any) -> None:
         with query:
-            owner, _, sender = str(query.key_expr).removeprefix(f"{self._prefix}/").split("/")
+            owner, sender = self._parts(query.key_expr)
             robot, asker = self._names.get(owner), self._names.get(sender)
             if robot is None or asker is None or query.payload is None or self._station is None:
                 return
             content = query.payload.to_bytes()
             text = "" if len(content) > LONGEST else content.decode("utf-8", "replace")
-            query.reply(query.key_expr, self._station.serve(robot, asker, text))
+            if answer := self._station.serve(robot, asker, text):
+                query.reply(query.key_expr, answer)
 
     def _show(self, robot: str, query: Any) -> None:
         """Answer a query for states; its key may stand for those of many robots."""
@@ -184,7 +209,7 @@ class ZenohCarrier:
                 query.reply(self._key(robot, "state"), self._station.shown(robot))
 
     def _see(self, sample: Any) -> None:
-        robot, _, start = str(sample.key_expr).removeprefix(f"{self._prefix}/").split("/")
+        robot, start = self._parts(sample.key_expr)
         name = self._names.get(robot)
         if name is None or name in self._own or self._station is None:
             return
@@ -194,6 +219,13 @@ class ZenohCarrier:
         else:
             there.add(start)
         self._station.noticed(name, bool(there))
+
+    def _parts(self, key: Any) -> tuple[str, str]:
+        """Return whose key it is and what it ends with; empty where it is none of ours or stands for many."""
+        parts = str(key).split("/")
+        if len(parts) != 6 or "/".join(parts[:3]) != self._prefix:
+            return "", ""
+        return parts[3], parts[5]
 
     def _key(self, robot: str, what: str, other: str | None = "") -> str:
         """Return a key; `other` None: whoever it is, empty: nobody."""
@@ -260,8 +292,8 @@ def states_of(
         while time.monotonic() < until and not (wanted and wanted <= set(found)):
             # Peers may not be in touch yet: what they keep is asked for again and again.
             for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
-                if reply.ok is not None:
-                    found[str(reply.ok.key_expr).split("/")[3]] = reply.ok.payload.to_string()
+                if reply.ok is not None and len(parts := str(reply.ok.key_expr).split("/")) == 5:
+                    found[parts[3]] = reply.ok.payload.to_bytes().decode("utf-8", "replace")
             time.sleep(0.05)
     return found
 

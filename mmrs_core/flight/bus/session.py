@@ -13,7 +13,8 @@ from .delivery import Delivery
 from .meeting import begin_together
 from .node import Node
 from .reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
-from .words import LONGEST, CommandId
+from .troubles import Net, tell_people
+from .words import LONGEST, MOST_SLOTS, CommandId
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""
@@ -32,7 +33,7 @@ class Session:
         self._look = threading.Event()
         self._changed = False
         self._over = threading.Event()
-        self._slots = node.slots_of(robot)
+        self._slots, self._targets = node.slots_of(robot), node.targets_of(robot)
         node.on_change(self._take_note)
 
     def run(self, lines: IO[bytes]) -> None:
@@ -68,14 +69,18 @@ class Session:
             return self._ANSWERS[what](self, content)
         except (ValueError, OSError) as error:
             return {"is": "wrong", "why": str(error)}
+        except Exception as error:
+            tell_people(f"{self._robot!a}: cannot answer its program: {error!r}")
+            return {"is": "wrong", "why": f"the gateway itself fails: {error!r}"}
 
     def _prepare(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number, active = number_in(content, "number"), flag_in(content, "active")
         if number in self._deliveries:
             raise Unreadable(f"number {number}: used already")
-        slots = tuple(_slot(each) for each in content.get("slots", ()))
-        if not slots:
-            raise Unreadable("slots: none")
+        slots = _slots_in(content)
+        for robot, _ in slots:
+            if robot not in self._targets:
+                raise Unreadable(f"slots: {self._robot!a} never sets any of {robot!a}")
         id = CommandId(self._run, self._robot, "", number)
         self._deliveries[number] = self._node.prepare(id, slots, active)
         return {"is": "asked", "number": number}
@@ -130,10 +135,11 @@ class Session:
         self._look.set()
 
     def _tell_news(self) -> None:
+        net = Net()
         while not self._over.is_set():
             self._look.wait(WAITING_SECONDS)
             self._look.clear()
-            with self._turn:
+            with net.under(f"telling the program of {self._robot!a} what is new"), self._turn:
                 if self._changed:
                     self._changed = False
                     self._say({"is": "changed"})
@@ -169,6 +175,15 @@ class Session:
         "begin": _begin,
         "leave": _leave,
     }
+
+
+def _slots_in(content: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    found = content.get("slots")
+    if not isinstance(found, list) or len(found) > MOST_SLOTS:
+        raise Unreadable(f"slots: no list of 1 to {MOST_SLOTS}")
+    if not found:
+        raise Unreadable("slots: none")
+    return tuple(_slot(each) for each in found)
 
 
 def _slot(each: object) -> tuple[str, str]:

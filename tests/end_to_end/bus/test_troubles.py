@@ -1,0 +1,104 @@
+"""Nothing that comes over the network, and no disk, deafens a robot for good."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+import zenoh
+
+from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
+from mmrs_core.flight.bus.words import digest
+
+
+@pytest.fixture
+def pair(ends, until):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    return a, b
+
+
+@pytest.fixture
+def tool(ends, pair):
+    """Return a session of Zenoh that knows nothing of robots, in touch with both."""
+    config = zenoh.Config()
+    config.insert_json5("scouting/multicast/enabled", "false")
+    ways = [f"tcp/127.0.0.1:{ends.ports[robot]}" for robot in ("a", "b")]
+    config.insert_json5("connect/endpoints", json.dumps(ways))
+    with zenoh.open(config) as session:
+        time.sleep(0.5)
+        yield session
+
+
+RUN_KEY = f"mmrs/{digest('mission')}/{digest('run-0')}"
+ODD_KEYS = (
+    "mmrs/**",
+    "**",
+    f"{RUN_KEY}/**",
+    f"{RUN_KEY}/*/from/*",
+    f"{RUN_KEY}/{digest('a')}/from/*",
+    f"{RUN_KEY}/{digest('a')}/here/**",
+)
+
+
+def test_whoever_looks_at_everything_on_the_bus_deafens_nobody(tool, pair, notify):
+    a, b = pair
+    for key in ODD_KEYS:
+        for payload in (None, b"\xff\xfe{", b"[" * 50_000):
+            list(tool.get(key, payload=payload, timeout=0.3))
+    assert notify(a, "a", "b")
+    assert notify(b, "b", "a")
+
+
+def test_presence_under_keys_of_any_form_deafens_nobody(tool, pair, notify):
+    a, b = pair
+    tokens = [tool.liveliness().declare_token(key) for key in ODD_KEYS]
+    time.sleep(0.3)
+    assert notify(a, "a", "b")
+    for token in tokens:
+        token.undeclare()
+    time.sleep(0.3)
+    assert notify(b, "b", "a")
+
+
+def test_answers_of_any_form_do_not_keep_the_state_of_slots_from_being_seen(tool, pair, ends):
+    def answer(query):
+        with query:
+            query.reply(query.key_expr, b"\xff\xfe nonsense")
+
+    tool.declare_queryable("mmrs/**", answer)
+    found = states_of("mission", "run-0", Endpoints(connect=ends.endpoints("c").connect), 3.0, ["a", "b"])
+    assert not json.loads(found[digest("a")])["go"]["active"]
+
+
+@pytest.fixture
+def full(ends):
+    """Return functions after which the journal of 'b' can no longer be written, and can again."""
+    path = next(ends.folder.glob("b *")) / "b.ndjson"
+    aside = path.with_suffix(".aside")
+
+    def fill():
+        path.rename(aside)
+        path.mkdir()
+
+    def free():
+        path.rmdir()
+        aside.rename(path)
+
+    return fill, free
+
+
+def test_a_robot_whose_disk_cannot_be_written_is_lost_until_it_can(pair, until, notify, request, capfd):
+    a, b = pair
+    fill, free = request.getfixturevalue("full")
+    assert notify(a, "a", "b", 1)
+    fill()
+    assert not notify(a, "a", "b", 2, active=False, seconds=1.0)
+    assert b.trouble("b").startswith("its slots cannot be kept")
+    until(lambda: a.lost(["b"]), 5.0)
+    assert "'b' answers nobody until its slots can be kept again" in capfd.readouterr().err
+    free()
+    until(lambda: not a.lost(["b"]) and not b.trouble("b"), 5.0)
+    assert notify(a, "a", "b", 3, active=False)
+    assert not b.state(("b", "go")).active
