@@ -18,15 +18,22 @@ from .faults import (
     Fault,
 )
 from .link import Link
-from .obedience import Obedience, Ordered
+from .obedience import OBEYED_IN, Obedience, Ordered
+from .orders import HOLD as HOLD_ORDER
+from .orders import LAND as LAND_ORDER
 from .pilot import Pilot
+from .places import distance
 from .program import Robot
 from .responses import HOLD, NOTHING, RETURN, respond, response_to
 from .vehicle import Vehicle
 from .watch import Watch
+from .ways import NEAR, way_back
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
+NEARER = 0.3
+"""Metres by which a vehicle must have come nearer to the first place of its way back to be seen to obey."""
+
 CODES = {STOPPED: INTERRUPTED, ORDERED: INTERRUPTED, LINK_LOST: LINK}
 OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, STOPPED})
 """Events that are answered although the robot already responds to another."""
@@ -122,7 +129,7 @@ class Ending:
             self._stand_back()
             return
         if isinstance(fault, Ordered):
-            crew.obedience.expect(fault.receipt, response.lower())
+            crew.obedience.expect(fault.receipt, self._obeys(response))
         holds = respond(response, crew.robot, crew.vehicle, crew.pilot.track, crew.obedience.repeat)
         crew.obedience.settle()
         crew.watch.moving = holds
@@ -130,6 +137,18 @@ class Ending:
             self._leave_it_holding()
         elif holds:
             self._watch_over()
+
+    def _obeys(self, response: str) -> Callable[[], bool]:
+        """Return what tells whether the vehicle is seen to do what was ordered."""
+        crew = self._crew
+        here = crew.vehicle.state().place
+        goal = next(way_back(crew.robot, response, crew.pilot.track, here), None)
+        if goal is None:
+            modes = OBEYED_IN[LAND_ORDER if response in COMES_DOWN else HOLD_ORDER]
+            return lambda: crew.vehicle.state().mode in modes
+        # That it is steered is seen by where it goes, since it may have been in that mode before.
+        nearer = distance(here, goal) - NEARER
+        return lambda: distance(crew.vehicle.state().place, goal) <= max(nearer, NEAR)
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew

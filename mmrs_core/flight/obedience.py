@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from .clock import Clock
 from .faults import ORDERED, STOPPED, Fault, Stopped
-from .orders import HOLD, LAND, RESUME, RETURN, STOP, Inbox, Receipt
+from .orders import HOLD, LAND, RESUME, STOP, Inbox, Receipt
 from .vehicle import Vehicle
 
 GLANCE_SECONDS = 0.1
@@ -17,7 +17,6 @@ GLANCE_SECONDS = 0.1
 OBEYED_IN = {
     HOLD: frozenset({"hold", "surface"}),
     LAND: frozenset({"land", "surface", "hold"}),
-    RETURN: frozenset({"guided"}),
 }
 """Modes in which a vehicle that was told so does what it was told."""
 
@@ -65,7 +64,7 @@ class Obedience:
         self._say = say
         self._vehicle: Vehicle | None = None
         self._pending: Receipt | None = None
-        self._wanted: frozenset[str] = frozenset()
+        self._obeyed: Callable[[], bool] = lambda: False
         self._held = False
         self._moving = False
 
@@ -96,10 +95,9 @@ class Obedience:
             except Again:
                 continue
 
-    def expect(self, receipt: Receipt, mode_of: str | None = None) -> None:
+    def expect(self, receipt: Receipt, obeyed: Callable[[], bool]) -> None:
         """Confirm an order as soon as the vehicle is seen to obey it."""
-        self._pending = receipt
-        self._wanted = OBEYED_IN.get(mode_of or receipt.order.name, frozenset())
+        self._pending, self._obeyed = receipt, obeyed
 
     def settle(self, refusal: str = "") -> None:
         """Confirm, or refuse, an order that was expected and not seen to be obeyed."""
@@ -159,7 +157,7 @@ class Obedience:
             return
         self._held, moving = True, self._moving
         try:
-            self.expect(receipt)
+            self.expect(receipt, lambda: vehicle.state().mode in OBEYED_IN[HOLD])
             vehicle.hold()
             self.settle()
             if self._over:
@@ -190,8 +188,7 @@ class Obedience:
         raise Stopped()
 
     def _confirm_what_is_seen(self) -> None:
-        pending, vehicle = self._pending, self._vehicle
-        if pending is not None and vehicle is not None and vehicle.state().mode in self._wanted:
+        if (pending := self._pending) is not None and self._obeyed():
             self._pending = None
             pending.confirm()
 
