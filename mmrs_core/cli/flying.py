@@ -266,7 +266,7 @@ def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
         seen.append(number)
         if len(seen) > 1:
             raise KeyboardInterrupt
-        tell("stopping; interrupt again to end without waiting for the robots")
+        tell("stopping; interrupt again to end without waiting for robots, and those that pilots have")
         orders.give(STOP, robots)
 
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}

@@ -194,6 +194,7 @@ class MavlinkBackend:
             return
         if response == HANDS_OFF or (found is not None and found.event == TAKEN_OVER):
             self._hands_off = True
+            self._with.say("hands off until its motors are off; it still hears heartbeats, so end this later")
             self._watch.let_go()
             self._worker.begin(Job(), afresh=True)
             return

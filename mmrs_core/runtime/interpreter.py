@@ -30,6 +30,9 @@ from mmrs_core.scene import Policy
 PACE = 0.05
 """Seconds between two looks at a backend, or a bus, that cannot say when to look again."""
 
+WATCH_PACE = 0.5
+"""Seconds between two looks at a robot that has stopped in a way that somebody must watch."""
+
 
 def interpret(
     program: Program,
@@ -257,12 +260,17 @@ class _Run:
 
     def _next_wake(self) -> float:
         """Return when to look again; inf where nothing is foreseen."""
+        looks = min(self._patience_ends(), self._next_look_at_stopped())
         if self._is_quiet() and not self._is_patient():
-            return self._patience_ends()
+            return looks
         while self._wakes and self._robots[self._wakes[0][1]].wake != self._wakes[0][0]:
             heappop(self._wakes)
-        pace = self._clock.now() + PACE if self._stopping.busy else inf
-        return min(self._wakes[0][0] if self._wakes else inf, self._patience_ends(), pace)
+        return min(self._wakes[0][0] if self._wakes else inf, looks)
+
+    def _next_look_at_stopped(self) -> float:
+        if self._stopping.busy:
+            return self._clock.now() + PACE
+        return self._clock.now() + WATCH_PACE if self._stopping.watching else inf
 
     def _wake(self) -> None:
         now = self._clock.now()

@@ -70,8 +70,10 @@ class Obedience:
         elif order.kind == ANSWER:
             robot.answers[order.question] = order.answer
             order.confirm(id)
-        elif order.kind == HOLD:
+        elif order.kind == HOLD and robot.response != HANDS_OFF:
             self._hold(order, robot)
+        elif robot.response == HANDS_OFF:
+            order.refuse(id, "a pilot has taken over")
         elif order.kind == RESUME:
             self._resume(order, robot)
         elif robot.point.is_final:
@@ -90,7 +92,9 @@ class Obedience:
             robot.backend.pause(self._clock.now())
 
     def _resume(self, order: Order, robot: RunningRobot) -> None:
-        if robot.suspended and not robot.stopping:
+        if robot.point.is_final:
+            order.refuse(robot.id, "its program has ended")
+        elif robot.suspended and not robot.stopping:
             robot.recover(self._clock.now())
         elif robot.held and isinstance(robot.backend, Pausable):
             robot.backend.resume(self._clock.now())
@@ -103,7 +107,6 @@ class Obedience:
         if robot.fault is None:
             order.refuse(robot.id, "its program has ended")
         elif robot.response == HANDS_OFF:
-            robot.released = order.kind == STOP
             order.refuse(robot.id, "a pilot has taken over")
         elif robot.fault.which == "LINK_LOST":
             order.refuse(robot.id, "its link is lost")

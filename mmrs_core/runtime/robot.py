@@ -198,7 +198,7 @@ class RunningRobot:
         self._give_up()
         self.fault, self.response = found, response
         self._answered.add(found.which)
-        self.ordered, self.suspended, self.recovering = None, False, False
+        self.ordered, self.suspended, self.recovering, self.held = None, False, False, False
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:

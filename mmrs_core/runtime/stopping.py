@@ -59,10 +59,21 @@ class Stopping:
             robot.stopping = self._clock.passes_by_itself
 
     def look_after(self) -> None:
-        """Note which robots have confirmed that they stopped, or cannot."""
+        """Note which robots have confirmed that they stopped, or cannot, and what became of them since."""
         for robot in self._robots:
             if robot.stopping:
                 self._look_after(robot, self._clock.now())
+            elif robot.fault is not None and robot.response != HANDS_OFF and self._clock.passes_by_itself:
+                self._look_again(robot, self._clock.now())
+
+    def _look_again(self, robot: RunningRobot, now: float) -> None:
+        """Answer what overtakes a robot that has stopped, such as a pilot who takes it over."""
+        try:
+            trouble = robot.backend.fault(now)
+        except LinkLostError:
+            return  # it has stopped, and its link was not needed any more
+        if trouble is not None and robot.overtaken_by(trouble):
+            self.answer(robot, trouble)
 
     def _look_after(self, robot: RunningRobot, now: float) -> None:
         try:

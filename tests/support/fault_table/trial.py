@@ -13,6 +13,9 @@ from fault_table.row import Outcome, Row
 from fault_table.watch import Watch
 from mmrs_core.errors import MmrsError
 
+GOODBYE_SECONDS = 8.0
+"""Real seconds after which a process is interrupted again that stays for vehicles which pilots have."""
+
 REAL_SECONDS = 50.0
 """How long everything may take."""
 
@@ -84,6 +87,8 @@ def _over(process: Process, blow: Blow | None) -> bool:
 def _end(fleet: Fleet, process: Process) -> list[str]:
     if process.running():
         process.signal(signal.SIGINT)
+        if process.end(GOODBYE_SECONDS) is None:
+            process.signal(signal.SIGINT)
     problems = [] if process.end(30.0) is not None else ["the process does not end when it is interrupted"]
     try:
         complaints = fleet.replayed().complaints

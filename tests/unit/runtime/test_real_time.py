@@ -348,6 +348,23 @@ def test_a_robot_that_holds_after_a_fault_is_watched_until_somebody_stops_it(liv
     assert run.end().faults["r"].which == "NO_PROGRESS"
 
 
+def test_a_pilot_who_takes_a_robot_that_holds_is_noticed_and_obeyed(live):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    held = run.script.robots["r"]
+    held.watched_for = True
+    held.fail("OBSTACLE")
+    run.wait_for(lambda: "'r': has done HOLD" in run.said)
+    held.fail("TAKEN_OVER")
+    run.wait_for(lambda: held.stops == ["HOLD", "NOTHING"])
+    for kind in (RETURN, LAND, HOLD, RESUME, STOP):
+        assert run.order(kind).refused == {"r": "a pilot has taken over"}
+    assert held.stops == ["HOLD", "NOTHING"]
+    assert run.ending is None
+    held.watched_for = False
+    run.end()
+
+
 @pytest.mark.parametrize(
     ("kind", "response", "fault"),
     [(STOP, "HOLD", "STOPPED"), (RETURN, "RETURN", "ORDERED"), (LAND, "LAND", "ORDERED")],
