@@ -25,7 +25,7 @@ NAMES = {
 }
 STILL = 0.3
 NEAR_HOME = 2.0
-STOPPING_METRES = 12.0
+STOPPING_METRES = 20.0
 
 Moment = Callable[[Autopilot], bool]
 
