@@ -23,8 +23,8 @@ from mmrs_core.scene import AreaUse
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 SPEEDUP = 25.0
-SLACK = 0.6
-"""Metres that a vehicle may be off its leg: the radius in which places count as reached, and a little."""
+SLACK = 0.05
+"""Metres that a track may be less clear: the example allows for no error of position."""
 
 pytestmark = pytest.mark.thorough
 
