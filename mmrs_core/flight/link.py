@@ -15,6 +15,7 @@ from .faults import LINK_LOST, Fault
 from .identity import LATE_MILLISECONDS, Identity
 from .ports import Address, Port
 from .radio import GLANCE_SECONDS, Radio, is_autopilot
+from .roaming import Roaming
 from .signing import Signer
 
 Message = Any
@@ -104,7 +105,8 @@ class Link:
         self.retries = retries or Retries()
         self._radio = radio
         self._wanted = system
-        self._identity = Identity(max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup))
+        late = max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup)
+        self._identity, self._roaming = Identity(late), Roaming(late)
         self._changed = threading.Condition()
         self._latest: dict[str, tuple[Message, float]] = {}
         self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
@@ -159,8 +161,9 @@ class Link:
 
     def doubt(self) -> str:
         """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
-        if self._identity.twin:
-            return f"there are two vehicles with system id {self.system}: {self._identity.twin}"
+        twin = self._roaming.twin or self._identity.twin
+        if twin:
+            return f"there are two vehicles with system id {self.system}: {twin}"
         others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
         if not self._wanted and others:
             shown = " and ".join(map(str, sorted([self.system, *others])))
@@ -183,7 +186,7 @@ class Link:
         """Send one message; where the port does not take it, it is lost like any on a poor link."""
         for observer in self._observers:
             observer(message, True)
-        self._radio.send(message, self._identity.sender)
+        self._radio.send(message, self._roaming.sender)
 
     def latest(self, kind: str) -> Message | None:
         """Return the last message of that name from the vehicle."""
@@ -257,7 +260,7 @@ class Link:
     def hears(self, message: Message, sender: Address | None) -> None:
         """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
         own = (message.get_srcSystem(), message.get_srcComponent()) == (self.system, self.component)
-        if own and not self._identity.speaks_from(sender, time.monotonic(), heartbeat=is_autopilot(message)):
+        if own and not self._is_own(message, sender):
             self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
             return
         for observer in self._observers:
@@ -271,6 +274,11 @@ class Link:
         with self._changed:
             self._ended = reason
             self._changed.notify_all()
+
+    def _is_own(self, message: Message, sender: Address | None) -> bool:
+        """Return whether a message with the vehicle's ids comes from the vehicle."""
+        real, now = time.monotonic(), self.clock.now()
+        return self._roaming.accepts(message, sender, real, now, heartbeat=is_autopilot(message))
 
     def _keep(self, message: Message, *, own: bool) -> None:
         kind, now = message.get_type(), self.clock.now()

@@ -52,13 +52,39 @@ def test_heartbeats_go_to_everybody_who_has_spoken(shared):
     eventually(lambda: {HERE, THERE} <= set(shared.wire.beats))
 
 
-def test_a_vehicle_that_falls_silent_may_speak_from_another_address(shared, monkeypatch):
-    monkeypatch.setattr("mmrs_core.flight.identity.ROAMING_SECONDS", 0.05)
+def position(milliseconds: int, north: float = 0.0):
+    latitude = round((42.37 + north / 111_000.0) * 1e7)
+    return mavlink.MAVLink_global_position_int_message(
+        milliseconds, latitude, 133_500_000, 720_000, 20_000, 0, 0, 0, 0
+    )
+
+
+@pytest.mark.parametrize(
+    ("sign", "same"),
+    [
+        (position(60_200), True),
+        (position(60_200, north=8.0), True),
+        (position(60_200, north=60.0), False),
+        (position(1_200), False),
+        (position(99_200), False),
+        (ITEM, False),
+    ],
+    ids=["same", "drifted", "elsewhere", "started later", "started earlier", "no sign"],
+)
+def test_a_vehicle_that_falls_silent_speaks_from_another_address_if_it_is_the_same(
+    shared, monkeypatch, sign, same
+):
+    monkeypatch.setattr("mmrs_core.flight.roaming.ROAMING_SECONDS", 0.05)
+    shared.wire.say(position(60_000), system=1, sender=HERE)
+    shared.first.wait(lambda: shared.first.latest("GLOBAL_POSITION_INT"), 5.0)
     eventually(lambda: shared.first.silent_for() > 0.1)
-    shared.wire.say(ITEM, system=1, sender=ELSEWHERE)
-    assert shared.first.wait(lambda: shared.first.latest("MISSION_CURRENT"), 5.0)
+    shared.wire.say(sign, system=1, sender=ELSEWHERE)
+    shared.wire.beat(system=1, sender=ELSEWHERE, mode=9)
+    shared.wire.say(ITEM, system=2, sender=THERE)
+    assert shared.second.wait(lambda: shared.second.latest("MISSION_CURRENT"), 5.0)
+    assert (shared.first.latest("HEARTBEAT").custom_mode == 9) is same
     shared.first.send(ITEM)
-    assert shared.wire.sent[-1][1] == ELSEWHERE
+    assert shared.wire.sent[-1][1] == (ELSEWHERE if same else HERE)
 
 
 def test_a_second_vehicle_with_the_same_id_is_not_heard_and_told():
