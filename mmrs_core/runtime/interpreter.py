@@ -66,7 +66,9 @@ def interpret(
     for robot in program.robots:
         if robot.id in backends:
             live = terms.attention is not None
-            rules = Rules(conditions, (policies or {}).get(robot.id, ()), terms.suspends, live=live)
+            rules = Rules(
+                conditions, (policies or {}).get(robot.id, ()), terms.suspends, program.reserve, live
+            )
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
     over = {id: why for id, why in over_by(program, terms.resumed).items() if id not in backends}

@@ -95,12 +95,23 @@ class Obedience:
         if robot.point.is_final:
             order.refuse(robot.id, "its program has ended")
         elif robot.suspended and not robot.stopping:
-            robot.recover(self._clock.now())
+            self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
             robot.backend.resume(self._clock.now())
             robot.held = False
         else:
             order.refuse(robot.id, "has nothing to resume")
+
+    def _recover(self, order: Order, robot: RunningRobot) -> None:
+        """Have a robot go on whose program was broken off, unless its battery was not changed."""
+        try:
+            why = robot.still_low(self._clock.now())
+        except LinkLostError as error:
+            why = str(error)
+        if why:
+            order.refuse(robot.id, why)
+        else:
+            robot.recover(self._clock.now())
 
     def _stop_again(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot whose program has ended by a fault stop in another way."""

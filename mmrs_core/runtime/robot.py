@@ -25,12 +25,14 @@ class Rules:
         conditions: by identifier.
         policies: of its type and kind, which go after the program's.
         suspends: whether a low battery only breaks the program off, to go on with a full one.
+        reserve: part of the energy with which a program is not gone on with.
         live: whether robots are real ones: steps then tell only which fault it is, black boxes the reason.
     """
 
     conditions: Mapping[str, Condition]
     policies: tuple[Policy, ...]
     suspends: bool
+    reserve: float = 0.0
     live: bool = False
 
 
@@ -125,6 +127,13 @@ class RunningRobot:
         for record in records:
             self.follow(step_of(self._program, self.point, record), record.time)
             self.lamport, self.number = record.lamport, record.seq + 1
+
+    def still_low(self, now: float) -> str:
+        """Return why its battery does not suffice to go on; empty if it may, or nobody knows."""
+        charge = self.backend.state(now).charge
+        if self.fault is None or self.fault.which != "BATTERY_LOW" or charge is None:
+            return ""
+        return f"its battery is still at {charge:.0%}" if charge <= self._rules.reserve else ""
 
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""

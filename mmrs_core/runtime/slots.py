@@ -11,6 +11,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import CommandId, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.flight.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
+from mmrs_core.flight.slots import SETTLING_SECONDS
 
 
 class ProgramBus:
@@ -110,6 +111,7 @@ def shared_bus(
         records: the steps that these robots made before; None: they are not started again.
 
     Raises:
+        Doubled: if another process runs one of these robots.
         OSError: if the folder cannot be written, or the carrier cannot begin.
         ValueError: if the folder holds slots of another run, or of an earlier start.
     """
@@ -139,6 +141,7 @@ def node_of(
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]),
         recorded=recorded,
+        settle=SETTLING_SECONDS,
     )
 
 

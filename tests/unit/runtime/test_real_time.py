@@ -74,7 +74,7 @@ class Walker:
         pass
 
     def state(self, now):
-        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=0.5)
+        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=self.script.charge)
 
     def stop(self, now, response="HOLD"):
         self.stops.append(response)
@@ -109,7 +109,7 @@ class Script:
 
     def __init__(self, **seconds):
         self.seconds = {name.replace("_", " "): value for name, value in seconds.items()}
-        self.robots = {}
+        self.robots, self.charge = {}, 0.5
 
     @property
     def factory(self):
@@ -490,6 +490,14 @@ def test_a_changed_battery_lets_the_program_go_on_in_the_same_process(live):
     assert run.end().outcome is Outcome.SUCCESS
     assert run.script.robots["a"].recovered == (("start", "one"), "two")
     assert replay(SURVEY, run.records).accepted
+
+
+def test_a_battery_that_was_not_changed_is_told_and_nothing_moves(live):
+    run = suspended(live, patience=20.0)
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run.script.charge = 0.15
+    assert run.order(RESUME, "a").refused == {"a": "its battery is still at 15%"}
+    assert run.script.robots["a"].recovered is None
 
 
 def test_a_run_is_resumed_from_its_log(live):
