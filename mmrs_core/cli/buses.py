@@ -12,7 +12,8 @@ import typer
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
-from mmrs_core.errors import UnreadableError, UnsupportedError
+from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
+from mmrs_core.flight.bus import Doubled
 from mmrs_core.flight.bus.carrier import Carrier
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.resuming import restore
@@ -61,6 +62,7 @@ def bus_for(
 
     Raises:
         typer.BadParameter: if robots wait for robots of other processes, and no bus is asked for.
+        LinkLostError: if another process runs one of these robots.
         UnreadableError: if what the folder holds belongs to another run.
         UnsupportedError: if Zenoh is not installed.
     """
@@ -77,6 +79,8 @@ def bus_for(
     carrier = ZenohCarrier(program.name, run, sorted(robot.id for robot in program.robots), endpoints)
     try:
         return shared_bus(program, here, run, folder, wrap(carrier), resumed)
+    except Doubled as error:
+        raise LinkLostError(str(error)) from error
     except ValueError as error:
         raise UnreadableError(f"{folder}: {error}") from error
 

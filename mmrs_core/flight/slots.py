@@ -20,6 +20,9 @@ Guard = Callable[[tuple[str, ...]], None]
 
 GLANCE_SECONDS = 0.05
 
+SETTLING_SECONDS = 1.0
+"""How long a process looks whether another one runs its robots, before it joins the bus."""
+
 
 class Slots(Protocol):
     """What a robot needs of slots."""
@@ -173,6 +176,7 @@ def shared_slots(
         recorded: by robot, what the logs say of those that are started again; see `recorded_of`.
 
     Raises:
+        Doubled: another process runs one of these robots.
         OSError: the folder cannot be written, or the carrier cannot begin.
         ValueError: the folder holds slots of another run, or of an earlier start of a robot that is not
             started again.
@@ -185,6 +189,7 @@ def shared_slots(
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]) if robot in paths else NoJournal(),
         recorded=recorded,
+        settle=SETTLING_SECONDS,
     )
     return BusSlots(node, run)
 

@@ -12,7 +12,7 @@ from .delivery import Delivery
 from .journal import FileJournal, NoJournal
 from .meeting import Beginning, begin_together
 from .members import Member, Recorded
-from .node import Node
+from .node import Doubled, Node
 from .owner import Owned
 from .words import CommandId, SlotId, SlotState
 
@@ -21,6 +21,7 @@ __all__ = [
     "Carrier",
     "CommandId",
     "Delivery",
+    "Doubled",
     "FileJournal",
     "Hub",
     "Member",

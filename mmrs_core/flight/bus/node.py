@@ -17,7 +17,7 @@ from .members import Member, Recorded
 from .owners import Owners
 from .reading import Unreadable, answer_in, request_in, written
 from .troubles import Keeping, Net, Tell, tell_people
-from .watching import Watching
+from .watching import DOUBLE_SECONDS, Watching
 from .words import (
     LARGEST,
     REACH,
@@ -46,6 +46,10 @@ SORE_SECONDS = 0.5
 """How long something that fails is left alone."""
 
 
+class Doubled(OSError):  # noqa: N818  # what is the matter with a robot
+    """A robot that another process runs, too."""
+
+
 class Node:
     """Keeps the slots of this process's robots and commands the owners of all others.
 
@@ -67,6 +71,7 @@ class Node:
         threaded: bool = True,
         chance: random.Random | None = None,
         tell: Tell = tell_people,
+        settle: float = 0.0,
     ) -> None:
         """Join the bus.
 
@@ -81,8 +86,10 @@ class Node:
             threaded: whether to repeat by itself what is not answered; else `pump` must be called.
             chance: for pauses between tries.
             tell: tells people what goes wrong here, from any thread.
+            settle: seconds to look whether other processes run the same robots; 0: nobody looks.
 
         Raises:
+            Doubled: another process runs one of the robots.
             OSError: a journal cannot be read or written, or the carrier cannot begin.
             ValueError: a journal is damaged, or holds another run or an earlier start of a robot that
                 is not started again.
@@ -111,12 +118,32 @@ class Node:
         self._chance = chance or random.Random()
         self._thread: threading.Thread | None = None
         self._closed = False
-        self._carrier.open(self)
+        self._begin(settle)
         for robot in self._members:
             if robot in given:
                 self._tell_recorded(robot, given[robot])
             self._carrier.appear(robot)
         self.pump()
+
+    def _begin(self, settle: float) -> None:
+        """Open the carrier, and begin if nobody else runs these robots."""
+        self._carrier.open(self)
+        try:
+            self._refuse_doubles(settle)
+            self._owners.begin()
+        except BaseException:
+            self._closed = True
+            self._carrier.close()
+            raise
+
+    def _refuse_doubles(self, settle: float) -> None:
+        begun = self.now()
+        while (left := begun + settle - self.now()) > 0:
+            time.sleep(min(left, 0.05))
+        while settle and (there := self._watching.doubles()):
+            if self.now() - begun > settle + DOUBLE_SECONDS:
+                raise Doubled(f"{', '.join(map(ascii, there))}: another process runs it on this bus already")
+            time.sleep(0.05)
 
     @property
     def robots(self) -> tuple[str, ...]:
@@ -146,6 +173,7 @@ class Node:
             parts[owner] = (*parts.get(owner, ()), slot)
         if not self._alone:
             id = replace(id, incarnation=self.incarnation)
+            self._take_part(id.sender)
         errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
         with self.lock:
             for owner in parts:
@@ -154,6 +182,13 @@ class Node:
             self._errands.append(errand)
         self.pump()
         return Delivery(self, errand)
+
+    def _take_part(self, robot: str) -> None:
+        with self.lock:
+            try:
+                self._owners.take_part(robot)
+            except OSError:
+                return  # whoever watches the journal has told; a robot that cannot keep this says so
 
     def withdraw(self, errand: Errand) -> None:
         """Give a notify up; its owners are told until they have answered."""
@@ -294,6 +329,10 @@ class Node:
         """Take note that a robot of another process can be reached, or no longer."""
         with self.lock:
             now = self.now()
+            if robot in self._members:
+                self._watching.doubled(robot, here, now)
+                self._keep_going()
+                return
             self._watching.noticed(robot, here, now)
             if here:
                 for errand in self._errands:
@@ -319,6 +358,7 @@ class Node:
             gone = self._sweep()
             ended = self._owners.end_lost(now)
             silent, back = self._keeping.look()
+            self._tell_doubles(now)
             self._keep_going()
         # Carriers may take other locks, or wait: never with ours.
         for errand, message in work:
@@ -330,6 +370,11 @@ class Node:
         self._appear(back)
         if work or ended or silent or back:
             self._tell_changed()
+
+    def _tell_doubles(self, now: float) -> None:
+        for robot in self._watching.lasting_doubles(now):
+            self._net.forget(words := f"{robot!a} is run by another process, too: end one of them")
+            self._net.tell(words)
 
     def _due_of(self, errand: Errand | Notice, now: float) -> Iterable[Message]:
         """Return what an errand has to send now; one that fails is left alone for a while."""
@@ -462,7 +507,7 @@ class Node:
             time.sleep(SORE_SECONDS)
 
     def _next_due(self) -> float:
-        ends = (self._owners.next_end(), self._keeping.due)
+        ends = (self._owners.next_end(), self._keeping.due, self._watching.next_double())
         return min((*ends, *(errand.due for errand in self._errands)))
 
 

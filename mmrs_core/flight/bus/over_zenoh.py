@@ -211,7 +211,7 @@ class ZenohCarrier:
     def _see(self, sample: Any) -> None:
         robot, start = self._parts(sample.key_expr)
         name = self._names.get(robot)
-        if name is None or name in self._own or self._station is None:
+        if name is None or start == self._start or self._station is None:
             return
         there = self._there.setdefault(name, set())
         if sample.kind == zenoh.SampleKind.DELETE:

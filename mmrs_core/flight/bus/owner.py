@@ -69,6 +69,7 @@ class Owner:
     Attributes:
         start: number of the last start that the journal tells of; 0: there was none.
         lamport: the latest logical time of robots that told this one that they have ended.
+        used: whether the journal tells of anything but starts.
     """
 
     def __init__(
@@ -97,6 +98,7 @@ class Owner:
         """
         self.robot = owned.robot
         self.start = self.lamport = 0
+        self.used = False
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
         self._lost = lost or (lambda sender, now: False)
         self._slots = {name: _Slot(SlotState(lamport=floor)) for name in owned.slots}
@@ -118,6 +120,12 @@ class Owner:
         """Keep that this owner was started again."""
         self.start = number
         self._journal.keep({"started": number, "robot": self.robot, "run": self._run})
+
+    def use(self) -> None:
+        """Keep that the robot itself takes part."""
+        if not self.used:
+            self._journal.keep({"used": self.robot})
+            self.used = True
 
     def prepare(self, asked: Prepare, now: float, *, here: bool = False) -> Answer:
         """Keep slots for a sender, and tell it the least logical time that it may use.
@@ -310,6 +318,7 @@ class Owner:
         """Go through a line of the journal as through what it tells of."""
         if line.get("run", self._run) != self._run:
             raise ValueError(f"{self.robot!a}: slots were kept in run {line['run']!a}, not {self._run!a}")
+        self.used = self.used or not {"started", "again"} & set(line)
         if "started" in line:
             self.start = line["started"]
         elif "left" in line:

@@ -58,9 +58,10 @@ class Owners:
         }
         logged = (each.lamport for each in recorded.values())
         self.lamport = max((*logged, *(owner.lamport for owner in self._owners.values())), default=0)
-        self._watching = watching
+        self._watching, self._alone = watching, trusting
         watching.left.update(*(owner.left for owner in self._owners.values()))
-        self.incarnation = self._started(recorded, alone=trusting)
+        self._number = self._next_start(recorded)
+        self.incarnation = f"{self._number:08d}"
 
     def __contains__(self, robot: str) -> bool:
         """Return whether a robot is one of this process."""
@@ -135,12 +136,26 @@ class Owners:
         for robot, owner in self._owners.items():
             owner.restore([slot for owned_by, slot in given if owned_by == robot], lamport)
 
-    def _started(self, recorded: Mapping[str, Recorded], *, alone: bool) -> str:
+    def begin(self) -> None:
+        """Keep that the robots of this process have been started once more.
+
+        Raises:
+            OSError: it cannot be kept.
+        """
+        for owner in () if self._alone else self._owners.values():
+            owner.started(self._number)
+
+    def take_part(self, robot: str) -> None:
+        """Keep that a robot of this process does something that others will know of.
+
+        Raises:
+            OSError: it cannot be kept.
+        """
+        if not self._alone and robot in self._owners:
+            self._owners[robot].use()
+
+    def _next_start(self, recorded: Mapping[str, Recorded]) -> int:
         for robot, owner in self._owners.items():
-            if owner.start and robot not in recorded:
+            if owner.start and owner.used and robot not in recorded:
                 raise ValueError(f"{robot!a}: its slots were kept by an earlier start; resume it")
-        number = 1 + max((owner.start for owner in self._owners.values()), default=0)
-        if not alone:
-            for owner in self._owners.values():
-                owner.started(number)
-        return f"{number:08d}"
+        return 1 + max((owner.start for owner in self._owners.values()), default=0)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+DOUBLE_SECONDS = 3.0
+"""How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
+
 
 class Watching:
     """What is known of the robots of other processes, and of all robots that have ended.
@@ -16,6 +19,35 @@ class Watching:
         self._lease = lease
         self._here: set[str] = set()
         self._lost_at: dict[str, float] = {}
+        self._doubled: dict[str, float] = {}
+        self._told: set[str] = set()
+
+    def doubled(self, robot: str, here: bool, now: float) -> None:
+        """Take note that a robot of this process is run by another one, too, or no longer."""
+        if here:
+            self._doubled.setdefault(robot, now)
+        else:
+            self._doubled.pop(robot, None)
+            self._told.discard(robot)
+
+    def doubles(self) -> tuple[str, ...]:
+        """Return the robots of this process that another one runs, too."""
+        return tuple(self._doubled)
+
+    def lasting_doubles(self, now: float) -> tuple[str, ...]:
+        """Return those that have been so for long, each once."""
+        found = [
+            robot
+            for robot, since in self._doubled.items()
+            if robot not in self._told and now >= since + DOUBLE_SECONDS
+        ]
+        self._told.update(found)
+        return tuple(found)
+
+    def next_double(self) -> float:
+        """Return when `lasting_doubles` may have one; inf: never."""
+        untold = (since for robot, since in self._doubled.items() if robot not in self._told)
+        return min((since + DOUBLE_SECONDS for since in untold), default=float("inf"))
 
     def noticed(self, robot: str, here: bool, now: float) -> None:
         """Take note that a robot can be reached, or no longer."""

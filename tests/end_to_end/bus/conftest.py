@@ -33,6 +33,7 @@ class Ends:
         self.ports = {robot: _free_port() for robot in NAMES}
         self.nodes: list[Node] = []
         self.keys = None
+        self.tell = print
 
     def certify(self) -> None:
         self.keys = self.folder / "keys"
@@ -49,7 +50,8 @@ class Ends:
         folder = self.folder / f"{robot} {len(self.nodes)}"
         folder.mkdir()
         carrier = ZenohCarrier("mission", run, NAMES, endpoints)
-        node = Node([member], run, carrier=carrier, journals=lambda id: FileJournal(folder / f"{id}.ndjson"))
+        journals = lambda id: FileJournal(folder / f"{id}.ndjson")  # noqa: E731
+        node = Node([member], run, carrier=carrier, journals=journals, tell=lambda line: self.tell(line))
         self.nodes.append(node)
         return node
 

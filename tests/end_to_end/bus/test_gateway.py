@@ -201,6 +201,10 @@ NONSENSE = [
     ({"do": "fly"}, "'fly': nothing that can be done here"),
     ({"do": "prepare", "number": 1, "slots": [], "active": True}, "slots: none"),
     ({"do": "prepare", "number": 1, "slots": ["go"], "active": True}, "slots: no lists"),
+    ({"do": "prepare", "number": 1, "slots": 5, "active": True}, "slots: no list of 1 to"),
+    ({"do": "prepare", "number": 1, "slots": None, "active": True}, "slots: no list of 1 to"),
+    ({"do": "prepare", "number": 1, "slots": {"b": "go"}, "active": True}, "slots: no list of 1 to"),
+    ({"do": "prepare", "number": 1, "slots": [["Nobody", "go"]], "active": True}, "'a' never sets any of"),
     ({"do": "prepare", "number": -1, "slots": [["b", "go"]], "active": True}, "number: no whole"),
     ({"do": "send", "number": 9, "lamport": 3}, "number 9: no such notify"),
     ({"do": "pass", "slots": ["nothing"], "lamport": 3}, "'a' has no slot 'nothing'"),
@@ -221,6 +225,7 @@ def test_a_gateway_ends_when_it_is_interrupted(gateway, client):
 
 
 def test_a_program_that_comes_again_without_saying_so_is_turned_away(gateway, client):
+    client.ask({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True}, "asked")
     client.close()
     told = json.loads(gateway[1].read_text())
     again = Client(told["port"])
@@ -230,6 +235,14 @@ def test_a_program_that_comes_again_without_saying_so_is_turned_away(gateway, cl
     hello = {"do": "hello", "token": told["token"], "resumed": {"lamport": 7, "notifies": []}}
     assert resumed.ask(hello, "welcome")["slots"] == ["ready"]
     resumed.close()
+
+
+def test_a_program_that_has_done_nothing_begins_anew(gateway, client):
+    client.close()
+    told = json.loads(gateway[1].read_text())
+    again = Client(told["port"])
+    assert again.ask({"do": "hello", "token": told["token"]}, "welcome")["slots"] == ["ready"]
+    again.close()
 
 
 def test_the_session_on_the_page_goes_as_it_says(gateway, peer, until):

@@ -89,15 +89,17 @@ def full(ends):
     return fill, free
 
 
-def test_a_robot_whose_disk_cannot_be_written_is_lost_until_it_can(pair, until, notify, request, capfd):
+def test_a_robot_whose_disk_cannot_be_written_is_lost_until_it_can(pair, until, notify, request, ends):
     a, b = pair
+    told = []
+    ends.tell = told.append
     fill, free = request.getfixturevalue("full")
     assert notify(a, "a", "b", 1)
     fill()
     assert not notify(a, "a", "b", 2, active=False, seconds=1.0)
     assert b.trouble("b").startswith("its slots cannot be kept")
     until(lambda: a.lost(["b"]), 5.0)
-    assert "'b' answers nobody until its slots can be kept again" in capfd.readouterr().err
+    assert told[0].startswith("'b' answers nobody until its slots can be kept again: ")
     free()
     until(lambda: not a.lost(["b"]) and not b.trouble("b"), 5.0)
     assert notify(a, "a", "b", 3, active=False)
