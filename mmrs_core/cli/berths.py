@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 SPACING = 0.0001
 """Degrees between vehicles without a model: eleven metres."""
 
+LAST_PORT = 65_535
 USUAL_ENERGY = 1200.0
 """Seconds of hovering where nobody says how long a battery lasts."""
 
@@ -70,6 +72,9 @@ class Berths:
         Raises:
             typer.BadParameter: if an option makes no sense.
         """
+        last = self.port + self.step * (len(berths) - 1)
+        if last > LAST_PORT:
+            raise typer.BadParameter(f"--port {self.port}: the last vehicle would need port {last}")
         made = tuple((berth.robot, self._vehicle(number, berth)) for number, berth in enumerate(berths))
         for number, berth in enumerate(berths):
             latitude, longitude = berth.home
@@ -98,17 +103,17 @@ class Berths:
                 recharge=berth.recharge if self.recharge is None else self.recharge,
                 parameters=dict(map(_parameter, self.parameters)),
             )
+            return SimulatedVehicle(
+                self.port + self.step * number,
+                settings,
+                host=self.host,
+                speedup=self.speedup,
+                loss=self.loss,
+                delay=self.delay,
+                seed=self.seed,
+            )
         except ValueError as error:
             raise typer.BadParameter(str(error)) from error
-        return SimulatedVehicle(
-            self.port + self.step * number,
-            settings,
-            host=self.host,
-            speedup=self.speedup,
-            loss=self.loss,
-            delay=self.delay,
-            seed=self.seed,
-        )
 
 
 def plain_berths(count: int, home: str, kind: str) -> list[Berth]:
@@ -179,7 +184,7 @@ def pair(text: str, option: str) -> tuple[float, float]:
     """
     first, _, second = text.partition(",")
     try:
-        return float(first), float(second)
+        return _finite(first), _finite(second)
     except ValueError:
         raise typer.BadParameter(f"{option} {text}: is not two numbers with a comma") from None
 
@@ -187,6 +192,12 @@ def pair(text: str, option: str) -> tuple[float, float]:
 def _parameter(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
-        return name, float(value)
+        return name, _finite(value)
     except ValueError:
         raise typer.BadParameter(f"--parameter {text}: is not NAME=NUMBER") from None
+
+
+def _finite(text: str) -> float:
+    if not isfinite(number := float(text)):
+        raise ValueError(f"{text}: is no finite number")
+    return number

@@ -112,7 +112,7 @@ def rendered_with_lines(
     """
     try:
         return taken_out(environment.get_template(template).render(view))
-    except (TemplateError, ValueError, TypeError, AttributeError) as error:
+    except (TemplateError, ValueError, TypeError, LookupError, ArithmeticError, AttributeError) as error:
         where = f"template {_place_of(error, template)}: {_words_of(error)}"
         if overrides is not None and overrides.hashes:
             raise MmrsError(f"{overrides.folder}: {where}") from error

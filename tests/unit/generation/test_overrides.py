@@ -74,6 +74,12 @@ def test_a_value_without_a_filter_is_an_error_in_them_too(target, mine):
         made(target, mine)
 
 
+def test_what_fails_in_one_is_told_with_its_line(target, mine):
+    (mine / "cards" / "card.txt.jinja").write_text("first\n{{ (1 / 0) | py }}\n", "utf-8")
+    with pytest.raises(MmrsError, match=r"card.txt.jinja, line 2: division by zero"):
+        made(target, mine)
+
+
 def test_a_template_that_extends_none_is_an_error(target, mine):
     (mine / "cards" / "card.txt.jinja").write_text('{% extends "shiped/card" %}', "utf-8")
     with pytest.raises(MmrsError, match="there is no template 'shiped/card'"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import typer
 
 from mmrs_core.cli.berths import Berths, berths_of, plain_berths
 from mmrs_core.cli.settings import Settings
@@ -53,3 +54,17 @@ def test_vehicles_without_a_model_stand_side_by_side():
 def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
     given = plain_berths(2, "42.37,13.35", "copter")
     assert " ".join(common(speedup=speedup).arguments(given)).endswith(end)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"wind": "nan,0"}, "two numbers"),
+        ({"parameters": ("WPNAV_SPEED=nan",)}, "NAME=NUMBER"),
+        ({"parameters": ("NOSUCH=1",)}, "NOSUCH"),
+        ({"port": 65_535}, "65545"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(given, told):
+    with pytest.raises(typer.BadParameter, match=told):
+        common(**given).vehicles(plain_berths(2, "42.37,13.35", "copter"))
