@@ -346,4 +346,14 @@ class _Run:
         else:
             outcome = Outcome.FAILED if faults else Outcome.SUCCESS if done else Outcome.STUCK
         unconfirmed = self._stopping.unconfirmed
-        return Ending(outcome, self._deadlock, faults, unconfirmed, self._clock.now(), self._made, suspended)
+        responses = {robot.id: robot.response for robot in self._robots if robot.fault is not None}
+        return Ending(
+            outcome,
+            self._deadlock,
+            faults,
+            unconfirmed,
+            self._clock.now(),
+            self._made,
+            suspended,
+            responses,
+        )

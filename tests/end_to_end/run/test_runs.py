@@ -150,6 +150,7 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     vehicle = begun(flown, "a", "tour 1")
     vehicle.faults.set_battery(0.15)
     assert first.end(PATIENCE) == 1, first.said
+    assert not any("internal error" in line for line in first.said)
     assert "fault" not in {step["label"] for step in flown.steps("a")}
     assert not vehicle.autopilot.armed
     assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=1.0)

@@ -468,6 +468,7 @@ def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
     run = suspended(live)
     ending = run.end()
     assert ending.suspended == ("a",)
+    assert ending.responses["a"] == "RETURN"
     assert ending.outcome is Outcome.INCOMPLETE
     assert run.script.robots["a"].stops == ["RETURN"]
     assert all(record.label != "fault" for record in run.records)
