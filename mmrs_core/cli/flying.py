@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
@@ -34,6 +35,9 @@ from mmrs_core.runtime.terms import Ending
 
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 FAILED = 1
+_SERIAL = re.compile(r"/|COM\d+", re.IGNORECASE)
+"""How names of serial devices begin."""
+
 _CAME_DOWN = {
     "RETURN": "came home",
     "EMERGENCY_AREA": "went to an emergency area",
@@ -121,6 +125,8 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     """
     program = loaded.program
     here = _robots(program, wishes.robots)
+    links = _links(wishes.links, here)
+    _check_mavlink(wishes, links, here)
     resumed = _resumed(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
     orders = Orders(_on_stop(wishes.on_stop))
@@ -141,7 +147,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             orders=orders,
             run=run,
             folder=wishes.folder,
-            links=_links(wishes.links, here),
+            links=links,
             resumed=resumed,
             patience=wishes.patience,
             meet=begin_all(bus, program, here, run, orders) if wishes.bus.sync else lambda: None,
@@ -202,6 +208,31 @@ def _on_stop(word: str) -> str:
     if word not in ON_STOP:
         raise typer.BadParameter(f"--on-stop {word}: is none of {', '.join(ON_STOP)}")
     return ON_STOP[word]
+
+
+def _check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...]) -> None:
+    """Refuse links and faults that nobody can understand.
+
+    Raises:
+        typer.BadParameter: if there are any.
+    """
+    if wishes.backend != "mavlink":
+        return
+    from mmrs_core.flight.injection import injections
+    from mmrs_core.flight.ports import address_of, split_system
+
+    for text in links.values():
+        try:
+            url, _ = split_system(text)
+            if address_of(url) is None and not _SERIAL.match(url):
+                raise ValueError(f"{url}: is neither udpin:, udpout: or tcp:HOST:PORT nor a serial device")
+        except ValueError as error:
+            raise typer.BadParameter(f"--connect {error}") from error
+    if inject := wishes.options.get("inject"):
+        try:
+            injections([inject], {robot: links.get(robot, "") for robot in robots})
+        except ValueError as error:
+            raise typer.BadParameter(f"--inject {error}") from error
 
 
 def _links(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:

@@ -212,6 +212,16 @@ def test_a_folder_with_logs_is_not_flown_over(fleet):
     assert "holds logs already" in flown.process.said[-1]
 
 
+@pytest.mark.parametrize(
+    "words", [("--inject", "foo=1"), ("--connect", "a=foo"), ("--connect", "b=udpin:127.0.0.1:1")]
+)
+def test_what_makes_no_sense_is_wrong_usage(fleet, words):
+    flown = fleet(Pad("a"))
+    assert flown.start(*words).end(PATIENCE) == 2, flown.process.said
+    assert words[0] in flown.process.said[-1]
+    assert not flown.logs.exists()
+
+
 def test_a_vehicle_that_is_not_there_is_told_with_its_link(fleet):
     flown = fleet(Pad("a"))
     flown.vehicles["a"].faults.cut_link()
