@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .blackbox import BlackBox
 from .bus import Beginning
@@ -31,6 +31,7 @@ class Desk:
         meet: returns when all robots begin, or None where they do not wait for each other.
         recognise: makes sure that the vehicle is the robot's, before it is told anything; is given
             whether its motors may run.
+        abandon: set when not even heartbeats are to go on.
         dry: whether there is no vehicle.
     """
 
@@ -45,4 +46,5 @@ class Desk:
     know: Callable[[State], State] = lambda state: state
     meet: Meet | None = None
     recognise: Callable[[bool], None] = lambda under_way: None
+    abandon: threading.Event = field(default_factory=threading.Event)
     dry: bool = False

@@ -31,6 +31,10 @@ from .ways import NEAR, way_back
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
+KEPT_UP = (
+    "is not ours: heartbeats go on until its motors are off; interrupted again, they end, and the vehicle"
+    " does what it does about a lost link, whoever has it"
+)
 NEARER = 0.3
 """Metres by which a vehicle must have come nearer to the first place of its way back to be seen to obey."""
 
@@ -212,13 +216,16 @@ class Ending:
             return
         crew.watch.let_go()
         crew.obedience.hands_off = True
-        crew.say("hands off until its motors are off; interrupt to end")
+        crew.say("hands off until its motors are off; interrupt twice to end before")
         if self.suspended:
             crew.say("its program can go on later: start again with --resume")
+        told = False
         try:
-            while crew.vehicle.state().armed and not crew.desk.stop.is_set():
+            while crew.vehicle.state().armed and not crew.desk.abandon.is_set():
                 crew.link.wait(lambda: None, crew.desk.clock.patience(0.0, WATCH_SECONDS))
-                if crew.obedience.refuse_all("somebody else has the vehicle"):
-                    return
+                crew.obedience.refuse_all("somebody else has the vehicle")
+                if crew.desk.stop.is_set() and not told:
+                    told = True
+                    crew.say(KEPT_UP)
         except Fault as lost:
             crew.say(f"{lost}")

@@ -47,7 +47,8 @@ def main(
     for fault in judgement.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
-        stop, rehearsal = threading.Event(), Rehearsal(options.inject, options.clock, say)
+        stop, abandon = threading.Event(), threading.Event()
+        rehearsal = Rehearsal(options.inject, options.clock, say)
         shared = Shared(
             options=options,
             slots=_slots(parser, robots, options, rehearsal, stack),
@@ -57,11 +58,12 @@ def main(
             radios=_radios(options, rehearsal),
             crews=(crews := Crews([robot.id for robot in robots])),
             stop=stop,
+            abandon=abandon,
         )
         stack.callback(rehearsal.close)
         rehearsal.start()
         _open_control(options, crews, stack)
-        _stop_on_signals(stop)
+        _stop_on_signals(stop, abandon)
         codes = _run_all(robots, shared)
     return next((code for code in (INTERRUPTED, LINK, FAILED) if code in codes), OK)
 
@@ -138,7 +140,10 @@ def _open_control(options: Options, crews: Crews, stack: ExitStack) -> None:
     stack.callback(control.close)
 
 
-def _stop_on_signals(stop: threading.Event) -> None:
+def _stop_on_signals(stop: threading.Event, abandon: threading.Event) -> None:
+    def heed(number: int, frame: object) -> None:
+        (abandon if stop.is_set() else stop).set()
+
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: stop.set())
+            signal.signal(number, heed)

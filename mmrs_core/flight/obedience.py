@@ -125,15 +125,10 @@ class Obedience:
         receipt.confirm("it stands on the ground")
         return False
 
-    def refuse_all(self, why: str) -> bool:
-        """Refuse what was ordered since, but for a stop: return whether there was one."""
-        receipt = self._inbox.take()
-        if receipt is not None and receipt.order.name == STOP:
-            receipt.confirm(why)
-            return True
-        if receipt is not None:
+    def refuse_all(self, why: str) -> None:
+        """Refuse what was ordered since."""
+        while (receipt := self._inbox.take()) is not None:
             receipt.refuse(why)
-        return False
 
     @property
     def _over(self) -> bool:

@@ -113,7 +113,7 @@ class Pilot:
                 break
         else:
             raise Refused("the vehicle starts anew again and again")
-        if self._vehicle.state().energy is None:
+        if self._vehicle.state().energy is None and not self._desk.dry:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
 
     def _tell_fence(self, fence: bool) -> None:

@@ -45,7 +45,11 @@ GLANCE_SECONDS = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Shared:
-    """What all robots of a process share; `stop` is set when they are to stop."""
+    """What all robots of a process share.
+
+    Attributes:
+        stop: set when they are to stop. abandon: set when even vehicles that others have are to be left.
+    """
 
     options: Options
     slots: BusSlots
@@ -55,6 +59,7 @@ class Shared:
     rehearsal: Rehearsal
     crews: Crews
     stop: threading.Event
+    abandon: threading.Event
 
 
 def run_robot(robot: Robot, shared: Shared) -> int:
@@ -187,6 +192,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         know=lambda state: replace(state, answers=inbox.answers),
         meet=_meeting(robot, shared),
         recognise=_recognition(robot, options, link, vehicle),
+        abandon=shared.abandon,
         dry=options.dry,
     )
     box.write("start", **_facts(robot, options, link))

@@ -9,7 +9,16 @@ from . import modes
 from .ardupilot import MavlinkVehicle
 from .clock import Clock
 from .energy import COMES_DOWN, Reserve
-from .faults import BATTERY_LOW, LINK_LOST, LOG_FAILED, POSITION_LOST, TAKEN_OVER, VEHICLE_RESTARTED, Fault, Stopped
+from .faults import (
+    BATTERY_LOW,
+    LINK_LOST,
+    LOG_FAILED,
+    POSITION_LOST,
+    TAKEN_OVER,
+    VEHICLE_RESTARTED,
+    Fault,
+    Stopped,
+)
 from .link import Link
 from .program import Policy, Robot
 from .responses import CONTINUE, policy_for
@@ -131,7 +140,9 @@ class Watch:
     def _low(self) -> str:
         assert self._vehicle is not None
         response = policy_for(BATTERY_LOW, self._robot, self.current()).response
-        return self._reserve.low(self._vehicle.state(), response, self.track())
+        state = self._vehicle.state()
+        low = self._reserve.low(state, response, self.track())
+        return low or (self._vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
 
     def _weigh(self, event: str, why: str) -> None:
         """Raise a fault for what has lasted long enough and must not be borne."""
