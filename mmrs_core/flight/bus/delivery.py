@@ -51,8 +51,8 @@ class Delivery:
             ValueError: that time was not granted.
         """
         with self.node.lock:
-            self.node.use(lamport)
             self.errand.send(lamport, self.node.now())
+            self.node.use(lamport)
         self.node.pump()
 
     def withdraw(self) -> None:

@@ -19,8 +19,8 @@ from typing import Any
 from .members import Recorded
 from .node import Node
 from .reading import Unreadable, number_in, object_in, text_in
-from .session import Session
-from .words import LONGEST
+from .session import Session, line_of
+from .words import LARGEST
 
 FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""
@@ -93,7 +93,7 @@ class Gateway:
         connection.settimeout(HELLO_SECONDS)
         with connection.makefile("rb") as lines:
             try:
-                recorded = self._hello(lines.readline(LONGEST + 1))
+                recorded = self._hello(line_of(lines))
                 node = self._enter(recorded)
             except (OSError, ValueError) as error:
                 _send(connection, {"is": "wrong", "why": str(error)})
@@ -136,7 +136,10 @@ def _recorded_in(content: Mapping[str, Any]) -> Recorded | None:
                 notifies[robot, slot] = (active, lamport)
             case _:
                 raise Unreadable("resumed: notifies are no lists of robot, slot, value and logical time")
-    return Recorded(number_in(resumed, "lamport"), notifies)
+    lamport = number_in(resumed, "lamport")
+    if lamport > LARGEST // 2:
+        raise Unreadable(f"resumed: lamport {lamport}: more steps than can be counted")
+    return Recorded(lamport, notifies)
 
 
 def _send(connection: socket.socket, content: Mapping[str, object]) -> None:

@@ -42,6 +42,10 @@ class FileJournal:
         self._made = path.exists()
         self._whole: int | None = None
 
+    def __str__(self) -> str:
+        """Return where the file is."""
+        return str(self._path)
+
     def lines(self) -> Iterator[Mapping[str, Any]]:
         """Yield the lines of the file; a last one that was cut off while it was written is none.
 

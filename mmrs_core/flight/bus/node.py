@@ -242,6 +242,12 @@ class Node:
         self.pump()
         self._tell_changed()
 
+    @property
+    def lamport(self) -> int:
+        """Return the latest logical time that this process knows of."""
+        with self.lock:
+            return self._owners.lamport
+
     def use(self, lamport: int) -> None:
         """Take note of a logical time that a robot of this process has used."""
         with self.lock:

@@ -19,6 +19,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from .journal import Journal
+from .reading import Unreadable, flag_in, names_in, number_in, recorded_in, text_in
 from .words import REACH, Answer, Begin, CommandId, Commit, Prepare, SlotState, Withdraw
 
 KEPT_SECONDS = 10.0
@@ -106,8 +107,11 @@ class Owner:
         self._latest: dict[str, tuple[str, int, int, bool]] = {}
         self._begun: dict[str, str] = {}
         self._left: set[str] = set()
-        for line in journal.lines():
-            self._take_up(line)
+        for number, line in enumerate(journal.lines(), start=1):
+            try:
+                self._take_up(line)
+            except Unreadable as error:
+                raise ValueError(f"{journal}:{number}: damaged: {error}") from error
         for slot in self._slots.values():
             slot.state = replace(slot.state, lamport=max(slot.state.lamport, floor))
 
@@ -320,25 +324,39 @@ class Owner:
             raise ValueError(f"{self.robot!a}: slots were kept in run {line['run']!a}, not {self._run!a}")
         self.used = self.used or not {"started", "again"} & set(line)
         if "started" in line:
-            self.start = line["started"]
+            self.start = number_in(line, "started")
+            self._expect(
+                text_in(line, "robot") == self.robot, f"of robot {line['robot']!a}, not {self.robot!a}"
+            )
         elif "left" in line:
-            self._see_off(line["left"], line["lamport"])
+            self._see_off(text_in(line, "left"), number_in(line, "lamport"))
         elif "set" in line:
-            self._apply(Commit(_id(line), tuple(line["set"]), line["active"], line["lamport"]))
+            slots, active = self._slots_in(line, "set"), flag_in(line, "active")
+            self._apply(Commit(_id(line), slots, active, number_in(line, "lamport")))
         elif "freed" in line:
-            self._free(_id(line), line["freed"])
+            self._free(_id(line), number_in(line, "freed"))
         elif "begun" in line:
-            recorded = tuple((name, active, lamport) for name, active, lamport in line["begun"])
+            recorded = recorded_in(line, "begun")
+            self._expect(all(slot in self._slots for slot, _, _ in recorded), "begun: a slot that is none")
             self._apply_recorded(Begin(_id(line), recorded))
         elif "kept" in line:
             self._keep_again(_id(line), line)
 
+    def _slots_in(self, line: Mapping[str, Any], name: str) -> tuple[str, ...]:
+        slots = names_in(line, name)
+        self._expect(all(slot in self._slots for slot in slots), f"{name}: a slot that is none")
+        return slots
+
+    def _expect(self, holds: bool, why: str) -> None:
+        if not holds:
+            raise Unreadable(why)
+
     def _keep_again(self, id: CommandId, line: Mapping[str, Any]) -> None:
         """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
-        for name in line["kept"]:
-            slot = self._slots[name]
-            slot.kept = _Kept(id, line["round"], False, line["most"], float("-inf"))
-        self._latest[id.sender] = (id.incarnation, id.sequence, line["round"], True)
+        round, most = number_in(line, "round"), number_in(line, "most")
+        for name in self._slots_in(line, "kept"):
+            self._slots[name].kept = _Kept(id, round, False, most, float("-inf"))
+        self._latest[id.sender] = (id.incarnation, id.sequence, round, True)
 
 
 def _follows(id: CommandId, before: CommandId) -> bool:
@@ -386,4 +404,5 @@ def _shown(id: CommandId) -> dict[str, object]:
 
 
 def _id(line: Mapping[str, Any]) -> CommandId:
-    return CommandId(line["run"], line["sender"], line["incarnation"], line["sequence"])
+    run, sender = text_in(line, "run"), text_in(line, "sender")
+    return CommandId(run, sender, text_in(line, "incarnation"), number_in(line, "sequence"))

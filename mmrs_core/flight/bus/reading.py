@@ -140,6 +140,18 @@ def names_in(content: Mapping[str, Any], name: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text_in({name: each}, name) for each in found))
 
 
+def recorded_in(content: Mapping[str, Any], name: str) -> tuple[tuple[str, bool, int], ...]:
+    """Return a list of slots with value and logical time.
+
+    Raises:
+        Unreadable: it is missing or none.
+    """
+    found = content.get(name)
+    if not isinstance(found, list) or len(found) > MOST_SLOTS:
+        raise Unreadable(f"{name}: no list of at most {MOST_SLOTS}")
+    return tuple(_recorded(each) for each in found)
+
+
 def _seconds_in(content: Mapping[str, Any], name: str) -> float:
     found = content.get(name, 0.0)
     if not isinstance(found, int | float) or isinstance(found, bool) or not abs(found) < LARGEST:
@@ -158,10 +170,7 @@ def _commit(id: CommandId, content: Mapping[str, Any]) -> Request:
 
 
 def _begin(id: CommandId, content: Mapping[str, Any]) -> Request:
-    recorded = content.get("recorded")
-    if not isinstance(recorded, list) or len(recorded) > MOST_SLOTS:
-        raise Unreadable(f"recorded: no list of at most {MOST_SLOTS}")
-    return Begin(id, tuple(_recorded(each) for each in recorded))
+    return Begin(id, recorded_in(content, "recorded"))
 
 
 def _recorded(each: object) -> tuple[str, bool, int]:

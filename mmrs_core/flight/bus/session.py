@@ -14,10 +14,22 @@ from .meeting import begin_together
 from .node import Node
 from .reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
 from .troubles import Net, tell_people
-from .words import LONGEST, MOST_SLOTS, CommandId
+from .words import LONGEST, MOST_SLOTS, REACH, CommandId
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""
+
+
+def line_of(lines: IO[bytes]) -> bytes:
+    """Return the next line; of one that is longer than any message only so much that this is seen.
+
+    Raises:
+        OSError: the connection broke.
+    """
+    line = part = lines.readline(LONGEST + 1)
+    while len(part) > LONGEST and not part.endswith(b"\n"):
+        part = lines.readline(LONGEST + 1)
+    return line
 
 
 class Session:
@@ -28,6 +40,7 @@ class Session:
         self._robot, self._run, self._node, self._connection = robot, run, node, connection
         self._turn = threading.Lock()
         self._deliveries: dict[int, Delivery] = {}
+        self._latest = -1
         self._told: dict[int, str] = {}
         self._told_waiting = 0.0
         self._look = threading.Event()
@@ -43,7 +56,7 @@ class Session:
         teller = threading.Thread(target=self._tell_news, name="gateway news", daemon=True)
         teller.start()
         try:
-            while line := lines.readline(LONGEST + 1):
+            while line := line_of(lines):
                 with self._turn:
                     self._say(self._answer(line))
                 self._look.set()
@@ -75,12 +88,13 @@ class Session:
 
     def _prepare(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number, active = number_in(content, "number"), flag_in(content, "active")
-        if number in self._deliveries:
-            raise Unreadable(f"number {number}: used already")
+        if number <= self._latest:
+            raise Unreadable(f"number {number}: not greater than {self._latest}, the one before")
         slots = _slots_in(content)
         for robot, _ in slots:
             if robot not in self._targets:
                 raise Unreadable(f"slots: {self._robot!a} never sets any of {robot!a}")
+        self._latest = number
         id = CommandId(self._run, self._robot, "", number)
         self._deliveries[number] = self._node.prepare(id, slots, active)
         return {"is": "asked", "number": number}
@@ -110,7 +124,10 @@ class Session:
         for _, name in slots:
             if name not in self._slots:
                 raise Unreadable(f"{self._robot!a} has no slot {name!a}")
-        passed = self._node.passed(slots, number_in(content, "lamport"))
+        lamport, most = number_in(content, "lamport"), self._node.lamport + REACH
+        if lamport > most:
+            raise Unreadable(f"lamport {lamport}: far beyond all that has happened, at most {most}")
+        passed = self._node.passed(slots, lamport)
         return {"is": "passed" if passed else "held"}
 
     def _lost(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -123,7 +140,10 @@ class Session:
             if time.monotonic() > until:
                 raise Unreadable(f"not everybody is ready: {why}")
 
-        begun = begin_together(self._node, self._robot, self._run, names_in(content, "robots"), guard)
+        robots = names_in(content, "robots")
+        if self._robot not in robots:
+            raise Unreadable(f"robots: {self._robot!a} is not among them")
+        begun = begin_together(self._node, self._robot, self._run, robots, guard)
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
 
     def _leave(self, content: Mapping[str, Any]) -> Mapping[str, object]:

@@ -122,6 +122,10 @@ class _Watched:
     def __init__(self, robot: str, journal: Journal, keeping: Keeping) -> None:
         self._robot, self._journal, self._keeping = robot, journal, keeping
 
+    def __str__(self) -> str:
+        """Return where the journal is."""
+        return str(self._journal)
+
     def lines(self) -> Iterator[Mapping[str, Any]]:
         """Yield what was kept before."""
         return self._journal.lines()

@@ -218,6 +218,35 @@ def test_what_makes_no_sense_is_answered_and_the_program_stays(client):
     client.ask({"do": "state"}, "state")
 
 
+def test_what_is_answered_wrong_has_no_effect(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    for number, lamport in ((1, 1 << 52), (2, 1 << 30)):
+        client.ask({"do": "prepare", "number": number, "slots": [["b", "go"]], "active": True}, "asked")
+        granted = client.hear("granted")["lamport"]
+        assert granted < 1 << 21
+        client.ask({"do": "send", "number": number, "lamport": lamport}, "wrong")
+        client.ask({"do": "pass", "slots": ["ready"], "lamport": lamport}, "wrong")
+        client.ask({"do": "send", "number": number, "lamport": granted}, "sent")
+        client.hear("acknowledged")
+
+
+def test_a_number_is_never_used_again(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    client.ask({"do": "prepare", "number": 5, "slots": [["b", "go"]], "active": True}, "asked")
+    granted = client.hear("granted")
+    client.ask({"do": "send", "number": 5, "lamport": granted["lamport"]}, "sent")
+    client.hear("acknowledged")
+    for number in (5, 4):
+        again = {"do": "prepare", "number": number, "slots": [["b", "go"]], "active": False}
+        assert "not greater than 5" in client.ask(again, "wrong")["why"]
+
+
+def test_a_line_that_is_too_long_has_one_answer_and_no_tail(client):
+    client.socket.sendall(b"x" * 200_000 + b'{"do":"leave"}\n')
+    assert "longer than any message" in client.hear("wrong")["why"]
+    client.ask({"do": "state"}, "state")
+
+
 def test_a_gateway_ends_when_it_is_interrupted(gateway, client):
     gateway[0].send_signal(signal.SIGINT)
     assert gateway[0].wait(10.0) == 0

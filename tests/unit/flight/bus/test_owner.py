@@ -233,3 +233,30 @@ def test_a_damaged_line_is_told_with_its_place(owner, journal):
         file.write("nonsense\n")
     with pytest.raises(ValueError, match=r"b\.slots\.ndjson:2: damaged"):
         again(journal)
+
+
+DAMAGED = [
+    {"set": []},
+    {"set": 5},
+    {"set": ["nothing"], "active": True, "lamport": 1, "run": "run", "sender": "a", "incarnation": "1"},
+    {"set": ["go"], "active": 1, "lamport": 1},
+    {"set": ["go"], "active": True, "lamport": "x"},
+    {"started": "x"},
+    {"started": 1, "robot": "another", "run": "run"},
+    {"left": ["a"], "lamport": 1},
+    {"freed": None},
+    {"begun": [["go", True]]},
+    {"kept": ["nothing"], "round": 1, "most": 1},
+    {"kept": ["go"], "round": 1},
+]
+
+
+@pytest.mark.parametrize("line", DAMAGED)
+def test_a_line_of_a_journal_that_makes_no_sense_is_told_with_its_place(journal, line):
+    Owner(OWNED, "run", journal).started(1)
+    journal.keep({**line, **{k: v for k, v in WHO.items() if k not in line}})
+    with pytest.raises(ValueError, match=r"b\.slots\.ndjson:2: damaged: "):
+        Owner(OWNED, "run", journal)
+
+
+WHO = {"run": "run", "sender": "a", "incarnation": "1", "sequence": 1}
