@@ -17,6 +17,7 @@ PROGRESS_SECONDS = 60.0
 _AGAIN = mavlink.MAV_RESULT_TEMPORARILY_REJECTED
 _BEGUN = mavlink.MAV_RESULT_IN_PROGRESS
 CANCEL_NUMBER, CANCEL_CHECK = 80, 14
+LAST_CONFIRMATION = 255
 
 
 class Unanswered(Refused):
@@ -44,8 +45,8 @@ def command(
     """Have the vehicle carry out a command, and return when it says that it does.
 
     Sends again, with the confirmation counted up, when no answer comes or the vehicle asks for
-    patience; waits on while it reports progress, and has it cancel what it has begun when the wait
-    is broken off.
+    patience, and does not count what is sent while the link is silent and somebody watches it; waits
+    on while it reports progress, and has it cancel what it has begun when the wait is broken off.
 
     Args:
         link: to the vehicle.
@@ -72,11 +73,14 @@ def name_of(number: int) -> str:
 def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, component: int) -> Message:
     padded = [*params, *[0.0] * (7 - len(params))]
     answer: Message | None = None
+    sent = counted = 0
     with link.inbox("COMMAND_ACK", component=component) as inbox:
-        for confirmation in range(tries):
+        while counted < tries:
+            confirmation = min(sent, LAST_CONFIRMATION)
             link.send(
                 mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
             )
+            sent, counted = sent + 1, counted + (not link.unheard())
             heard = link.wait(lambda: _answer(inbox, number), link.patience)
             answer = heard or answer
             if heard is not None and heard.result == _BEGUN:

@@ -26,6 +26,9 @@ Observer = Callable[[Message, bool], None]
 TRIES = 5
 ANSWER_SECONDS = 1.5
 ITEM_SECONDS = 0.25
+FORSAKEN_SECONDS = 120.0
+"""Silence after which nobody waits for a vehicle any more, whatever policies bear."""
+
 LEAST_SECONDS = 0.5
 """Real seconds for an answer at least, unless less was asked for."""
 
@@ -68,6 +71,10 @@ class Retries:
     item: float = ITEM_SECONDS
 
 
+def nobody() -> None:
+    """Watch over nothing."""
+
+
 class Link:
     """Talks to one vehicle.
 
@@ -99,7 +106,7 @@ class Link:
         """
         radio = port if isinstance(port, Radio) else Radio(port, clock, Signer(key) if key else None)
         self.clock = clock
-        self.guard: Callable[[], None] = lambda: None
+        self.guard: Callable[[], None] = nobody
         self.system = system
         self.component = 0
         self.retries = retries or Retries()
@@ -201,6 +208,10 @@ class Link:
     def silent_for(self) -> float:
         """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
         return 0.0 if self._heard is None else self.clock.now() - self._heard
+
+    def unheard(self) -> bool:
+        """Return whether the vehicle is silent while a guard watches, which says when it is lost."""
+        return self.guard is not nobody and self.patience <= self.silent_for() < FORSAKEN_SECONDS
 
     def wait(self, test: Callable[[], Found | None], seconds: float) -> Found | None:
         """Return what the test finds as soon as it finds something; None if time runs out.

@@ -1,4 +1,4 @@
-"""Distances and directions between places, flat-Earth: exact to a thousandth over a few kilometres."""
+"""Distances and directions between places, on the ellipsoid: exact to a millionth over a kilometre."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ from math import atan2, cos, degrees, hypot, radians
 
 from .program import Geographic, Local, Place
 
-METRES_PER_DEGREE = 111_319.49
+
+def metres_per_degree(latitude: float) -> tuple[float, float]:
+    """Return the metres of a degree northwards and eastwards on WGS 84, to a few centimetres."""
+    phi = radians(latitude)
+    north = 111_132.954 - 559.822 * cos(2 * phi) + 1.175 * cos(4 * phi)
+    east = 111_412.84 * cos(phi) - 93.5 * cos(3 * phi) + 0.118 * cos(5 * phi)
+    return north, east
 
 
 def offset(a: Place, b: Place) -> tuple[float, float, float]:
@@ -16,8 +22,8 @@ def offset(a: Place, b: Place) -> tuple[float, float, float]:
         ValueError: one is geographic and the other is not.
     """
     if isinstance(a, Geographic) and isinstance(b, Geographic):
-        north = (b.latitude - a.latitude) * METRES_PER_DEGREE
-        east = (b.longitude - a.longitude) * METRES_PER_DEGREE * cos(radians(a.latitude))
+        northwards, eastwards = metres_per_degree((a.latitude + b.latitude) / 2.0)
+        north, east = (b.latitude - a.latitude) * northwards, (b.longitude - a.longitude) * eastwards
         return north, east, b.height - a.height
     if isinstance(a, Local) and isinstance(b, Local):
         return b.north - a.north, b.east - a.east, b.height - a.height

@@ -117,3 +117,19 @@ def test_a_component_of_its_own_answers_for_itself():
         command(link, photo, component=100)
         (sent,) = wire.of("COMMAND_LONG")
         assert sent.target_component == 100
+
+
+def test_what_is_sent_while_the_link_is_silent_does_not_count_where_somebody_watches_it():
+    with linked() as (link, wire):
+        watched = []
+
+        def guard() -> None:
+            watched.append(link.silent_for())
+            if link.silent_for() > 1.5:
+                raise Fault("LINK_LOST", "the vehicle has been silent")
+
+        link.guard = guard
+        with pytest.raises(Fault, match="has been silent") as fault:
+            command(link, ARM)
+        assert fault.value.event == "LINK_LOST"
+        assert len(wire.of("COMMAND_LONG")) > 3

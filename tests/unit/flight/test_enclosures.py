@@ -15,7 +15,7 @@ USUAL = {"FENCE_ENABLE": 0.0, "FENCE_TYPE": 7.0, "FENCE_RADIUS": 300.0, "FENCE_A
 
 
 def place(north: float = 0.0, height: float = 20.0) -> Geographic:
-    return Geographic(42.37 + north / 111_319.49, 13.35, height)
+    return Geographic(42.37 + north / 111_073.0, 13.35, height)
 
 
 def told(*places, polygons: bool = True, rally=(), autopilot: int = ARDUPILOT, **values: float):
