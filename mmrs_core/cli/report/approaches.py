@@ -23,6 +23,7 @@ def approaches_of(
     areas: Iterable[Area],
     own: float | None,
     place_of: Callable[[Position], Place],
+    error: float = 0.0,
 ) -> Iterator[Approach]:
     """Yield the nearest approach of a robot to each area that it must keep away from.
 
@@ -31,6 +32,7 @@ def approaches_of(
     Args:
         areas: that concern the robot, as drawn.
         own: half its diagonal and the position error, metres; None where they are not known.
+        error: the position error alone, metres.
     """
     begins, ends, times = _segments(track)
     if not len(begins):
@@ -42,7 +44,7 @@ def approaches_of(
         middle = ((begins[index] + ends[index]) / 2).tolist()
         required = None if own is None else area.safety_distance + own
         where = place_of((middle[0], middle[1], middle[2]))
-        yield Approach(robot, area.name, area.use.value, kept, required, where, float(times[index]))
+        yield Approach(robot, area.name, area.use.value, kept, required, where, float(times[index]), error)
 
 
 def _segments(track: Track) -> tuple[Floats, Floats, Floats]:

@@ -141,7 +141,8 @@ def _approaches(given: Given, places: Places) -> Iterator[Approach]:
         robot_type = given.place.types.get(robot.type_name)
         own = robot_type.half_diagonal + given.program.position_error if robot_type is not None else None
         areas = [area for area in given.place.areas or () if area.concerns(robot.type_name)]
-        yield from approaches_of(robot.id, given.flight.robots[robot.id].track, areas, own, places.of)
+        track, error = given.flight.robots[robot.id].track, given.program.position_error
+        yield from approaches_of(robot.id, track, areas, own, places.of, error)
 
 
 def _separations(
@@ -150,7 +151,8 @@ def _separations(
     program = given.program
     apart, flown = program.minimum_separation, given.flight.robots
     ways = [(flown[robot.id], under_way(flown[robot.id], legs[robot.id])) for robot in program.robots]
-    yield from separations_of(ways, None if apart is None else apart + 2 * program.position_error, places.of)
+    errors = 2 * program.position_error
+    yield from separations_of(ways, None if apart is None else apart + errors, places.of, errors)
 
 
 def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:

@@ -67,7 +67,8 @@ def approaches(report: Report) -> str:
     head = ("robot", "area", "smallest distance", "required", "verdict", "when", "where")
     note = (
         "Measured in all three dimensions to the shapes as drawn, straight between fixes."
-        " Required: the area's safety distance, half the robot's diagonal and the position error."
+        " Required: the area's safety distance, half the robot's diagonal and the position error, which may"
+        " be used up; nearer than that is too near."
     )
     return section("Distances to forbidden areas and obstacles", table(head, rows) if rows else "", note=note)
 
@@ -88,7 +89,7 @@ def separations(report: Report) -> str:
     head = ("robots", "smallest distance", "required", "verdict", "when", "where the first was")
     note = (
         "While both were under way; each went straight between its fixes. Required: the separation that the"
-        " mission asks for, and the position error of both."
+        " mission asks for, and the position error of both, which may be used up."
     )
     rest = folded(f"all {len(rows)} pairs", table(head, rows)) if len(rows) > _PAIRS else ""
     return section("Distances between robots", table(head, rows[:_PAIRS]) if rows else "", rest, note=note)
@@ -97,7 +98,9 @@ def separations(report: Report) -> str:
 def _kept(approach: Approach | Separation) -> Markup:
     if approach.required is None:
         return badge(UNKNOWN, "none")
-    return badge("too near", "bad") if approach.too_near else badge("kept", "good")
+    if approach.too_near:
+        return badge("too near", "bad")
+    return badge("kept, within the position error" if approach.within_error else "kept", "good")
 
 
 def energies(report: Report) -> str:

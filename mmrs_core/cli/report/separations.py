@@ -23,7 +23,7 @@ Way = tuple[Flown, Sequence[Stretch]]
 
 
 def separations_of(
-    ways: Sequence[Way], required: float | None, place_of: Callable[[Position], Place]
+    ways: Sequence[Way], required: float | None, place_of: Callable[[Position], Place], error: float = 0.0
 ) -> Iterator[Separation]:
     """Yield how near each two robots came to each other that were under way at one time.
 
@@ -31,13 +31,14 @@ def separations_of(
 
     Args:
         required: metres that they had to keep; None where nothing was asked for.
+        error: the part of them that allows for position errors.
     """
     for one, other in combinations(ways, 2):
         found = _nearest(one, other)
         if found is not None:
             kept, time, (east, north, up) = found
             where = place_of((east, north, up))
-            yield Separation(one[0].robot, other[0].robot, kept, required, where, time)
+            yield Separation(one[0].robot, other[0].robot, kept, required, where, time, error)
 
 
 def under_way(flown: Flown, legs: Sequence[PlannedLeg]) -> tuple[Stretch, ...]:

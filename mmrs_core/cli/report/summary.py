@@ -56,7 +56,8 @@ def _figures(report: Report) -> Iterator[tuple[str, str]]:
     judged = [each for each in report.approaches if each.required is not None]
     if judged:
         nearest = min(judged, key=lambda each: each.kept - (each.required or 0.0))
-        kept = f"{metres(nearest.kept)} of {metres(nearest.required)} required"
+        allowed = f", {nearest.error:g} m of it for errors" if nearest.error else ""
+        kept = f"{nearest.kept:.2f} m of {nearest.required:.2f} m required{allowed}"
         yield "nearest to what to keep off", f"{kept} ({nearest.robot}, {nearest.area})"
     lowest = [(each.lowest, each.robot) for each in report.energies if each.lowest is not None]
     if lowest:

@@ -121,6 +121,7 @@ class Approach:
 
     Attributes:
         kept: metres; 0: inside. required: None where the robot's size is not known.
+        error: the part of `required` that allows for position errors, metres.
     """
 
     robot: str
@@ -131,10 +132,17 @@ class Approach:
     where: Place
     time: float
 
+    error: float = 0.0
+
     @property
     def too_near(self) -> bool:
-        """Return whether it was nearer than it might have been, by more than a millimetre."""
-        return self.required is not None and self.kept < self.required - 1e-3
+        """Return whether it was nearer than it might have been even with the position error used up."""
+        return self.required is not None and self.kept < self.required - self.error - 1e-3
+
+    @property
+    def within_error(self) -> bool:
+        """Return whether it used some of the position error, and no more."""
+        return self.required is not None and not self.too_near and self.kept < self.required - 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +151,7 @@ class Separation:
 
     Attributes:
         kept: metres. required: None where nothing was asked for.
+        error: the part of `required` that allows for position errors, metres.
     """
 
     robot: str
@@ -152,10 +161,17 @@ class Separation:
     where: Place
     time: float
 
+    error: float = 0.0
+
     @property
     def too_near(self) -> bool:
-        """Return whether they were nearer than they might have been, by more than a millimetre."""
-        return self.required is not None and self.kept < self.required - 1e-3
+        """Return whether they were nearer than they might have been even with the position errors used up."""
+        return self.required is not None and self.kept < self.required - self.error - 1e-3
+
+    @property
+    def within_error(self) -> bool:
+        """Return whether they used some of the position errors, and no more."""
+        return self.required is not None and not self.too_near and self.kept < self.required - 1e-3
 
 
 @dataclass(frozen=True, slots=True)

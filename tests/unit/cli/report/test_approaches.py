@@ -33,6 +33,14 @@ def test_nearer_than_required_is_too_near(make):
     assert found.where.position[1] == pytest.approx(7.0)
 
 
+def test_the_position_error_may_be_used_up(make):
+    track = make.track([(0, 0, 6.8, 9), (1, 40, 6.8, 9)])
+    (found,) = approaches_of("alpha", track, [SCHOOL], 0.5, PLACES.of, 0.4)
+    assert (found.too_near, found.within_error) == (False, True)
+    (found,) = approaches_of("alpha", track, [SCHOOL], 0.5, PLACES.of, 0.2)
+    assert (found.too_near, found.within_error) == (True, False)
+
+
 def test_inside_is_no_distance_at_all(make):
     assert nearest(make.track([(0, 15, 15, 9), (1, 16, 16, 9)]), SCHOOL)["school"].kept == 0.0
 
