@@ -164,7 +164,10 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     assert all(least_distance(vehicle, place) < 2.0 for place in (OUT, *TOUR))
 
 
-@pytest.mark.parametrize(("system", "why"), [(7, "was system 1"), (1, "a pilot may have it")])
+@pytest.mark.parametrize(
+    ("system", "why"),
+    [pytest.param(7, "was system 1", marks=pytest.mark.thorough), (1, "a pilot may have it")],
+)
 def test_a_vehicle_that_is_not_the_robots_is_not_touched_by_a_resumed_run(fleet, system, why):
     flown = fleet(Pad("a"))
     killed = flown.start()
