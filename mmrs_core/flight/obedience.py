@@ -107,8 +107,11 @@ class Obedience:
         elif pending is not None:
             pending.confirm()
 
-    def awaits_resume(self) -> bool:
-        """Return whether the robot may go on, having looked into the inbox once; refuse the rest.
+    def awaits_resume(self, why_not: Callable[[], str]) -> bool:
+        """Return whether the robot is to go on, having looked into the inbox once.
+
+        Args:
+            why_not: tells what still keeps it from going on; empty where nothing does.
 
         Raises:
             Ordered: the program is to end.
@@ -117,6 +120,9 @@ class Obedience:
         if receipt is None:
             return False
         name = receipt.order.name
+        if name == RESUME and (why := why_not()):
+            receipt.refuse(why)
+            return False
         if name == RESUME:
             receipt.confirm()
             return True

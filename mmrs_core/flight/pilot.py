@@ -154,6 +154,13 @@ class Pilot:
         for action in still_on(self._robot, records):
             self._doing.operate(action)
 
+    def lacks_energy(self) -> str:
+        """Return why the battery is not to be flown with; empty where it is, or nobody knows."""
+        left = self._vehicle.state().energy
+        if left is None or left >= self._robot.reserve:
+            return ""
+        return f"the battery is still at {left:.0%}"
+
     def _is_down(self, step: Step) -> bool:
         """Return whether the robot stands where it was to land."""
         state = self._vehicle.state()
@@ -168,6 +175,8 @@ class Pilot:
         places = [place for _, place in self.track]
         state = self._vehicle.state()
         if not state.armed:
+            if why := self.lacks_energy():
+                raise Fault(BATTERY_LOW, why)
             if self._robot.vehicle == "copter":
                 self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
             return places

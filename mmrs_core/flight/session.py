@@ -132,7 +132,7 @@ class Session:
         crew.say(f"came {where} for its battery: change it, then order resume, or start again with --resume")
         while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
             try:
-                if crew.obedience.awaits_resume():
+                if crew.obedience.awaits_resume(crew.pilot.lacks_energy):
                     crew.obedience.hands_off = False
                     crew.watch.tighten()
                     shared.crews.engage(crew.robot.id)

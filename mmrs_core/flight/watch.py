@@ -13,6 +13,7 @@ from .faults import (
     BATTERY_LOW,
     LINK_LOST,
     LOG_FAILED,
+    MOTORS_OFF,
     POSITION_LOST,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
@@ -38,6 +39,9 @@ RESTART_SECONDS = 4.0
 
 FIRST_MODE = 0
 """The mode that ArduPilot starts in unless it is told otherwise."""
+
+COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
+"""Modes at whose end the motors stop."""
 
 Decide = Callable[[str, str, str], None]
 
@@ -73,6 +77,7 @@ class Watch:
         self._heeded: frozenset[str] | None = None
         self._hands_off = False
         self.looking = False
+        self._flown = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
 
@@ -106,6 +111,7 @@ class Watch:
         """Forget what was: the vehicle is set up, or has another battery."""
         self._since.clear()
         self._borne.clear()
+        self._flown = False
         self._reserve.begin()
         if self._signs is not None:
             self._signs.renew()
@@ -133,9 +139,23 @@ class Watch:
             return
         # Whoever has the vehicle goes before all policies, also where both are seen at once.
         self._check_pilot(self._vehicle, self._link, self._signs)
+        self._check_motors(self._vehicle)
         for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
             self._weigh(event, why)
         self._weigh(LOG_FAILED, self.unkept())
+
+    def _check_motors(self, vehicle: MavlinkVehicle) -> None:
+        """Raise a fault where a vehicle that was in the air has stopped its motors elsewhere than to land.
+
+        It has crashed, or somebody has stopped it: whoever lies there must not be armed again.
+        """
+        tells = vehicle.telemetry
+        if self._robot.vehicle != "copter" or not self.moving or vehicle.state().mode in COMES_DOWN_IN:
+            self._flown = self._flown and self.moving
+        elif tells.armed():
+            self._flown = self._flown or tells.airborne()
+        elif self._flown:
+            raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
 
     def _low(self) -> str:
         assert self._vehicle is not None
