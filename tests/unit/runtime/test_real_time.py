@@ -12,6 +12,7 @@ import pytest
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState
 from mmrs_core.errors import LinkLostError, MmrsError
+from mmrs_core.flight.bus import CommandId, Hub, Node, NoJournal
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.conditions import standard_conditions
 from mmrs_core.runtime.live import Venture, run_live
@@ -19,7 +20,7 @@ from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP, Orders
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.runtime.simulation import SIMULATION
-from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of
 from mmrs_core.scene import Policy
 from mmrs_core.testing.small_programs import ROBOT_TYPE, go, hold, notify, program, robot, robot_type
 
@@ -133,12 +134,13 @@ def live(kinds):
 class Flight:
     """A run in a thread of its own."""
 
-    def __init__(self, behaviour, script, kinds, speedup=1.0, **more):
+    def __init__(self, behaviour, script, kinds, speedup=1.0, here=None, **more):
         self.behaviour, self.script, self.records, self.said = behaviour, script, [], []
         self.orders = Orders()
         inputs = inputs_of(
             behaviour, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds
         )
+        inputs = {id: given for id, given in inputs.items() if here is None or id in here}
         factory = script.factory if isinstance(script, Script) else script
         given = {"bus": InProcessBus(behaviour), "conditions": {}, **more}
         self.venture = Venture(
@@ -448,6 +450,40 @@ def test_a_log_that_cannot_be_written_ends_the_program_without_the_step(live):
     assert run.end().faults["r"].which == "LOG_FAILED"
     assert run.script.robots["r"].stops == ["LAND"]
     assert "r begin walk" not in run.shown()
+
+
+class Full:
+    """A journal on a disk that is full."""
+
+    def lines(self):
+        return iter(())
+
+    def keep(self, line):
+        if "started" not in line:
+            raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("response", ["LAND", "CONTINUE"])
+def test_a_robot_that_cannot_keep_what_others_tell_it_does_as_its_policy_says(live, response):
+    robots = (
+        robot("r", [do("walk")], slots=("s",), policies=(Policy("LOG_FAILED", response),)),
+        robot("other", [hold("h", 0.0, after=(notify("r.s"),))]),
+    )
+    behaviour, hub = program(*robots), Hub()
+    members = members_of(behaviour)
+    here, there = (
+        Node([members[id]], "run-0", carrier=hub.plug(), journals=journals, tell=lambda line: None)
+        for id, journals in (("r", lambda id: Full()), ("other", lambda id: NoJournal()))
+    )
+    run = live(behaviour, Script(walk=1.0), bus=ProgramBus(here, behaviour), here=["r"])
+    run.wait_for_step("r begin walk")
+    delivery = there.prepare(CommandId("run-0", "other", "", 1), (("r", "s"),), True)
+    delivery.send(delivery.lamport)
+    ending = run.end()
+    here.close()
+    there.close()
+    assert ("r" in ending.faults) == (response == "LAND")
+    assert response == "CONTINUE" or ending.faults["r"].which == "LOG_FAILED"
 
 
 LOW = (Policy("BATTERY_LOW", "RETURN"),)
