@@ -178,6 +178,26 @@ def test_a_program_that_was_killed_is_resumed_on_the_bus(controllers, endpoint, 
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 
+@pytest.mark.parametrize(("response", "codes"), [("LAND", (0, 1)), ("CONTINUE", (1, 1))])
+def test_a_robot_that_cannot_keep_its_slots_does_as_its_policy_says(controllers, endpoint, response, codes):
+    made = controllers(waiting(Policy("LOG_FAILED", response)))
+    with ExitStack() as stack:
+        names = ("robot_alpha.py", "robot_beta.py")
+        alpha, beta = start_all(made, stack, endpoint, *names, "--speedup", "150")
+        await_line(beta, "waits for 'go'")
+        journal = made.logs / "beta.slots.ndjson"
+        journal.unlink()
+        journal.mkdir()
+        (_, said_alpha), (code, said) = (end(alpha), end(beta))
+        assert (alpha.returncode, code) == codes, said_alpha + said
+    words = {"LAND": "LOG_FAILED: its slots cannot be kept", "CONTINUE": "no answer from 'beta'"}
+    assert words[response] in said_alpha + said
+    fault = {"LAND": {"beta": "LOG_FAILED"}, "CONTINUE": {"alpha": "PEER_LOST", "beta": "PEER_LOST"}}
+    assert made.replayed(partial=True).faults == fault[response]
+    borne = [line["response"] for line in made.box("beta", "decision") if line["what"] == "LOG_FAILED"]
+    assert borne == [response]
+
+
 def test_a_configuration_that_is_none_is_told_with_its_name(controllers, tmp_path):
     file = tmp_path / "bus.json5"
     file.write_text("no configuration")
