@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
+from mmrs_core.flight.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
@@ -319,3 +320,33 @@ def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, a
     assert "the vehicle's motors run already: somebody else has it; response: NOTHING" in said
     assert (foreign.armed, foreign.stores[0]) == (True, [])
     assert foreign.parameters == parameters
+
+
+def test_a_vehicle_that_has_fallen_is_not_armed_again(controllers, hangar):
+    made = controllers(one_drone(hold=10.0))
+    vehicles, links = hangar(made.program, speedup=5.0)
+    alpha = vehicles["alpha"]
+    with made.start("fleet.py", *links) as process:
+        wait_for(at_work(alpha))
+        with alpha.lock:
+            alpha.autopilot.disarm()
+        fallen = alpha.autopilot.time
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 1, said
+    assert made.replayed(partial=True).faults == {"alpha": "MOTORS_OFF"}
+    assert 400 not in [command for seconds, command, _ in alpha.autopilot.history if seconds > fallen]
+
+
+def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
+    made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN")))
+    vehicles, links = hangar(made.program, recharge=1e9)
+    with made.start("fleet.py", *links, "--battery-patience", "60") as process:
+        wait_for(at_work(vehicles["alpha"]))
+        vehicles["alpha"].faults.set_battery(0.15)
+        assert any("came home for its battery" in line for line in process.stderr)
+        (told,) = give(made.logs, "resume", ["alpha"])
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    assert not told["confirmed"]
+    assert "the battery is still at 1" in told["why"]
+    assert not vehicles["alpha"].autopilot.armed
