@@ -134,6 +134,7 @@ def gateway(
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
+    _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
         found = _gateway(program, robot, endpoints, run, log, port)
@@ -167,13 +168,14 @@ def state(
 
     with _needing("eclipse-zenoh"):
         from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
+    _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
         answers = states_of(mission, run, endpoints, seconds, robots or ())
     except OSError as error:
         raise LinkLostError(str(error)) from error
     names = {digest(robot): robot for robot in robots or ()}
-    known = {names.get(key, key): json_format.loads(text) for key, text in sorted(answers.items())}
+    known = {names.get(key, key): _states_in(text) for key, text in sorted(answers.items())}
     shown = {name: slots for name, slots in known.items() if not names or name in names.values()}
     missing = [name for name in names.values() if name not in shown]
     if json:
@@ -181,6 +183,19 @@ def state(
     else:
         _say_states(shown, missing)
     return LinkLostError.exit_code if missing or not shown else 0
+
+
+def _states_in(text: str) -> dict[str, dict[str, object]]:
+    """Return the state of slots in an answer; whoever answers something else shows none."""
+    try:
+        found = json_format.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    found = found if isinstance(found, dict) else {}
+    return {name: each for name, each in found.items() if isinstance(each, dict) and {*each} >= _SHOWN}
+
+
+_SHOWN = {"active", "writer"}
 
 
 @contextmanager
@@ -210,6 +225,13 @@ def _refuse_doubles(holders: tuple[Holder, ...]) -> None:
         for name in given:
             if given.count(name) > 1:
                 raise typer.BadParameter(f"--robot {name}: given twice")
+
+
+def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> None:
+    from mmrs_core.cli.buses import refuse_endpoints
+
+    refuse_endpoints("--listen", listen or ())
+    refuse_endpoints("--connect", connect or ())
 
 
 def _gateway(

@@ -15,6 +15,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 from mmrs_core.flight.bus import Doubled
 from mmrs_core.flight.bus.carrier import Carrier
+from mmrs_core.flight.bus.endpoints import first_fault
 from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
@@ -61,7 +62,8 @@ def bus_for(
         wrap: puts something in front of what carries messages to other processes.
 
     Raises:
-        typer.BadParameter: if robots wait for robots of other processes, and no bus is asked for.
+        typer.BadParameter: if an endpoint is none, or robots wait for robots of other processes, and
+            no bus is asked for.
         LinkLostError: if another process runs one of these robots.
         UnreadableError: if what the folder holds belongs to another run.
         UnsupportedError: if Zenoh is not installed.
@@ -75,6 +77,8 @@ def bus_for(
         from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
     except ModuleNotFoundError as error:
         raise UnsupportedError("--bus: needs Zenoh; pip install 'mmrs-core[bus]'") from error
+    refuse_endpoints("--bus-listen", wishes.listen)
+    refuse_endpoints("--bus-connect", wishes.connect)
     endpoints = Endpoints(wishes.listen, wishes.connect, wishes.config)
     carrier = ZenohCarrier(program.name, run, sorted(robot.id for robot in program.robots), endpoints)
     try:
@@ -83,6 +87,16 @@ def bus_for(
         raise LinkLostError(str(error)) from error
     except ValueError as error:
         raise UnreadableError(f"{folder}: {error}") from error
+
+
+def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
+    """Refuse what is no endpoint.
+
+    Raises:
+        typer.BadParameter: if one of them is none.
+    """
+    if why := first_fault(endpoints):
+        raise typer.BadParameter(f"{option} {why}")
 
 
 def begin_all(

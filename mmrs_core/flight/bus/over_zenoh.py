@@ -22,6 +22,7 @@ from typing import Any
 import zenoh
 
 from .carrier import Answered, Station
+from .endpoints import first_fault
 from .troubles import Net, Tell, tell_people
 from .words import LONGEST, digest
 
@@ -237,8 +238,10 @@ def configuration(endpoints: Endpoints) -> Any:
     """Return Zenoh's configuration.
 
     Raises:
-        OSError: the file cannot be read, or is none of Zenoh's configurations.
+        OSError: the file cannot be read, or is none of Zenoh's configurations; or an endpoint is none.
     """
+    if why := first_fault((*endpoints.listen, *endpoints.connect)):
+        raise OSError(why)
     config = zenoh.Config() if endpoints.file is None else _from_file(endpoints.file)
     _insert(config, "transport/link/tx/lease", LEASE_MILLISECONDS)
     _insert(config, "connect/retry", RETRY)

@@ -1,0 +1,27 @@
+"""Endpoints of Zenoh: what is none is told before anything is opened."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_ADDRESS = r"[^/?#\s]+:(?P<port>\d{1,5})"
+_ENDPOINT = re.compile(rf"((tcp|tls|udp|quic|quic_datagram|ws)/{_ADDRESS}|[a-z][a-z_-]*/[^?#\s]+)([?#]\S*)?")
+_OTHERS = ("serial", "unixpipe", "unixsock-stream", "vsock")
+LAST_PORT = 65_535
+
+
+def first_fault(endpoints: Iterable[str]) -> str:
+    """Return what is wrong with the first endpoint that is none; empty where all are."""
+    return next(
+        (f"{each}: no endpoint, such as tcp/10.0.0.2:7447" for each in endpoints if not _is(each)), ""
+    )
+
+
+def _is(text: str) -> bool:
+    found = _ENDPOINT.fullmatch(text)
+    if found is None:
+        return False
+    if found["port"] is None:
+        return text.partition("/")[0] in _OTHERS
+    return int(found["port"]) <= LAST_PORT
