@@ -374,6 +374,10 @@ class Bus(Protocol):
         """Return those of these robots that will set no more slots or cannot be reached."""
         ...
 
+    def unseen(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that have never been here: not come yet, or gone before."""
+        ...
+
     def trouble(self, robot: str) -> str:
         """Return why what others tell a robot of this process cannot be kept now; empty: it can."""
         ...

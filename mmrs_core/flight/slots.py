@@ -53,6 +53,10 @@ class Slots(Protocol):
         """Return one of these robots that will set no more slots, if there is one."""
         ...
 
+    def unseen(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that have never been here: not come yet, or gone before."""
+        ...
+
     def trouble(self, robot: str) -> str:
         """Return why the slots of a robot cannot be kept now; empty: they can."""
         ...
@@ -121,6 +125,10 @@ class BusSlots:
     def lost(self, robots: Iterable[str]) -> str | None:
         """Return one of these robots that has ended or cannot be reached any more, if there is one."""
         return next(iter(self.node.lost(robots)), None)
+
+    def unseen(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that have never been here: not come yet, or gone before."""
+        return self.node.unseen(robots)
 
     def trouble(self, robot: str) -> str:
         """Return why the slots of a robot cannot be kept now; empty: they can."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import inf
 
 from .conditions import question_of
@@ -57,8 +57,10 @@ class Waits:
         def check(silent: tuple[str, ...]) -> None:
             self._vehicle.rest(0.0)
             if self._desk.clock.now() - begun > self._peer_seconds():
-                shown = ", ".join(map(ascii, silent))
-                self.raise_unless_carried_on(Fault(PEER_LOST, f"no answer from {shown}"))
+                why = f"no answer from {_listed(silent)}"
+                if unseen := self._desk.slots.unseen(silent):
+                    why += f"; {_listed(unseen)} never came while this robot was there, or had ended before"
+                self.raise_unless_carried_on(Fault(PEER_LOST, why))
 
         return check
 
@@ -166,3 +168,7 @@ class Waits:
             if alone and not slots.take(self._robot.id, (name,), lambda lamport: None):
                 return True
         return False
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(map(ascii, names))

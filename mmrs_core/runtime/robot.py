@@ -232,7 +232,10 @@ class RunningRobot:
         found = self.backend.fault(now)
         if found is not None and not self._answers().bears(found):
             return found
-        found = Fault("PEER_LOST", f"no answer from {', '.join(self.delivery.waiting)}")
+        why = f"no answer from {', '.join(self.delivery.waiting)}"
+        if unseen := self._bus.unseen(self.delivery.waiting):
+            why += f"; {', '.join(unseen)} never came while this robot was there, or had ended before"
+        found = Fault("PEER_LOST", why)
         return found if now - self._silent_since >= self._answers().patience(found) else None
 
     def _give_up(self) -> None:

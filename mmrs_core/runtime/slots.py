@@ -55,6 +55,10 @@ class ProgramBus:
         """Return those of these robots that have ended or can no longer be reached."""
         return self.node.lost(robots)
 
+    def unseen(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that have never been here: not come yet, or gone before."""
+        return self.node.unseen(robots)
+
     def trouble(self, robot: str) -> str:
         """Return why what others tell a robot of this process cannot be kept now; empty: it can."""
         return self.node.trouble(robot)

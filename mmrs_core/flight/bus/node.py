@@ -226,6 +226,12 @@ class Node:
             strangers = (robot for robot in robots if robot not in self._members)
             return tuple(robot for robot in strangers if not self._watching.is_here(robot))
 
+    def unseen(self, robots: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these robots that have never been here: not come yet, or gone before."""
+        with self.lock:
+            strangers = (robot for robot in robots if robot not in self._members)
+            return tuple(robot for robot in strangers if self._watching.is_unseen(robot))
+
     def trouble(self, robot: str) -> str:
         """Return why a robot of this process cannot keep what is told to it; empty: it can."""
         with self.lock:

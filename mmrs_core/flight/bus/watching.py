@@ -62,6 +62,10 @@ class Watching:
         """Return whether a robot can be reached."""
         return robot in self._here
 
+    def is_unseen(self, robot: str) -> bool:
+        """Return whether a robot has never been here, and has told nobody here that it has ended."""
+        return not self.is_here(robot) and not self.is_gone(robot)
+
     def is_gone(self, robot: str) -> bool:
         """Return whether a robot has ended, or was there and can no longer be reached."""
         return robot in self.left or robot in self._lost_at
