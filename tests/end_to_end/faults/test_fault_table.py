@@ -74,15 +74,9 @@ def test_robots_come_to_a_declared_end_in_every_drill(drill, execution, tmp_path
     drilled(drill, execution, tmp_path)
 
 
-@pytest.mark.parametrize("execution", EXECUTIONS)
-@pytest.mark.parametrize("journey", [each for each in JOURNEYS if each.fast], ids=lambda each: each.name)
-def test_robots_of_several_processes_come_to_a_declared_end(journey, execution, tmp_path):
-    assert journey.fly(execution, tmp_path).problems == []
-
-
 @pytest.mark.thorough
 @pytest.mark.parametrize("execution", EXECUTIONS)
-@pytest.mark.parametrize("journey", [each for each in JOURNEYS if not each.fast], ids=lambda each: each.name)
+@pytest.mark.parametrize("journey", JOURNEYS, ids=lambda each: each.name)
 def test_every_journey_of_several_processes_comes_to_a_declared_end(journey, execution, tmp_path):
     assert journey.fly(execution, tmp_path).problems == []
 

@@ -155,7 +155,7 @@ DRILLS: tuple[Drill, ...] = (
         _link_lost("ground station frozen for 30 s", BY_ITSELF[:2], 5.0, "LINK_LOST|TAKEN_OVER", 10.0),
         _freeze,
     ),
-    _injection("disk full", _full_disk(), f"disk-full@{INJECTED_AT}", fast=True),
+    _injection("disk full", _full_disk(), f"disk-full@{INJECTED_AT}"),
     _injection(
         "wall clock jumps forward",
         _link_lost("wall clock jumps by an hour", UNHARMED, 10.0),

@@ -162,7 +162,6 @@ class Journey:
 
     name: str
     fly: Callable[[str, Path], Outcome]
-    fast: bool = False
 
 
 def _journeys() -> tuple[Journey, ...]:

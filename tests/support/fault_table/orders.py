@@ -24,6 +24,7 @@ def _row(order: str, state: str, event: str, ends: str, *, resumes: float | None
         event,
         ends,
         within=None if state == "charging" else 3.0,
+        least=1.0,
         program=program,
         stay={"on a mission (AUTO)": 5.0, "charging": 30.0}.get(state, 20.0),
         order=order,

@@ -16,6 +16,9 @@ HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a
 heartbeat shows the mode once a second."""
 
+SURE_SECONDS = 1.0
+"""Real seconds after which a pilot must have been noticed, whatever else may be the cause of a new mode."""
+
 STAYS_SECONDS = 5.0
 """Seconds of the run for which a vehicle must stay where it has come to rest."""
 
@@ -43,6 +46,7 @@ class Watch:
         self._mended = row.mends is None
         self._resumed = row.resumes is None
         self._refused = not row.refuses
+        self._settled = False
         self._rest: tuple[str, float] | None = None
         self._target: tuple[float, float, float] | None = None
         self._turned: float | None = None
@@ -69,6 +73,8 @@ class Watch:
         Args:
             itself: whether to strike when the vehicle is where it is wanted; else somebody else does.
         """
+        if self._settled:
+            return True
         if self._struck is None:
             if itself and self.ready():
                 self.strike()
@@ -80,10 +86,15 @@ class Watch:
             self._rest = (found, now) if found else None
             return False
         stays = found == self._row.rest and now - self._rest[1] > STAYS_SECONDS
-        return stays and self._mended and self._resumed and self._refused and self._logged()
+        if stays and self._mended and self._resumed and self._refused and self._logged():
+            self.observe()
+        return self._settled
 
     def observe(self) -> None:
         """Keep what the vehicle has done and what the logs say, before anybody interrupts the process."""
+        if self._settled:
+            return
+        self._settled = True
         for thread in self._threads:
             thread.join(10.0)
         self._observe_logs()
@@ -119,7 +130,7 @@ class Watch:
             self._mended = True
             self._row.mends[1](self._victim)
         taken = self._row.mends[0] if self._row.mends is not None else 0.0
-        if not self._refused and since > taken + HANDS_OFF_SECONDS:
+        if not self._refused and since > taken + max(HANDS_OFF_SECONDS, SURE_SECONDS * self._fleet.speedup):
             self._refused = True
             self._start(self._ask_in_vain, self._row.refuses)
         if not self._resumed and self._row.resumes is not None and since > self._row.resumes:
