@@ -179,9 +179,7 @@ def _journeys() -> tuple[Journey, ...]:
         (signal.SIGSTOP, "LAND", "here"),
     ):
         fly = lambda e, f, n=number, r=response, d=ends: peer(e, f, n, r, d)  # noqa: E731
-        made.append(
-            Journey(f"peer {signal.Signals(number).name}, {response}", fly, response == "EMERGENCY_AREA")
-        )
+        made.append(Journey(f"peer {signal.Signals(number).name}, {response}", fly))
     for name, faults, after, event in (
         ("bus cut for 20 s", "bus-cut@45+20", 60.0, ""),
         ("bus cut for good", "bus-cut@45", 5.0, "PEER_LOST"),
