@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+import pytest
+
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
 
@@ -25,11 +27,12 @@ def two_sorties(*policies: Policy, charge: float = 20.0):
 
 
 def run_and_empty(made, vehicle, links):
-    """Run the fleet; the battery is empty as soon as the robot has landed."""
+    """Run the fleet; the battery is found empty when the robot has landed."""
     with made.start("fleet.py", *links) as process:
         while not (take_offs(vehicle) and not vehicle.autopilot.armed):
             assert process.poll() is None
             time.sleep(0.01)
+        time.sleep(0.3)
         vehicle.faults.set_battery(0.0)
         _, said = process.communicate(timeout=60)
     return process.returncode, said
@@ -49,6 +52,7 @@ def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, han
     assert take_offs(vehicles["alpha"]) == 1
 
 
+@pytest.mark.thorough
 def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
     made = controllers(two_sorties(Policy("BATTERY_LOW", "CONTINUE")))
     vehicles, links = hangar(made.program, energy=100.0, recharge=1e9)
@@ -58,6 +62,7 @@ def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
     assert take_offs(vehicles["alpha"]) == 2
 
 
+@pytest.mark.thorough
 def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
     made = controllers(two_sorties(charge=60.0))
     vehicles, links = hangar(made.program, recharge=120.0, falls=False)

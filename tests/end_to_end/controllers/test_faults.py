@@ -68,6 +68,7 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
+@pytest.mark.thorough
 def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(controllers, hangar):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
@@ -140,6 +141,7 @@ def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     assert not vehicles["alpha"].autopilot.armed
 
 
+@pytest.mark.thorough
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
     _, links = hangar(made.program, silent=frozenset({2000}))
@@ -149,6 +151,7 @@ def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -160,6 +163,7 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
     assert "cannot carry out HOLD: the vehicle has been silent" in said
 
 
+@pytest.mark.thorough
 def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -174,6 +178,7 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     assert vehicles["alpha"].autopilot.mode == LOITER
 
 
+@pytest.mark.thorough
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -230,6 +235,7 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
 
 
+@pytest.mark.thorough
 def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
     made = controllers(waiting_pair(Policy("WAIT_TOO_LONG", "LAND", 2.0)))
     vehicles, links = hangar(made.program)
@@ -337,6 +343,7 @@ def test_a_vehicle_that_has_fallen_is_not_armed_again(controllers, hangar):
     assert 400 not in [command for seconds, command, _ in alpha.autopilot.history if seconds > fallen]
 
 
+@pytest.mark.thorough
 def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN")))
     vehicles, links = hangar(made.program, recharge=1e9)

@@ -71,7 +71,7 @@ def pace(vehicle) -> float:
     return vehicle.autopilot.body.pace
 
 
-@pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), "down"])
+@pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), full("down")])
 def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, hangar, state):
     made = controllers(survey())
     vehicles, links = hangar(made.program, speedup=10.0)
@@ -101,7 +101,7 @@ def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, 
     ("state", "name"),
     [
         ("up", "return"),
-        ("r2", "land"),
+        full("r2", "land"),
         *(full(state, name) for state in ("out", "stay") for name in ("return", "land")),
         full("r2", "return"),
         full("up", "land"),
@@ -141,6 +141,7 @@ def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(control
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
+@pytest.mark.thorough
 def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, hangar):
     made = controllers(survey(leg=80.0))
     vehicles, links = hangar(made.program, speedup=10.0)
@@ -158,6 +159,7 @@ def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, 
     assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
 
 
+@pytest.mark.thorough
 def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar):
     made = controllers(survey(leg=20.0, waits=True))
     vehicles, links = hangar(made.program, speedup=10.0)
@@ -171,6 +173,7 @@ def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar)
     assert process.returncode == 130, said
 
 
+@pytest.mark.thorough
 def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     made = controllers(survey())
     _, links = hangar(made.program, speedup=10.0)
@@ -183,6 +186,7 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     assert told["place"]["height"] == pytest.approx(12.0, abs=1.0)
 
 
+@pytest.mark.thorough
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
     made = controllers(survey(leg=20.0))
     vehicles, links = hangar(made.program, speedup=10.0, silent=frozenset({2000}))

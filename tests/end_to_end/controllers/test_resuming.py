@@ -90,6 +90,7 @@ def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar,
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(controllers, hangar):
     other = robot_program(
         "beta",
@@ -142,6 +143,7 @@ def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(control
     assert vehicles["alpha"].autopilot.energy > 0.02
 
 
+@pytest.mark.thorough
 def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, hangar):
     made = controllers(coverage(Policy("LINK_LOST", "HOLD", 60.0)))
     vehicles, links = hangar(made.program, speedup=20.0)
