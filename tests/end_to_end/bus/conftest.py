@@ -41,7 +41,13 @@ class Ends:
         make_keys(self.keys, holders, ["127.0.0.1"], datetime.now(UTC), 2)
 
     def open(
-        self, robot: str, *, certificate: str | None = None, run: str = RUN, listens: bool = True
+        self,
+        robot: str,
+        *,
+        certificate: str | None = None,
+        run: str = RUN,
+        listens: bool = True,
+        settle: float = 0.0,
     ) -> Node:
         """Open an end for a robot, with its own certificate if there are any and no other is given."""
         endpoints = self.endpoints(robot, certificate, listens)
@@ -51,7 +57,14 @@ class Ends:
         folder.mkdir()
         carrier = ZenohCarrier("mission", run, NAMES, endpoints)
         journals = lambda id: FileJournal(folder / f"{id}.ndjson")  # noqa: E731
-        node = Node([member], run, carrier=carrier, journals=journals, tell=lambda line: self.tell(line))
+        node = Node(
+            [member],
+            run,
+            carrier=carrier,
+            journals=journals,
+            tell=lambda line: self.tell(line),
+            settle=settle,
+        )
         self.nodes.append(node)
         return node
 

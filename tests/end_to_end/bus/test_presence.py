@@ -94,25 +94,16 @@ def test_a_robot_that_is_killed_has_not_ended_and_its_answer_is_awaited(ends, un
     assert not notify(a, "a", "b", seconds=1.0)
 
 
-def test_a_robot_that_another_process_runs_is_refused(ends, until, tmp_path, notify):
-    made, ways = exchange(), [f"tcp/127.0.0.1:{ends.ports[robot]}" for robot in ("a", "b")]
-
-    def join(robot, folder, listen):
-        carrier = ZenohCarrier("m", RUN, ("a", "b"), Endpoints(listen, tuple(ways)))
-        return shared_bus(made, [robot], RUN, tmp_path / folder, carrier)
-
-    a, b = join("a", "a", (ways[0],)), join("b", "b", (ways[1],))
-    try:
-        with pytest.raises(Doubled, match="'a': another process runs it on this bus already"):
-            join("a", "a2", ())
-        assert not b.lost(["a"])
-        again = join("a", "a2", ()) if a.close() is None else None
-        again.close()
-    finally:
-        a.close()
-        b.close()
+def test_a_robot_that_another_process_runs_is_refused(ends, until, notify):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    with pytest.raises(Doubled, match="'a': another process runs it on this bus already"):
+        ends.open("a", listens=False, settle=1.0)
+    assert not b.lost(["a"])
+    assert notify(b, "b", "a")
 
 
+@pytest.mark.thorough
 def test_people_are_told_of_a_robot_that_two_processes_run_although_nobody_looked(ends, until):
     told = []
     ends.tell = told.append

@@ -46,7 +46,7 @@ def test_whoever_looks_at_everything_on_the_bus_deafens_nobody(tool, pair, notif
     a, b = pair
     for key in ODD_KEYS:
         for payload in (None, b"\xff\xfe{", b"[" * 50_000):
-            list(tool.get(key, payload=payload, timeout=0.3))
+            list(tool.get(key, payload=payload, timeout=0.1))
     assert notify(a, "a", "b")
     assert notify(b, "b", "a")
 
@@ -68,7 +68,7 @@ def test_answers_of_any_form_do_not_keep_the_state_of_slots_from_being_seen(tool
             query.reply(query.key_expr, b"\xff\xfe nonsense")
 
     tool.declare_queryable("mmrs/**", answer)
-    found = states_of("mission", "run-0", Endpoints(connect=ends.endpoints("c").connect), 3.0, ["a", "b"])
+    found = states_of("mission", "run-0", Endpoints(connect=ends.endpoints("c").connect), 2.0, ["a", "b"])
     assert not json.loads(found[digest("a")])["go"]["active"]
 
 
