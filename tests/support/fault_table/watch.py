@@ -86,6 +86,7 @@ class Watch:
             self._rest = (found, now) if found else None
             return False
         stays = found == self._row.rest and now - self._rest[1] > STAYS_SECONDS
+        stays = stays and (self._row.within is None or self._answered() is not None)
         if stays and self._mended and self._resumed and self._refused and self._logged():
             self.observe()
         return self._settled
@@ -103,8 +104,7 @@ class Watch:
             problems.append(f"never {self._row.during}: {self._vehicle.autopilot.modes}")
             return
         self.outcome.happened = story(self._vehicle, self._struck)
-        times = [self._turned, answered(self._vehicle, self._struck)]
-        self.outcome.answered = min((time for time in times if time is not None), default=None)
+        self.outcome.answered = self._answered()
         self.outcome.rested = self._rest[1] - self._struck.time if self._rest else None
         if (self._rest[0] if self._rest else "") != self._row.rest:
             problems.append(f"does not end as wanted: {self._row.rest}")
@@ -160,6 +160,11 @@ class Watch:
             self.outcome.problems.append(f"{order} is confirmed after {reply['seconds']} s")
         if order == self._row.order:
             self.outcome.confirmed = reply.get("seconds")
+
+    def _answered(self) -> float | None:
+        assert self._struck is not None
+        times = [self._turned, answered(self._vehicle, self._struck)]
+        return min((time for time in times if time is not None), default=None)
 
     def _notice_turn(self) -> None:
         """Keep when the vehicle first went for another place than before, in GUIDED."""
