@@ -81,7 +81,7 @@ def main():
         for outcome in outcomes(given.execution or EXECUTIONS, given.speedup, given.only, Path(folder)):
             total += 1
             wrong += bool(outcome.problems)
-            print(line(cells(outcome)), flush=True)
+            print(line(cells(outcome)).replace(f"{folder}/", ""), flush=True)
     print(f"\n{total} rows, {total - wrong} as declared, {wrong} not.")
     return 1 if wrong else 0
 
