@@ -40,6 +40,9 @@ RESTART_SECONDS = 4.0
 FIRST_MODE = 0
 """The mode that ArduPilot starts in unless it is told otherwise."""
 
+TOUCHING = 1.0
+"""Metres above home below which a vehicle that lands may stop its motors any moment."""
+
 COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 """Modes at whose end the motors stop."""
 
@@ -151,7 +154,8 @@ class Watch:
         """
         tells = vehicle.telemetry
         if self._robot.vehicle != "copter" or not self.moving or vehicle.state().mode in COMES_DOWN_IN:
-            self._flown = self._flown and self.moving
+            low = tells.grounded() or vehicle.state().place.height < TOUCHING
+            self._flown = self._flown and self.moving and not low
         elif tells.armed():
             self._flown = self._flown or tells.airborne()
         elif self._flown:
