@@ -170,6 +170,15 @@ class Watched(Protocol):
 
 
 @runtime_checkable
+class Doubting(Protocol):
+    """What a backend may have beside the rest: somebody else may have taken the robot."""
+
+    def in_doubt(self, now: float) -> bool:
+        """Return whether that is being found out; orders wait for it, and it takes seconds at most."""
+        ...
+
+
+@runtime_checkable
 class Pausable(Protocol):
     """What a backend may have beside the rest: a robot that can halt in the middle of anything."""
 

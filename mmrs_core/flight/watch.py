@@ -59,6 +59,7 @@ class Watch:
         decide: is told what was decided without ending the program: event, reason, response.
         moving: whether the robot is under way; one that stands on the ground may start anew.
         looking: whether it looks for the cause of a change of mode, while nothing may be sent.
+        taken: whether it has found that a pilot has taken over.
         silence: whether the vehicle may be silent, as while its battery is changed.
     """
 
@@ -80,6 +81,7 @@ class Watch:
         self._heeded: frozenset[str] | None = None
         self._hands_off = False
         self.looking = False
+        self.taken = False
         self._flown = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
@@ -112,6 +114,7 @@ class Watch:
 
     def renew(self) -> None:
         """Forget what was: the vehicle is set up, or has another battery."""
+        self.taken = False
         self._since.clear()
         self._borne.clear()
         self._flown = False
@@ -210,6 +213,7 @@ class Watch:
         finally:
             self.looking = False
         if found is None:
+            self.taken = True
             raise Fault(TAKEN_OVER, f"{left}")
         raise Fault(found[0], f"{found[1]}; {left}")
 

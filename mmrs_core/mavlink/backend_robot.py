@@ -214,6 +214,10 @@ class MavlinkBackend:
             return False
         return self._response not in _GOES or self._heads_back()
 
+    def in_doubt(self, now: float) -> bool:
+        """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
+        return self._watch.looking or (self._watch.taken and not self._hands_off)
+
     def watched(self, now: float) -> bool:
         """Return whether the motors run, and the vehicle holds or a pilot has it.
 

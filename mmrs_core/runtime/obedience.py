@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.execution import Clock, Fault, Noting, Pausable, Watched
+from mmrs_core.contributions.execution import Clock, Doubting, Fault, Noting, Pausable, Watched
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
@@ -22,6 +22,7 @@ class Obedience:
         self._robots = {robot.id: robot for robot in robots}
         self._orders, self._clock = orders, clock
         self._open: list[Order] = []
+        self._waiting: list[tuple[Order, str]] = []
 
     def obey(self) -> tuple[str, ...]:
         """Have robots do what was ordered, and see who has; return the robots to be looked at."""
@@ -29,7 +30,12 @@ class Obedience:
         for order in self._orders.taken():
             self._open.append(order)
             concerned += (id for id in order.robots if id in self._robots)
-            for id in order.robots:
+            self._waiting += ((order, id) for id in order.robots)
+        waiting, self._waiting = self._waiting, []
+        for order, id in waiting:
+            if self._in_doubt(id):
+                self._waiting.append((order, id))
+            else:
                 self._begin(order, id)
         for order in self._open:
             self._look(order)
@@ -40,7 +46,8 @@ class Obedience:
     def stopped(self, id: str, stopping: bool, trouble: Fault | None) -> None:
         """Tell the orders that ended a robot's program what became of it."""
         for order in self._open:
-            if order.kind in ENDINGS and id in order.open and not stopping:
+            began = (order, id) not in self._waiting
+            if order.kind in ENDINGS and id in order.open and began and not stopping:
                 if trouble is None:
                     order.confirm(id)
                 else:
@@ -62,6 +69,10 @@ class Obedience:
                 seconds, why = order.confirmed.get(id), order.refused.get(id, "")
                 content = {"order": order.kind, "confirmed": not why, "seconds": seconds, "why": why}
                 backend.note("order", content)
+
+    def _in_doubt(self, id: str) -> bool:
+        backend = self._robots[id].backend if id in self._robots else None
+        return isinstance(backend, Doubting) and backend.in_doubt(self._clock.now())
 
     def _begin(self, order: Order, id: str) -> None:
         robot = self._robots.get(id)
@@ -142,6 +153,8 @@ class Obedience:
     def _look(self, order: Order) -> None:
         now = self._clock.now()
         for id in order.open:
+            if (order, id) in self._waiting:
+                continue
             robot = self._robots[id]
             if order.kind == HOLD:
                 if isinstance(robot.backend, Pausable) and robot.backend.paused(now):

@@ -16,7 +16,7 @@ HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a
 heartbeat shows the mode once a second."""
 
-SURE_SECONDS = 1.0
+SURE_SECONDS = 0.0
 """Real seconds after which a pilot must have been noticed, whatever else may be the cause of a new mode."""
 
 STAYS_SECONDS = 5.0

@@ -33,7 +33,7 @@ class Walker:
     def __init__(self, given: BackendInput, script):
         self.given, self.script = given, script
         self.done, self.trouble, self.stops, self.begun = True, None, [], []
-        self.halted = self.closed = self.watched_for = False
+        self.halted = self.closed = self.watched_for = self.doubted = False
         self.recovered = None
         script.robots[given.robot.id] = self
 
@@ -84,6 +84,9 @@ class Walker:
 
     def obeys(self, now):
         return self.begun[-1].startswith("stop")
+
+    def in_doubt(self, now):
+        return self.doubted or (self.trouble is not None and self.trouble.which == "TAKEN_OVER")
 
     def watched(self, now):
         return self.watched_for and self.trouble is None
@@ -379,6 +382,23 @@ def test_an_order_ends_the_program_and_is_confirmed(live, kind, response, fault)
     assert list(order.confirmed) == ["r"]
     assert run.script.robots["r"].stops == [response]
     assert (run.records[-1].label, run.records[-1].detail) == ("fault", fault)
+
+
+@pytest.mark.parametrize("kind", [HOLD, RESUME, LAND, STOP])
+def test_no_order_is_obeyed_while_nobody_knows_whether_a_pilot_has_the_robot(live, kind):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    walker = run.script.robots["r"]
+    walker.doubted = True
+    order = run.orders.give(kind, ["r"])
+    time.sleep(0.2)
+    assert not walker.halted
+    assert walker.stops == []
+    walker.fail("TAKEN_OVER")
+    walker.doubted = False
+    assert order.settled.wait(20.0)
+    assert list(order.confirmed) == []
+    assert walker.stops == ["NOTHING"]
 
 
 def test_a_robot_that_waits_for_slots_obeys_too(live):
