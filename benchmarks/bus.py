@@ -34,8 +34,8 @@ from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import BackendInput
 from mmrs_core.flight.bus import begin_together
 from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier, configuration
-from mmrs_core.flight.log import Log
 from mmrs_core.flight.program import Local, Notify, Robot, Start, Step
+from mmrs_core.flight.records.log import Log
 from mmrs_core.flight.slots import BusSlots, LocalSlots, shared_slots
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock

@@ -27,7 +27,7 @@ from pymavlink import mavutil
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.flight.ordering import give
+from mmrs_core.flight.orders.ordering import give
 from mmrs_core.mavlink.backend import MAVLINK
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import LAND, Orders

@@ -39,7 +39,7 @@ def control(
     Example: mmrs control hold Drone1 --log logs
     """
     from mmrs_core.errors import LinkLostError
-    from mmrs_core.flight.ordering import Unreachable, words
+    from mmrs_core.flight.orders.ordering import Unreachable, words
 
     _check(order, question, says)
     replies = []
@@ -60,13 +60,13 @@ def control(
 def _replies(
     log: Path, order: str, robots: list[str], question: str, answer: bool, seconds: float
 ) -> Iterator[dict[str, Any]]:
-    from mmrs_core.flight.ordering import give
+    from mmrs_core.flight.orders.ordering import give
 
     return give(log, order, robots, question=question, answer=answer, seconds=seconds)
 
 
 def _check(order: str, question: str, says: str) -> None:
-    from mmrs_core.flight.orders import ANSWER, ORDERS
+    from mmrs_core.flight.orders.orders import ANSWER, ORDERS
 
     if order not in ORDERS:
         raise typer.BadParameter(f"{order}: is none of {', '.join(ORDERS)}")

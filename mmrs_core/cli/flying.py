@@ -219,7 +219,7 @@ def _check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, 
     if wishes.backend != "mavlink":
         return
     from mmrs_core.flight.injection import injections
-    from mmrs_core.flight.ports import address_of, split_system
+    from mmrs_core.flight.links.ports import address_of, split_system
 
     for text in links.values():
         try:

@@ -12,7 +12,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.runtime.orders import ANSWER, Orders
 
 if TYPE_CHECKING:
-    from mmrs_core.flight.orders import Inbox, Receipt
+    from mmrs_core.flight.orders.orders import Inbox, Receipt
 
 Status = Callable[[str], Mapping[str, object]]
 
@@ -39,7 +39,7 @@ def hear_orders(
 
 
 def _inbox(robot: str, orders: Orders) -> Inbox:
-    from mmrs_core.flight.orders import Inbox
+    from mmrs_core.flight.orders.orders import Inbox
 
     told: dict[str, bool] = {}
 

@@ -1,8 +1,10 @@
 """The runtime of generated controllers: readable, standalone, on top of pymavlink.
 
-Read ``program.py`` first: the words that programs are written in. ``pilot.py`` carries a program
-out, ``ardupilot.py`` says it in MAVLink. ``main.py`` runs all robots, ``session.py`` one of them
-from the opening of its link to its end, and ``options.py`` is the command line.
+Read ``program.py`` first: the words that programs are written in. ``steps/`` carries programs out,
+``vehicles/`` says it to vehicles, by ``services/`` and ``links/`` of MAVLink. ``orders/`` are people's,
+``records/`` what is written down, ``bus/`` the slots of robots in many processes, ``injection/`` faults
+made on purpose. ``main.py`` runs all robots, ``session.py`` one of them from the opening of its link to
+its end, and ``options.py`` is the command line.
 """
 
 from importlib import import_module
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
     from .conditions import Condition
     from .main import main
     from .objects import Locator, where_expected
-    from .vehicle import State
+    from .vehicles.vehicle import State
 
 __all__ = [
     "Choose",
@@ -82,7 +84,7 @@ __all__ = [
 _NEED_A_LINK = {
     "Condition": "conditions",
     "Locator": "objects",
-    "State": "vehicle",
+    "State": "vehicles.vehicle",
     "main": "main",
     "where_expected": "objects",
 }

@@ -13,7 +13,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from .vehicle import State
+    from .vehicles.vehicle import State
 
 Condition: TypeAlias = "Callable[[State], bool | None]"
 """Whether a condition holds, by what a robot knows; None while that cannot be said yet."""

@@ -26,7 +26,7 @@ from errno import EEXIST
 from pathlib import Path
 from typing import Any
 
-from .orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
+from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
 
 FILE = "control.json"
 ANSWER_SECONDS = 30.0
@@ -217,6 +217,6 @@ def _answers(path: Path) -> bool:
 
 
 if __name__ == "__main__":
-    from .ordering import main
+    from .orders.ordering import main
 
     raise SystemExit(main())

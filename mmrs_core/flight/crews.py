@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping, Sequence
 
-from .blackbox import plain
-from .journal import Journal
-from .orders import Inbox, Receipt
-from .vehicle import State
+from .orders.orders import Inbox, Receipt
+from .records.blackbox import plain
+from .records.journal import Journal
+from .vehicles.vehicle import State
 
 WAITS = "waits for its vehicle"
 WORKS = "works"

@@ -6,14 +6,14 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from .blackbox import BlackBox
 from .bus import Beginning
 from .clock import Clock
 from .conditions import Condition
-from .log import Log
 from .objects import Locator
+from .records.blackbox import BlackBox
+from .records.log import Log
 from .slots import Slots
-from .vehicle import State
+from .vehicles.vehicle import State
 
 Say = Callable[[str], None]
 Meet = Callable[[Callable[[str], None]], Beginning]

@@ -12,19 +12,19 @@ from .bus import Recorded
 from .conditions import Condition
 from .control import Control
 from .crews import Crews
-from .ending import FAILED, INTERRUPTED, LINK, OK
 from .injection import Rehearsal
 from .judgement import Judgement
-from .log import read
+from .links.ports import Port
+from .links.radios import Radios
 from .objects import Locator
 from .options import Options, options_of, parser_for
-from .ports import Port
 from .program import Robot
-from .radios import Radios
-from .resuming import slots_of
+from .records.log import read
 from .screen import say
 from .session import Shared, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
+from .steps.ending import FAILED, INTERRUPTED, LINK, OK
+from .steps.resuming import slots_of
 
 
 def main(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from .faults import OBJECT_NOT_FOUND, Fault
 from .places import distance
 from .program import Look, Object, Place
-from .vehicle import State
+from .vehicles.vehicle import State
 
 Locator = Callable[[State, Place | None], Place]
 

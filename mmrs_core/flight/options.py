@@ -11,11 +11,11 @@ from typing import Any
 from .clock import Clock
 from .faults import Fault
 from .injection import HELP, Injections, injections
-from .link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
-from .log import read
-from .ports import address_of, split_system
+from .links.link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
+from .links.ports import address_of, split_system
+from .links.signing import Signer, signer_for
 from .program import Robot
-from .signing import Signer, signer_for
+from .records.log import read
 
 FIRST_PORT = 14_550
 PORT_STEP = 10

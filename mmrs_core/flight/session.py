@@ -14,31 +14,31 @@ from traceback import format_exception
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from .ardupilot import MavlinkVehicle
-from .blackbox import BlackBox, black_box_path
 from .bus import begin_together
 from .conditions import Condition
 from .crews import Crews
 from .desk import Desk, Meet
-from .dry import DryVehicle
-from .ending import CODES, FAILED, OK, Crew, Ending
 from .faults import CRASHED, Fault, Refused, Strange
 from .injection import Rehearsal
 from .judgement import Judgement
-from .link import Link
-from .log import Log
-from .obedience import Obedience, Ordered
+from .links.link import Link
+from .links.radios import Radios
 from .options import Options
-from .pilot import Pilot
+from .orders.obedience import Obedience, Ordered
 from .program import Geographic, Robot
-from .radios import Radios
-from .recognition import recognise, system_of
-from .recording import Recording
-from .resuming import progress_of
+from .records.blackbox import BlackBox, black_box_path
+from .records.log import Log
+from .records.recording import Recording
 from .screen import say
 from .slots import BusSlots
-from .vehicle import Vehicle
-from .watch import Watch
+from .steps.ending import CODES, FAILED, OK, Crew, Ending
+from .steps.pilot import Pilot
+from .steps.resuming import progress_of
+from .steps.watch import Watch
+from .vehicles.ardupilot import MavlinkVehicle
+from .vehicles.dry import DryVehicle
+from .vehicles.recognition import recognise, system_of
+from .vehicles.vehicle import Vehicle
 
 GLANCE_SECONDS = 0.2
 

@@ -14,19 +14,19 @@ from mmrs_core.contributions.execution import BackendInput, Live
 from mmrs_core.contributions.execution import Clock as RunClock
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.flight.ardupilot import MavlinkVehicle
-from mmrs_core.flight.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.injection import Rehearsal, injections
-from mmrs_core.flight.link import Link, Retries
+from mmrs_core.flight.links.link import Link, Retries
+from mmrs_core.flight.links.ports import Port, address_of, split_system
+from mmrs_core.flight.links.radios import Radios
+from mmrs_core.flight.links.signing import Signer, signer_for
 from mmrs_core.flight.objects import Locator, where_expected
-from mmrs_core.flight.ports import Port, address_of, split_system
 from mmrs_core.flight.program import Action, Geographic, Robot
-from mmrs_core.flight.radios import Radios
-from mmrs_core.flight.recognition import system_of
-from mmrs_core.flight.recording import Recording
-from mmrs_core.flight.signing import Signer, signer_for
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.records.recording import Recording
+from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.recognition import system_of
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_options import LinkOptions, link_options

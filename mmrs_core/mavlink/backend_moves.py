@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.commands import Unanswered
-from mmrs_core.flight.corners import goes_through
 from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault
 from mmrs_core.flight.objects import Locator, look_at, place_of
 from mmrs_core.flight.places import at_height, ends_of
@@ -30,9 +28,11 @@ from mmrs_core.flight.program import (
     Then,
     Turn,
 )
-from mmrs_core.flight.responses import policy_for
-from mmrs_core.flight.uploads import Flight
-from mmrs_core.flight.vehicle import Vehicle
+from mmrs_core.flight.services.commands import Unanswered
+from mmrs_core.flight.services.uploads import Flight
+from mmrs_core.flight.steps.responses import policy_for
+from mmrs_core.flight.vehicles.corners import goes_through
+from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_worker import Job
 
 FULL = 0.99

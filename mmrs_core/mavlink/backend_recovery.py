@@ -8,7 +8,7 @@ from math import hypot
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.places import distance, ends_of, offset
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
-from mmrs_core.flight.vehicle import Vehicle
+from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend_worker import Job
 

@@ -12,24 +12,24 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.flight import modes
-from mmrs_core.flight.ardupilot import MavlinkVehicle
-from mmrs_core.flight.blackbox import BlackBox
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import FENCE_BREACHED, LINK_LOST, POSITION_LOST, TAKEN_OVER, Refused
 from mmrs_core.flight.faults import Fault as VehicleFault
-from mmrs_core.flight.link import Link
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.places import offset
 from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
-from mmrs_core.flight.radios import Radios
-from mmrs_core.flight.recognition import recognise
-from mmrs_core.flight.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
-from mmrs_core.flight.steering import STILL
-from mmrs_core.flight.uploads import fence_of, mission_of, places_in, rally_of
-from mmrs_core.flight.watch import Watch
-from mmrs_core.flight.ways import way_back
+from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.services.uploads import fence_of, mission_of, places_in, rally_of
+from mmrs_core.flight.steps.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
+from mmrs_core.flight.steps.watch import Watch
+from mmrs_core.flight.steps.ways import way_back
+from mmrs_core.flight.vehicles import modes
+from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.recognition import recognise
+from mmrs_core.flight.vehicles.steering import STILL
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..link import Link
+from ..links.link import Link
 
 SWITCHES: Mapping[str, tuple[float, float]] = {"SIM_GPS1_ENABLE": (0.0, 1.0), "SIM_GPS_DISABLE": (1.0, 0.0)}
 """Parameters of ArduPilot's simulators, newer and older, with their values without and with satellites."""

@@ -15,7 +15,7 @@ from contextlib import suppress
 from random import Random
 
 from ..clock import Clock
-from ..ports import NOTHING, Address, Port, Received
+from ..links.ports import NOTHING, Address, Port, Received
 from .spec import Injection
 
 

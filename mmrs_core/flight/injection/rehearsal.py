@@ -8,8 +8,8 @@ from math import inf
 
 from ..bus.carrier import Carrier
 from ..clock import Clock
-from ..link import Link
-from ..ports import Port
+from ..links.link import Link
+from ..links.ports import Port
 from . import gps
 from .carrier import InjectedCarrier
 from .port import InjectedPort, Line

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.ordering import give
+from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
@@ -256,7 +256,7 @@ def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
 
 def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
     made = controllers(one_drone(hold=5.0))
-    actions = made.folder / "mmrs_flight/doing.py"
+    actions = made.folder / "mmrs_flight/steps/doing.py"
     broken = actions.read_text("utf-8").replace("self._vehicle.operate(", "self._vehicle.no_such_word(")
     actions.write_text(broken, "utf-8")
     vehicles, links = hangar(made.program)

@@ -11,8 +11,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.link import Link
-from mmrs_core.flight.ports import NOTHING, open_port
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.ports import NOTHING, open_port
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off, two_drones

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.modes import LINK_LOST
+from mmrs_core.flight.vehicles.modes import LINK_LOST
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,

@@ -13,12 +13,12 @@ import pytest
 from lossy_proxy import LossyProxy
 
 from mmrs_core import flight
-from mmrs_core.flight import missions, parameters
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.commands import command
-from mmrs_core.flight.link import Link, Retries
-from mmrs_core.flight.ports import open_port
-from mmrs_core.flight.uploads import mission_of
+from mmrs_core.flight.links.link import Link, Retries
+from mmrs_core.flight.links.ports import open_port
+from mmrs_core.flight.services import missions, parameters
+from mmrs_core.flight.services.commands import command
+from mmrs_core.flight.services.uploads import mission_of
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.ordering import Unreachable, give
+from mmrs_core.flight.orders.ordering import Unreachable, give
 from mmrs_core.testing.programs import (
     MULTICOPTER,
     go_to,

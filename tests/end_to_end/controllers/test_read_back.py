@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.flight import missions
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Refused
-from mmrs_core.flight.link import Link
-from mmrs_core.flight.ports import open_port
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.ports import open_port
+from mmrs_core.flight.services import missions
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.ordering import give
+from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     MULTICOPTER,

@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.link import Link
-from mmrs_core.flight.ports import open_port
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.ports import open_port
 from mmrs_core.flight.program import Travel
-from mmrs_core.flight.travel import set_up
+from mmrs_core.flight.vehicles.travel import set_up
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
 

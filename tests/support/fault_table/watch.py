@@ -10,7 +10,7 @@ from math import dist
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Struck, answered, ending, story, strayed, struck, talked
 from fault_table.row import Outcome, Row
-from mmrs_core.flight.ordering import Unreachable, give
+from mmrs_core.flight.orders.ordering import Unreachable, give
 
 HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a

@@ -5,8 +5,8 @@ from math import nan
 
 import pytest
 
-from mmrs_core.flight.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.program import Geographic
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.conditions import is_standard, question_of, standard
-from mmrs_core.flight.detections import Detections
 from mmrs_core.flight.program import Local
-from mmrs_core.flight.vehicle import State
+from mmrs_core.flight.vehicles.detections import Detections
+from mmrs_core.flight.vehicles.vehicle import State
 
 HERE = State(0.0, Local(0.0, 0.0, 5.0), 0.0, 0.0, None)
 

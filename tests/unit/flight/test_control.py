@@ -11,8 +11,8 @@ from contextlib import ExitStack
 import pytest
 
 from mmrs_core.flight.control import Control
-from mmrs_core.flight.ordering import Unreachable, give, main
-from mmrs_core.flight.orders import Inbox, Order
+from mmrs_core.flight.orders.ordering import Unreachable, give, main
+from mmrs_core.flight.orders.orders import Inbox, Order
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.flight import GoTo, Hold, Local, Object, Step, Then
-from mmrs_core.flight.corners import goes_through, turn
+from mmrs_core.flight.vehicles.corners import goes_through, turn
 
 HERE = Local(0.0, 0.0, 10.0)
 FAR = Local(100.0, 0.0, 10.0)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.energy import Reserve, seconds_back
 from mmrs_core.flight.program import Local, Robot
-from mmrs_core.flight.vehicle import State
-from mmrs_core.flight.ways import way_back
+from mmrs_core.flight.steps.energy import Reserve, seconds_back
+from mmrs_core.flight.steps.ways import way_back
+from mmrs_core.flight.vehicles.vehicle import State
 
 HOME = Local(0.0, 0.0, 0.0)
 TRACK = [("up", Local(0.0, 0.0, 10.0)), ("a", Local(300.0, 0.0, 10.0)), ("b", Local(300.0, 100.0, 10.0))]

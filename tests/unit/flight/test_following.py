@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core.flight import Local
 from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.following import Following
+from mmrs_core.flight.vehicles.following import Following
 
 PLACES = {2: Local(50.0, 0.0, 20.0), 3: Local(100.0, 0.0, 20.0), 4: Local(100.0, 50.0, 20.0)}
 

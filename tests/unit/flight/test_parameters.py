@@ -6,8 +6,9 @@ import pytest
 from mavlink_peer import ARDUPILOT, PX4, bytewise, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight import modes, parameters, preparation, safeguards
 from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.services import parameters
+from mmrs_core.flight.vehicles import modes, preparation, safeguards
 
 INT = mavlink.MAV_PARAM_TYPE_INT32
 

@@ -11,10 +11,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault, Refused
-from mmrs_core.flight.link import ANYBODY, Link
-from mmrs_core.flight.ports import split_system
-from mmrs_core.flight.radio import Radio
-from mmrs_core.flight.radios import Radios
+from mmrs_core.flight.links.link import ANYBODY, Link
+from mmrs_core.flight.links.ports import split_system
+from mmrs_core.flight.links.radio import Radio
+from mmrs_core.flight.links.radios import Radios
 
 THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
 ITEM = mavlink.MAVLink_mission_current_message(3)
@@ -74,7 +74,7 @@ def position(milliseconds: int, north: float = 0.0):
 def test_a_vehicle_that_falls_silent_speaks_from_another_address_if_it_is_the_same(
     shared, monkeypatch, sign, same
 ):
-    monkeypatch.setattr("mmrs_core.flight.roaming.ROAMING_SECONDS", 0.05)
+    monkeypatch.setattr("mmrs_core.flight.links.roaming.ROAMING_SECONDS", 0.05)
     shared.wire.say(position(60_000), system=1, sender=HERE)
     shared.first.wait(lambda: shared.first.latest("GLOBAL_POSITION_INT"), 5.0)
     eventually(lambda: shared.first.silent_for() > 0.1)

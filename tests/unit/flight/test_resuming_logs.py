@@ -7,7 +7,6 @@ import json
 import pytest
 
 from mmrs_core.flight.faults import Fault, Refused
-from mmrs_core.flight.log import Log, read
 from mmrs_core.flight.program import (
     Choose,
     GoTo,
@@ -22,7 +21,8 @@ from mmrs_core.flight.program import (
     TakeOff,
     Then,
 )
-from mmrs_core.flight.resuming import Progress, progress_of, rest_of_way, slots_of, still_on, track_of
+from mmrs_core.flight.records.log import Log, read
+from mmrs_core.flight.steps.resuming import Progress, progress_of, rest_of_way, slots_of, still_on, track_of
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))

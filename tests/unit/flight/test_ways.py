@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.flight.program import Choose, GoTo, Land, Local, Robot, Start, Step, Stop, TakeOff, Then
-from mmrs_core.flight.ways import way_back
+from mmrs_core.flight.steps.ways import way_back
 
 FAR = Local(400.0, 80.0, 10.0)
 HOME, UP = Local(0.0, 0.0, 0.0), Local(0.0, 0.0, 10.0)

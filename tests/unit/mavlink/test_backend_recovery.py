@@ -8,9 +8,9 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.dry import DryVehicle
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.places import distance, offset
+from mmrs_core.flight.vehicles.dry import DryVehicle
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_recovery import WayBack, sortie_of
 from mmrs_core.mavlink.built import robot_of

@@ -1,0 +1,1 @@
+"""Links: from ports to vehicles, signed or not."""

@@ -1,0 +1,312 @@
+"""A link to one vehicle: the latest of everything that it says, waits for more, and what is sent to it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+from ..clock import Clock
+from ..faults import LINK_LOST, Fault
+from .identity import LATE_MILLISECONDS, Identity
+from .ports import Address, Port
+from .radio import GLANCE_SECONDS, Radio, is_autopilot
+from .roaming import Roaming
+from .signing import Signer
+
+Message = Any
+Found = TypeVar("Found")
+Observer = Callable[[Message, bool], None]
+"""Is given every message and whether it goes out; called from whatever thread sends or reads."""
+
+TRIES = 5
+ANSWER_SECONDS = 1.5
+ITEM_SECONDS = 0.25
+FORSAKEN_SECONDS = 120.0
+"""Silence after which nobody waits for a vehicle any more, whatever policies bear."""
+
+LEAST_SECONDS = 0.5
+"""Real seconds for an answer at least, unless less was asked for."""
+
+LATE_FRAMES = 64
+"""How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
+
+ANYBODY = 0
+"""Stands for every component of the vehicle's system."""
+
+TELL_BOOT = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYSTEM_TIME", "ATTITUDE"})
+OF_ALL = frozenset(
+    {
+        "CAMERA_FEEDBACK",
+        "CAMERA_IMAGE_CAPTURED",
+        "COLLISION",
+        "DISTANCE_SENSOR",
+        "NAMED_VALUE_FLOAT",
+        "OBSTACLE_DISTANCE",
+        "RADIO_STATUS",
+    }
+)
+"""Messages that count as the vehicle's whichever of its components sends them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Retries:
+    """How often to send at most what is not answered, and how long to wait each time.
+
+    As the mission protocol publishes them (https://mavlink.io/en/services/mission.html); slow radios
+    need more.
+
+    Attributes:
+        tries: how often to send.
+        answer: seconds for an answer.
+        item: seconds for an item of a mission that is read back.
+    """
+
+    tries: int = TRIES
+    answer: float = ANSWER_SECONDS
+    item: float = ITEM_SECONDS
+
+
+def nobody() -> None:
+    """Watch over nothing."""
+
+
+class Link:
+    """Talks to one vehicle.
+
+    Attributes:
+        guard: called again and again during every wait; raises what should end it.
+        system, component: the vehicle's address; 0 until it was heard of.
+        retries: how often, and how long apart, to send what is not answered.
+    """
+
+    def __init__(
+        self,
+        port: Port | Radio,
+        clock: Clock,
+        system: int = 0,
+        key: bytes | None = None,
+        retries: Retries | None = None,
+    ) -> None:
+        """Listen to a vehicle.
+
+        Args:
+            port: open, for this vehicle alone; or a radio, which robots may share.
+            clock: of the run.
+            system: of the vehicle; 0 is whichever speaks first that no other robot has.
+            key: to sign with on a port of its own; what comes must then be signed with it, too.
+            retries: None: as published.
+
+        Raises:
+            ValueError: another robot has that vehicle.
+        """
+        radio = port if isinstance(port, Radio) else Radio(port, clock, Signer(key) if key else None)
+        self.clock = clock
+        self.guard: Callable[[], None] = nobody
+        self.system = system
+        self.component = 0
+        self.retries = retries or Retries()
+        self._radio = radio
+        self._wanted = system
+        late = max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup)
+        self._identity, self._roaming = Identity(late), Roaming(late)
+        self._changed = threading.Condition()
+        self._latest: dict[str, tuple[Message, float]] = {}
+        self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
+        self._observers: tuple[Observer, ...] = ()
+        self._heard: float | None = None
+        self._newest: int | None = None
+        self._ended = ""
+        radio.join(self)
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._radio.leave(self)
+
+    @property
+    def listening(self) -> bool:
+        """Return whether something may still come."""
+        return self._radio.listening
+
+    @property
+    def trouble(self) -> str:
+        """Return what the port has last complained of; empty once something is heard again."""
+        return self._radio.trouble
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """Return how many frames on the radio were not used, by type and reason."""
+        return dict(self._radio.dropped)
+
+    @property
+    def garbled(self) -> int:
+        """Return how many frames could not be read, or were not signed as they should be."""
+        return sum(self._radio.dropped[reason] for reason in ("unreadable", "not signed with the key"))
+
+    @property
+    def patience(self) -> float:
+        """Return the seconds of the run to wait for an answer: networks do not speed up with simulators."""
+        return self.clock.patience(self.retries.answer, min(LEAST_SECONDS, self.retries.answer))
+
+    @property
+    def tries(self) -> int:
+        """Return how often to send at most what is not answered."""
+        return self.retries.tries
+
+    @tries.setter
+    def tries(self, tries: int) -> None:
+        self.retries = replace(self.retries, tries=tries)
+
+    @property
+    def starts(self) -> int:
+        """Return how often the vehicle was seen to start anew."""
+        return self._identity.starts
+
+    def doubt(self) -> str:
+        """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
+        twin = self._roaming.twin or self._identity.twin
+        if twin:
+            return f"there are two vehicles with system id {self.system}: {twin}"
+        others = sorted(each for each in self._radio.heard - {self.system} if not self._radio.claimed(each))
+        if not self._wanted and others:
+            shown = " and ".join(map(str, sorted([self.system, *others])))
+            return f"vehicles with the system ids {shown} speak on this link: say which, as URL@{self.system}"
+        return ""
+
+    def strangers(self) -> str:
+        """Return who speaks on the radio instead of the vehicle; empty if nobody does."""
+        shown = ", ".join(map(str, sorted(self._radio.heard)))
+        return f"heard system {shown}, and not {self._wanted}" if shown and self._wanted else ""
+
+    def observe(self, observer: Observer) -> None:
+        """Have every message told from now on: what is sent, and what the vehicle says.
+
+        An observer must neither raise nor wait: it runs in the thread that reads, or that sends.
+        """
+        self._observers = (*self._observers, observer)
+
+    def send(self, message: Message) -> None:
+        """Send one message; where the port does not take it, it is lost like any on a poor link."""
+        for observer in self._observers:
+            observer(message, True)
+        self._radio.send(message, self._roaming.sender)
+
+    def latest(self, kind: str) -> Message | None:
+        """Return the last message of that name from the vehicle."""
+        found = self._latest.get(kind)
+        return found[0] if found else None
+
+    def since(self, kind: str) -> float:
+        """Return how long ago the last message of that name came, in seconds; inf if none did."""
+        found = self._latest.get(kind)
+        return self.clock.now() - found[1] if found else float("inf")
+
+    def silent_for(self) -> float:
+        """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
+        return 0.0 if self._heard is None else self.clock.now() - self._heard
+
+    def unheard(self) -> bool:
+        """Return whether the vehicle is silent while a guard watches, which says when it is lost."""
+        return self.guard is not nobody and self.patience <= self.silent_for() < FORSAKEN_SECONDS
+
+    def wait(self, test: Callable[[], Found | None], seconds: float) -> Found | None:
+        """Return what the test finds as soon as it finds something; None if time runs out.
+
+        Time that the guard takes, as for an order to hold, does not count.
+
+        Raises:
+            Fault: the port has ended, so that nothing will come any more; or what the guard raises.
+        """
+        until = self.clock.now() + seconds
+        while True:
+            if self._ended:
+                raise Fault(LINK_LOST, self._ended)
+            asked = self.clock.now()
+            self.guard()
+            until += self.clock.now() - asked
+            with self._changed:
+                found = test()
+                left = until - self.clock.now()
+                if found or left <= 0:
+                    return found or None
+                self._changed.wait(min(self.clock.real(left), GLANCE_SECONDS))
+
+    def wake(self) -> None:
+        """Have a wait ask its guard and its test again at once."""
+        with self._changed:
+            self._changed.notify_all()
+
+    @contextmanager
+    def inbox(self, *kinds: str, component: int | None = None) -> Iterator[deque[Message]]:
+        """Collect every message of these names from now on.
+
+        Args:
+            kinds: names of messages.
+            component: of the vehicle's system that must have sent them; None: the autopilot.
+        """
+        entry = (frozenset(kinds), self.component if component is None else component, deque[Message]())
+        with self._changed:
+            self._inboxes.append(entry)
+        try:
+            yield entry[2]
+        finally:
+            with self._changed:
+                self._inboxes = [other for other in self._inboxes if other is not entry]
+
+    def meets(self, heartbeat: Message) -> bool:
+        """Return whether an autopilot's heartbeat is that of the vehicle; it is the link's from then on."""
+        system = heartbeat.get_srcSystem()
+        if self._wanted not in (0, system) or (not self._wanted and self._radio.claimed(system)):
+            return False
+        with self._changed:
+            self.system, self.component = system, heartbeat.get_srcComponent()
+            self._latest["HEARTBEAT"] = (heartbeat, self.clock.now())
+            self._changed.notify_all()
+        return True
+
+    def hears(self, message: Message, sender: Address | None) -> None:
+        """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
+        own = (message.get_srcSystem(), message.get_srcComponent()) == (self.system, self.component)
+        if own and not self._is_own(message, sender):
+            self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
+            return
+        for observer in self._observers:
+            observer(message, False)
+        with self._changed:
+            self._keep(message, own=own)
+            self._changed.notify_all()
+
+    def learns(self, reason: str) -> None:
+        """Be told that nothing will come any more."""
+        with self._changed:
+            self._ended = reason
+            self._changed.notify_all()
+
+    def _is_own(self, message: Message, sender: Address | None) -> bool:
+        """Return whether a message with the vehicle's ids comes from the vehicle."""
+        real, now = time.monotonic(), self.clock.now()
+        return self._roaming.accepts(message, sender, real, now, heartbeat=is_autopilot(message))
+
+    def _keep(self, message: Message, *, own: bool) -> None:
+        kind, now = message.get_type(), self.clock.now()
+        if own:
+            self._heard = now
+            if kind in TELL_BOOT:
+                self._identity.booted(message.time_boot_ms)
+        if (own and not self._is_late(message)) or (kind in OF_ALL and not own):
+            self._latest[kind] = (message, now)
+        for kinds, component, collected in self._inboxes:
+            if kind in kinds and component in (ANYBODY, message.get_srcComponent()):
+                collected.append(message)
+
+    def _is_late(self, message: Message) -> bool:
+        """Return whether messages that the vehicle sent after this one have come before it."""
+        seq = message.get_seq()
+        if self._newest is not None and 0 < (self._newest - seq) % 256 <= LATE_FRAMES:
+            return True
+        self._newest = seq
+        return False

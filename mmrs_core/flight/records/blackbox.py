@@ -1,0 +1,168 @@
+"""The black box: all that a robot decided, said, heard and where it was, one JSON object a line.
+
+Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
+`time` (seconds of the run), `wall` (UTC) and `kind`; what else there is depends on the kind:
+
+``start``     link, vehicle, firmware, home, versions
+``fix``       place, speed, heading, energy, mode, armed
+``text``      severity, text: what the vehicle said
+``command``   name, params, result, seconds, tries
+``upload``    what, items, seconds
+``parameter`` name, value, was
+``decision``  what, why, response
+``order``     order, confirmed, seconds
+``wait``      slots, seconds
+``photo``     index, place
+``reported``  name, content
+``measured``  name, content
+``message``   direction, type, fields
+``counted``   frames: numbers by type
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, is_dataclass
+from datetime import UTC, datetime
+from math import isfinite
+from pathlib import Path
+from typing import IO
+
+from ..screen import say
+
+LARGEST_PART = 32 * 1024 * 1024
+"""Bytes after which a new file is begun."""
+
+DIGITS = 9
+KEPT_AT_ONCE = frozenset({"start", "decision", "order"})
+"""Kinds that are on the disk when they have been written."""
+
+
+def black_box_path(log: Path) -> Path:
+    """Return where the black box of a robot lies, given the path of its log of steps."""
+    return log.with_name(f"{log.stem}.blackbox.ndjson")
+
+
+class BlackBox:
+    """Appends lines to a robot's black box; any thread may.
+
+    A black box that cannot be written stops no robot: it is said once, and tried again with the next
+    line. A file that has grown large is put aside as ``NAME.blackbox.0001.ndjson``, and so on; the
+    one without a number is the newest.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        run: str,
+        robot: str,
+        now: Callable[[], float],
+        *,
+        mark: Mapping[str, object] | None = None,
+        largest: int = LARGEST_PART,
+        say: Callable[[str], None] = say,
+    ) -> None:
+        """Go on with a file, or begin one.
+
+        Args:
+            path: of the file; its folder is made.
+            run: identifier of the run.
+            robot: whose box it is.
+            now: gives the seconds of the run.
+            mark: what every line says beside the rest, as that there was no vehicle.
+            largest: bytes after which a new file is begun.
+            say: tells people that it cannot be written.
+        """
+        self._path = path
+        self._head = {"run": run, "robot": robot}
+        self._now = now
+        self._mark = dict(mark or {})
+        self._largest = largest
+        self._say = say
+        self._said = False
+        self._lock = threading.Lock()
+        self._file: IO[bytes] | None = None
+        self._closed = False
+
+    def write(self, kind: str, **content: object) -> None:
+        """Append one line; nothing is raised where that fails."""
+        wall = (
+            datetime.fromtimestamp(time.time(), UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        )
+        line = {**self._head, "time": round(self._now(), 3), "wall": wall, "kind": kind}
+        data = json.dumps(line | self._mark | {name: plain(value) for name, value in content.items()})
+        with self._lock:
+            if self._closed:
+                return
+            try:
+                self._append(data.encode("ascii") + b"\n", kind in KEPT_AT_ONCE)
+            except OSError as error:
+                self._complain(error)
+
+    def close(self) -> None:
+        """Write no more."""
+        with self._lock:
+            self._closed = True
+            self._let_go()
+
+    def _append(self, data: bytes, at_once: bool) -> None:
+        file = self._file if self._file is not None else self._open()
+        if file.tell() + len(data) > self._largest and file.tell() > 0:
+            self._let_go()
+            self._path.rename(self._part())
+            file = self._open()
+        file.write(data)
+        file.flush()
+        if at_once:
+            os.fsync(file.fileno())
+
+    def _open(self) -> IO[bytes]:
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        file = self._file = self._path.open("a+b")
+        if file.tell() > 0:
+            file.seek(-1, os.SEEK_END)
+            if file.read(1) != b"\n":
+                # Something was cut off here; what follows must not become part of it.
+                file.write(b"\n")
+        return file
+
+    def _part(self) -> Path:
+        number = 1
+        while (part := self._path.with_suffix(f".{number:04d}.ndjson")).exists():
+            number += 1
+        return part
+
+    def _let_go(self) -> None:
+        file, self._file = self._file, None
+        if file is not None:
+            # What could not be written was complained of when it was: closing only tries it again.
+            with suppress(OSError):
+                file.close()
+
+    def _complain(self, error: OSError) -> None:
+        self._let_go()
+        if not self._said:
+            self._said = True
+            self._say(f"{self._path}: the black box cannot be written: {error.strerror or error}")
+
+
+def plain(value: object) -> object:
+    """Return a value as JSON has it: what is no number is null, what JSON does not know is text."""
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    if isinstance(value, float):
+        return round(value, DIGITS) if isfinite(value) else None
+    if isinstance(value, bytes | bytearray):
+        return value.hex()
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {str(name): plain(each) for name, each in value.items()}
+    if isinstance(value, Sequence | set | frozenset):
+        return [plain(each) for each in value]
+    return str(value)

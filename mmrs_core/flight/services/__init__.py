@@ -1,0 +1,1 @@
+"""MAVLink's services: commands, missions, parameters."""

@@ -1,0 +1,128 @@
+"""Commands with acknowledgement."""
+
+from __future__ import annotations
+
+import struct
+from collections import deque
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import Refused
+from ..links.link import Link, Message
+from ..links.radio import GROUND_COMPONENT, GROUND_SYSTEM
+
+PROGRESS_SECONDS = 60.0
+"""For how long a vehicle that has begun may say nothing more."""
+
+_AGAIN = mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+_BEGUN = mavlink.MAV_RESULT_IN_PROGRESS
+CANCEL_NUMBER, CANCEL_CHECK = 80, 14
+LAST_CONFIRMATION = 255
+
+
+class Unanswered(Refused):
+    """The vehicle did not answer a command at all."""
+
+
+class CommandCancel(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink is not typed
+    """COMMAND_CANCEL, which pymavlink's dialect for ArduPilot does not have."""
+
+    def __init__(self, system: int, component: int, command: int) -> None:
+        """Cancel a command of a component."""
+        super().__init__(CANCEL_NUMBER, "COMMAND_CANCEL")
+        self._fieldnames = ["target_system", "target_component", "command"]
+        self.target_system, self.target_component, self.command = system, component, command
+
+    def pack(self, mav: mavlink.MAVLink, force_mavlink1: bool = False) -> bytes:
+        """Return the frame: the larger field first, as on every wire of MAVLink."""
+        payload = struct.pack("<HBB", self.command, self.target_system, self.target_component)
+        return bytes(self._pack(mav, CANCEL_CHECK, payload, force_mavlink1=force_mavlink1))
+
+
+def command(
+    link: Link, number: int, *params: float, tries: int | None = None, component: int | None = None
+) -> None:
+    """Have the vehicle carry out a command, and return when it says that it does.
+
+    Sends again, with the confirmation counted up, when no answer comes or the vehicle asks for
+    patience, and does not count what is sent while the link is silent and somebody watches it; waits
+    on while it reports progress, and has it cancel what it has begun when the wait is broken off.
+
+    Args:
+        link: to the vehicle.
+        number: a MAV_CMD.
+        params: up to seven; the rest is 0.
+        tries: how often to send at most; None: as often as the link says.
+        component: that is to carry it out; None: the autopilot.
+
+    Raises:
+        Unanswered: no answer to any of the tries, or no end of what was begun.
+        Refused: the vehicle does not do it.
+    """
+    answer = _exchange(link, number, params, tries or link.retries.tries, component or link.component)
+    if answer.result != mavlink.MAV_RESULT_ACCEPTED:
+        raise Refused(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
+
+
+def name_of(number: int) -> str:
+    """Return the name of a MAV_CMD for people."""
+    entry = mavlink.enums["MAV_CMD"].get(number)
+    return entry.name.removeprefix("MAV_CMD_") if entry else f"command {number}"
+
+
+def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, component: int) -> Message:
+    padded = [*params, *[0.0] * (7 - len(params))]
+    answer: Message | None = None
+    sent = counted = 0
+    with link.inbox("COMMAND_ACK", component=component) as inbox:
+        while counted < tries:
+            confirmation = min(sent, LAST_CONFIRMATION)
+            link.send(
+                mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
+            )
+            sent, counted = sent + 1, counted + (not link.unheard())
+            heard = link.wait(lambda: _answer(inbox, number), link.patience)
+            answer = heard or answer
+            if heard is not None and heard.result == _BEGUN:
+                return _end(link, inbox, number, component)
+            if heard is not None and heard.result != _AGAIN:
+                return heard
+            link.wait(lambda: None, link.retries.answer if heard is not None else 0.0)
+    if answer is None:
+        raise Unanswered(f"{name_of(number)}: no answer to {tries} tries")
+    return answer
+
+
+def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Message:
+    """Return how a command that takes its time ends.
+
+    Raises:
+        Unanswered: nothing was heard of it for too long.
+    """
+    try:
+        while (answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS)) is not None:
+            if answer.result != _BEGUN:
+                return answer
+    except BaseException:
+        link.send(CommandCancel(link.system, component, number))
+        raise
+    link.send(CommandCancel(link.system, component, number))
+    raise Unanswered(f"{name_of(number)}: begun, and then not heard of for {PROGRESS_SECONDS:.0f} s")
+
+
+def _answer(inbox: deque[Message], number: int) -> Message | None:
+    """Return the next acknowledgement of a command that is not for another ground station."""
+    while inbox:
+        message = inbox.popleft()
+        ours = message.target_system in (0, GROUND_SYSTEM) and message.target_component in (
+            0,
+            GROUND_COMPONENT,
+        )
+        if message.command == number and ours:
+            return message
+    return None
+
+
+def _word(result: int) -> str:
+    entry = mavlink.enums["MAV_RESULT"].get(result)
+    return entry.name.removeprefix("MAV_RESULT_").lower().replace("_", " ") if entry else f"result {result}"

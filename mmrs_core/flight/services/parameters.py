@@ -1,0 +1,101 @@
+"""Parameters of a vehicle: read, and written with what it says that they are afterwards."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..links.link import Link, Message
+from ..vehicles.modes import is_px4
+
+ROUNDS = 2
+"""How often parameters are asked for that a vehicle may not have."""
+
+REAL = mavlink.MAV_PARAM_TYPE_REAL32
+WHOLE: Mapping[int, str] = {
+    mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx",
+    mavlink.MAV_PARAM_TYPE_INT8: "<bxxx",
+    mavlink.MAV_PARAM_TYPE_UINT16: "<Hxx",
+    mavlink.MAV_PARAM_TYPE_INT16: "<hxx",
+    mavlink.MAV_PARAM_TYPE_UINT32: "<I",
+    mavlink.MAV_PARAM_TYPE_INT32: "<i",
+}
+"""How PX4 puts whole numbers into the four bytes of a number of single precision."""
+
+
+def read(link: Link, names: Iterable[str]) -> dict[str, float]:
+    """Return the values of parameters by name, without those that the vehicle does not tell.
+
+    All are asked for at once; a vehicle that answers none at all is not asked again.
+    """
+    wanted, found = list(names), dict[str, float]()
+    with link.inbox("PARAM_VALUE") as inbox:
+        for _ in range(ROUNDS):
+            missing = [name for name in wanted if name not in found]
+            for name in missing:
+                link.send(
+                    mavlink.MAVLink_param_request_read_message(link.system, link.component, name.encode(), -1)
+                )
+
+            def complete() -> bool:
+                while inbox:
+                    message = inbox.popleft()
+                    found[message.param_id] = value_of(link, message)
+                return all(name in found for name in wanted)
+
+            if link.wait(complete, link.patience) or not found:
+                break
+    return {name: found[name] for name in wanted if name in found}
+
+
+def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:
+    """Set a parameter; return whether the vehicle confirms the value.
+
+    Args:
+        link: to the vehicle.
+        name: at most 16 letters.
+        value: as people write it.
+        kind: its MAV_PARAM_TYPE, which PX4 insists on.
+    """
+    with link.inbox("PARAM_VALUE") as inbox:
+        for _ in range(link.retries.tries):
+            link.send(
+                mavlink.MAVLink_param_set_message(
+                    link.system, link.component, name.encode(), _coded(link, value, kind), kind
+                )
+            )
+            if link.wait(
+                lambda: any(m.param_id == name and same(value_of(link, m), value) for m in tuple(inbox)),
+                link.patience,
+            ):
+                return True
+    return False
+
+
+def value_of(link: Link, message: Message) -> float:
+    """Return the value in a PARAM_VALUE, as people write it."""
+    form = WHOLE.get(message.param_type)
+    if form is None or not _bytewise(link):
+        return float(message.param_value)
+    (value,) = struct.unpack(form, struct.pack("<f", message.param_value))
+    return float(value)
+
+
+def same(a: float, b: float) -> bool:
+    """Return whether two values are the same in single precision."""
+    return abs(a - b) <= 1e-6 * max(1.0, abs(a), abs(b))
+
+
+def _coded(link: Link, value: float, kind: int) -> float:
+    form = WHOLE.get(kind)
+    if form is None or not _bytewise(link):
+        return value
+    (coded,) = struct.unpack("<f", struct.pack(form, round(value)))
+    return float(coded)
+
+
+def _bytewise(link: Link) -> bool:
+    """Return whether the vehicle copies the bytes of whole numbers, as PX4 does, and not their values."""
+    return is_px4(link)

@@ -1,0 +1,92 @@
+"""What of a robot's program is uploaded: runs as one mission, the fence, the rally points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..places import at_height
+from ..program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
+from .missions import NO_FRAME, Item
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """Where a run lies in the mission.
+
+    Attributes:
+        first, last: sequence numbers of its items; the item after the last makes the vehicle wait.
+        ends: by sequence number, the move that has ended when the item is behind.
+    """
+
+    run: Run
+    first: int
+    last: int
+    ends: dict[int, str]
+
+
+def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
+    """Return the mission of all runs, and by first move where each lies in it; both may be empty.
+
+    After each run the vehicle waits where it is until the program goes on. The mission has no
+    take-off, so that a vehicle on the ground never begins it by itself.
+    """
+    if not robot.runs:
+        return (), {}
+    items = [_positional(mavlink.MAV_CMD_NAV_WAYPOINT, robot.home)]
+    flights: dict[str, Flight] = {}
+    for run in robot.runs:
+        first, ends = len(items), dict[int, str]()
+        for move, item in _items_of(robot, run):
+            if item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
+                ends[len(items)] = move
+            items.append(item)
+        flights[run.moves[0]] = Flight(run, first, len(items) - 1, ends)
+        last = robot.step(run.moves[-1]).movement
+        assert isinstance(last, GoTo)
+        assert isinstance(last.at, Geographic)
+        items.append(_positional(mavlink.MAV_CMD_NAV_LOITER_UNLIM, last.at))
+    return tuple(items), flights
+
+
+def fence_of(robot: Robot) -> tuple[Item, ...]:
+    """Return the polygons that the vehicle must stay out of."""
+    command = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+    return tuple(
+        _positional(command, vertex, float(len(polygon))) for polygon in robot.fence for vertex in polygon
+    )
+
+
+def places_in(robot: Robot) -> tuple[Place, ...]:
+    """Return all places that a robot's program leads to, above home as far as it takes off to."""
+    movements = [step.movement for step in robot.steps]
+    gone = [each.at for each in movements if isinstance(each, GoTo) and not isinstance(each.at, Object)]
+    climbed = [at_height(robot.home, each.height) for each in movements if isinstance(each, TakeOff)]
+    return (*gone, *climbed)
+
+
+def rally_of(robot: Robot) -> tuple[Item, ...]:
+    """Return the places that the vehicle may go to in an emergency."""
+    return tuple(_positional(mavlink.MAV_CMD_NAV_RALLY_POINT, place) for place in robot.rally)
+
+
+def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
+    speed: float | None = None
+    for move, hold in zip(run.moves, run.holds, strict=True):
+        movement = robot.step(move).movement
+        assert isinstance(movement, GoTo)
+        assert isinstance(movement.at, Geographic)
+        if movement.speed is not None and movement.speed != speed:
+            speed = movement.speed
+            yield move, Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)
+        # Vehicles keep whole seconds and cut off the rest: less than one would be no hold at all.
+        yield move, _positional(mavlink.MAV_CMD_NAV_WAYPOINT, movement.at, float(ceil(hold)))
+
+
+def _positional(command: int, place: Place, first: float = 0.0) -> Item:
+    assert isinstance(place, Geographic)
+    x, y = round(place.latitude * 1e7), round(place.longitude * 1e7)
+    return Item(command, (first, 0.0, 0.0, 0.0), x, y, place.height)

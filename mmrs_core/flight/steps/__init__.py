@@ -1,0 +1,1 @@
+"""Programs carried out, step by step, and what may end them."""

@@ -1,0 +1,112 @@
+"""Whether what is left in the battery still suffices for the way back: the point of no return."""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, radians
+
+from ..places import bearing, distance, offset
+from ..program import Place, Robot
+from ..vehicles.vehicle import State
+from .ways import Track, way_back
+
+MARGIN = 0.05
+"""Part of the whole battery that must be left when the robot has come down."""
+
+SLOWEST = 0.5
+"""Metres per second; a robot that the wind keeps from being faster than that does not come back."""
+
+USUAL_CRUISE = 3.0
+USUAL_DESCENT = 1.0
+LEAST_USED = 0.05
+"""Part of the battery that must be used before its use is taken for the rate of a sortie."""
+
+RECOUNT_SECONDS = 1.0
+COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
+
+
+class Reserve:
+    """Watches the battery of a sortie.
+
+    It is low when less than the robot's reserve is left, or when what is left no longer suffices for
+    the response to a low battery from where the robot is: whichever comes first. Power is the type's
+    mean power, or what the sortie has used so far where that is more.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        """Know nothing of a sortie yet."""
+        self._robot = robot
+        self._begun: tuple[float, float] | None = None
+        self._counted = -inf
+        self._seconds = 0.0
+
+    def begin(self) -> None:
+        """Begin a new sortie, or a new battery."""
+        self._begun, self._counted = None, -inf
+
+    def low(self, state: State, response: str, track: Track) -> str:
+        """Return why the battery is low; empty while it is not, and where nobody knows.
+
+        Args:
+            state: of the robot, now.
+            response: what it does when the battery is low.
+            track: the places that it has passed in this sortie.
+        """
+        left = state.energy
+        if left is None or not state.armed:
+            return ""
+        if self._begun is None:
+            self._begun = (state.time, left)
+        if left < self._robot.reserve:
+            return f"less than {self._robot.reserve:.0%} of the energy is left"
+        endurance = self._endurance(state.time, left)
+        if response not in COMES_DOWN or endurance is None:
+            return ""
+        needed = self._way_back(state, response, track) / endurance
+        if left >= needed + MARGIN:
+            return ""
+        way = f"the way back takes {needed:.0%}" if needed < inf else "the wind is stronger than the robot"
+        return f"point of no return: {left:.0%} of the energy is left, and {way}"
+
+    def _endurance(self, time: float, left: float) -> float | None:
+        """Return for how many seconds a full battery lasts; None where nobody knows."""
+        assert self._begun is not None
+        begun, full = self._begun
+        used = full - left
+        found = (time - begun) / used if used >= LEAST_USED else None
+        known = [each for each in (self._robot.endurance, found) if each]
+        return min(known, default=None)
+
+    def _way_back(self, state: State, response: str, track: Track) -> float:
+        if state.time - self._counted >= RECOUNT_SECONDS:
+            self._counted = state.time
+            self._seconds = seconds_back(self._robot, state, response, track)
+        return self._seconds
+
+
+def seconds_back(robot: Robot, state: State, response: str, track: Track) -> float:
+    """Return how long a robot needs to be back on the ground; inf where the wind is too strong."""
+    here, seconds = state.place, 0.0
+    for place in way_back(robot, response, track, here):
+        seconds += _seconds(robot, state, here, place)
+        here = place
+    if robot.vehicle != "copter":
+        return seconds
+    return seconds + max(0.0, here.height) / (robot.descent or USUAL_DESCENT)
+
+
+def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:
+    way = distance(a, b)
+    pace = (robot.cruise or USUAL_CRUISE) - _headwind(state, a, b)
+    if way == 0.0:
+        return 0.0
+    return way / pace if pace >= SLOWEST else inf
+
+
+def _headwind(state: State, a: Place, b: Place) -> float:
+    """Return the wind against the way, metres per second; a tail wind counts as none."""
+    north, east, _ = offset(a, b)
+    if state.wind is None or hypot(north, east) == 0.0:
+        return 0.0
+    if state.wind_from is None:
+        return state.wind
+    return max(0.0, state.wind * cos(radians(bearing(a, b) - state.wind_from)))

@@ -1,0 +1,314 @@
+"""Carries out one robot's program, step by step, and writes its log."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from ..desk import Desk, Meet
+from ..faults import BATTERY_LOW, FENCE_BREACHED, Fault, Refused, Strange
+from ..objects import look_at, place_of
+from ..orders.obedience import Obedience
+from ..places import at_height, distance, ends_of
+from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
+from ..records.journal import Journal
+from ..records.recording import fix
+from ..services.missions import Item
+from ..services.uploads import Flight, fence_of, mission_of, places_in, rally_of
+from ..vehicles.corners import goes_through
+from ..vehicles.vehicle import Vehicle
+from .doing import Doing
+from .responses import policy_for
+from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
+from .waits import Waits
+from .watch import Watch
+
+FULL = 0.99
+RECHARGE_FACTOR = 3.0
+"""How many times as long as expected charging may take."""
+
+STARTS = 3
+"""How often a vehicle may start anew while it is set up."""
+
+
+class Pilot:
+    """Steps through a program.
+
+    Attributes:
+        journal: what the robot writes down, with the move that it is at.
+        waits: in which it stands still for others.
+        track: the places it has passed in the air or on its way, with the moves that ended there.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        vehicle: Vehicle,
+        desk: Desk,
+        watch: Watch,
+        obedience: Obedience,
+        *,
+        fence: bool = True,
+    ) -> None:
+        """Take a program, a vehicle and what is needed to work; `fence`: whether to upload it."""
+        self.journal = Journal(robot, vehicle, desk)
+        self.waits = Waits(robot, vehicle, desk, self.journal)
+        self.track: list[tuple[str, Place]] = []
+        self._doing = Doing(robot, vehicle, desk, self.journal, self.waits)
+        self._robot = robot
+        self._vehicle = vehicle
+        self._desk = desk
+        self._watch = watch
+        self._obedience = obedience
+        self._fence = fence
+        self._steps = {step.move: step for step in robot.steps}
+        self._flights: dict[str, Flight] = {}
+
+    def fly(self) -> None:
+        """Carry out the program, from the beginning or from where its log ends.
+
+        Raises:
+            Fault: it cannot be carried out to its end.
+        """
+        self._recognise()
+        self._prepare()
+        if self._desk.log.steps:
+            self._take_up_again()
+        elif self._desk.meet is not None:
+            self._meet(self._desk.meet)
+        step: Step | None = self._steps[self.journal.move]
+        while step is not None:
+            step = self._perform(step)
+        self._vehicle.finish()
+
+    def _recognise(self) -> None:
+        """Make sure that the vehicle is the robot's and where it may be, and have it wait there.
+
+        Raises:
+            Strange: it is not.
+        """
+        records = self._desk.log.steps
+        try:
+            self._desk.recognise(bool(records))
+            if not (records and self._vehicle.state().armed):
+                return
+            track = track_of(self._robot, records) or [("", self._robot.home)]
+            here, below = self._vehicle.state().place, at_height(self._robot.home, 0.0)
+            if len(track) > 1 or distance(at_height(here, 0.0), below) > OFF_ITS_WAY:
+                rest_of_way([place for _, place in track], here, self._next_place())
+        except Refused as error:
+            raise Strange(str(error)) from error
+        self._vehicle.carry_on()
+
+    def _prepare(self) -> None:
+        """Set the vehicle up; again where it has started anew meanwhile."""
+        mission, self._flights = mission_of(self._robot)
+        polygons: tuple[Item, ...] = fence_of(self._robot) if self._fence else ()
+        for _ in range(STARTS):
+            self._watch.renew()
+            self.waits.tell_vehicle()
+            self._vehicle.prepare(polygons, rally_of(self._robot), mission, places_in(self._robot))
+            self._tell_fence(bool(polygons))
+            if not self._watch.restarted:
+                break
+        else:
+            raise Refused("the vehicle starts anew again and again")
+        if self._vehicle.state().energy is None and not self._desk.dry:
+            self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
+
+    def _tell_fence(self, fence: bool) -> None:
+        """Tell the vehicle what to do by itself when it is outside its fence."""
+        if not fence:
+            return
+        try:
+            self._vehicle.answer_breach(policy_for(FENCE_BREACHED, self._robot).response)
+        except Refused as error:
+            self._desk.say(f"{self._robot.id!a}: {error}")
+
+    def _meet(self, meet: Meet) -> None:
+        """Begin together with all other robots."""
+        told: set[str] = set()
+
+        def guard(missing: str) -> None:
+            self._vehicle.rest(0.0)
+            if missing and missing not in told:
+                told.add(missing)
+                self._desk.say(f"{self._robot.id!a} is ready to begin with the others: {missing}")
+
+        begun = meet(guard)
+        why = f"{begun.late * 1e3:.1f} ms after the instant, clocks known to {begun.uncertainty * 1e3:.1f} ms"
+        self.journal.decide("TOGETHER", why, "begins")
+
+    def _take_up_again(self) -> None:
+        """Be where the interrupted leg began, by the way that the robot came in this sortie."""
+        records = self._desk.log.steps
+        self.track = track_of(self._robot, records)
+        step = self._steps[self.journal.move]
+        self._desk.say(f"{self._robot.id!a}: goes on with {step.move!a}")
+        self.journal.decide("resume", f"its log ends at {step.move}", "goes the way it came")
+        if not self.track or self._is_down(step):
+            return
+        self._watch.moving = True
+        for place in self._way_to_work():
+            self._go(place, self._robot.cruise, None, through=False)
+        for action in still_on(self._robot, records):
+            self._doing.operate(action)
+
+    def lacks_energy(self) -> str:
+        """Return why the battery is not to be flown with; empty where it is, or nobody knows."""
+        left = self._vehicle.state().energy
+        if left is None or left >= self._robot.reserve:
+            return ""
+        return f"the battery is still at {left:.0%}"
+
+    def _is_down(self, step: Step) -> bool:
+        """Return whether the robot stands where it was to land."""
+        state = self._vehicle.state()
+        here = at_height(state.place, self.track[-1][1].height)
+        return (
+            isinstance(step.movement, Land)
+            and not state.armed
+            and distance(here, self.track[-1][1]) < OFF_ITS_WAY
+        )
+
+    def _way_to_work(self) -> Sequence[Place]:
+        places = [place for _, place in self.track]
+        state = self._vehicle.state()
+        if not state.armed:
+            if why := self.lacks_energy():
+                raise Fault(BATTERY_LOW, why)
+            if self._robot.vehicle == "copter":
+                self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
+            return places
+        self._vehicle.carry_on()
+        return rest_of_way(places, state.place, self._next_place())
+
+    def _next_place(self) -> Place | None:
+        movement = self._steps[self.journal.move].movement
+        return (
+            place_of(movement.at, self._desk.locators, self._vehicle.state())
+            if isinstance(movement, GoTo)
+            else None
+        )
+
+    def _perform(self, step: Step) -> Step | None:
+        self._tell(step)
+        at = self.journal.progress
+        for index in range(at.before, len(step.before)):
+            self._doing.act(step.before[index], f"pre:{index}")
+        flight = self._flights.get(step.move) if not at.begun else None
+        if at.ended:
+            pass
+        elif flight is None:
+            if not at.begun:
+                self.journal.write("begin")
+            self._carry_out(step)
+            self.journal.write("end")
+        else:
+            step = self._run(flight)
+        for index in range(self.journal.progress.after, len(step.after)):
+            self._doing.act(step.after[index], f"post:{index}")
+        return self._steps[self.waits.leave(step.then)] if step.then is not None else None
+
+    def _carry_out(self, step: Step) -> None:
+        movement = step.movement
+        if isinstance(movement, TakeOff):
+            self._take_off(movement.height)
+        elif isinstance(movement, Land):
+            self._obedience.repeat(self._vehicle.land)
+            self._watch.moving = False
+        elif isinstance(movement, GoTo):
+            self._go_to(movement, step)
+        elif isinstance(movement, Recharge):
+            self._recharge(movement.seconds)
+        elif isinstance(movement, Hold):
+            self._vehicle.rest(movement.seconds)
+        elif isinstance(movement, Turn) and (look := self._look(movement.look)) is not None:
+            self._obedience.repeat(partial(self._vehicle.turn, look))
+
+    def _take_off(self, height: float) -> None:
+        self._begin_sortie()
+        self._obedience.repeat(partial(self._vehicle.take_off, height))
+        self._passed(self._vehicle.state().place)
+
+    def _begin_sortie(self) -> None:
+        """Leave the ground; a vehicle that has started anew there, as with a new battery, is set up again."""
+        self.track = []
+        if self._watch.restarted:
+            self._prepare()
+        self._watch.renew()
+        self._watch.moving = True
+
+    def _look(self, look: Look | None) -> Look | None:
+        return look_at(look, self._desk.locators, self._vehicle.state())
+
+    def _go_to(self, movement: GoTo, step: Step) -> None:
+        if not self.track:
+            self._begin_sortie()
+            self._passed(self._vehicle.state().place)
+        here = self._vehicle.state().place
+        target = place_of(movement.at, self._desk.locators, self._vehicle.state())
+        look = self._look(movement.look)
+        ends = ends_of(here, target, movement.legs, movement.distance)
+        through = goes_through(step, self._following(step), here)
+        for place in ends:
+            self._go(place, movement.speed, look, through=through and place == ends[-1])
+            self._passed(place)
+
+    def _following(self, step: Step) -> Step | None:
+        return self._steps[step.then.move] if isinstance(step.then, Then) else None
+
+    def _go(self, place: Place, speed: float | None, look: Look | None, *, through: bool) -> None:
+        self._obedience.repeat(partial(self._vehicle.go_to, place, speed, look, through))
+
+    def _run(self, flight: Flight) -> Step:
+        if not self.track:
+            self._begin_sortie()
+        moves = flight.run.moves
+        self.journal.write("begin")
+        following = flight.first
+
+        def reached(seq: int) -> None:
+            nonlocal following
+            following = seq + 1
+            if seq in flight.ends:
+                self._pass_waypoint(flight.ends[seq], moves)
+
+        self._obedience.repeat(lambda: self._vehicle.fly(following, flight.last, reached))
+        return self._steps[moves[-1]]
+
+    def _pass_waypoint(self, move: str, moves: tuple[str, ...]) -> None:
+        movement = self._steps[move].movement
+        assert isinstance(movement, GoTo)
+        self._passed(place_of(movement.at, {}, self._vehicle.state()))
+        self.journal.write("end")
+        if move != moves[-1]:
+            following = moves[moves.index(move) + 1]
+            self.journal.write("take", following)
+            self._tell(self._steps[following])
+            self.journal.write("begin")
+
+    def _passed(self, place: Place) -> None:
+        if self._desk.dry:
+            fix(self._desk.box, self._vehicle.state(), place)
+        self.track.append((self.journal.move, place))
+
+    def _recharge(self, seconds: float) -> None:
+        self.track = []
+        self._watch.moving = False
+        self._vehicle.finish()
+        begun = self._desk.clock.now()
+        self._vehicle.rest(seconds)
+        while (left := self._vehicle.state().energy) is not None and left < FULL:
+            taken = self._desk.clock.now() - begun
+            if taken >= RECHARGE_FACTOR * seconds:
+                fault = Fault(BATTERY_LOW, f"after {taken:.0f} s of charging the battery is at {left:.0%}")
+                self.waits.raise_unless_carried_on(fault)
+                return
+            self._vehicle.rest(min(5.0, seconds or 5.0))
+        if left is None:
+            self._desk.say(f"{self._robot.id!a} has charged for {seconds:.0f} s; nobody knows how far")
+
+    def _tell(self, step: Step) -> None:
+        serves = f" for task {step.task!a}" if step.task else ""
+        self._desk.say(f"{self._robot.id!a}: {step.move!a} ({type(step.movement).__name__}){serves}")

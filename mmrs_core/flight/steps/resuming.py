@@ -1,0 +1,193 @@
+"""Where a robot is in its program, by its log: so that it can go on after a break."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from ..faults import Refused
+from ..places import at_height, between, distance, ends_of, offset
+from ..program import (
+    Action,
+    Choose,
+    GoTo,
+    Local,
+    Notify,
+    Object,
+    Operate,
+    Place,
+    Recharge,
+    Robot,
+    Step,
+    TakeOff,
+    Then,
+)
+
+Record = Mapping[str, object]
+
+OFF_ITS_WAY = 5.0
+"""Metres that a robot may be from the way of its program when it is to go on in the air."""
+
+CAMERA_STATES = {206: 206, 2500: 2500, 2501: 2500}
+"""Commands after which a camera goes on by itself, and which of them concern the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Where a robot is in its program.
+
+    Attributes:
+        move: that it is at.
+        before, after: how many of its actions before and after the movement are done.
+        begun, ended: whether the movement is.
+        over: why nothing follows any more; empty where something does.
+    """
+
+    move: str
+    before: int = 0
+    begun: bool = False
+    ended: bool = False
+    after: int = 0
+    over: str = ""
+
+    def then(self, label: str, detail: str, step: Step) -> Progress:
+        """Return where the robot is after a step of its log, made at the move `step`."""
+        if label in ("act", "ntf"):
+            when, _, index = detail.partition(":")
+            done = int(index) + 1
+            return self._maybe_over(
+                replace(self, before=done) if when == "pre" else replace(self, after=done), step
+            )
+        if label == "begin":
+            return replace(self, begun=True)
+        if label == "end":
+            return self._maybe_over(replace(self, ended=True), step)
+        if label == "fault":
+            return replace(self, over=f"it has ended by {detail}")
+        return Progress(_next(label, detail, step))
+
+    def _maybe_over(self, made: Progress, step: Step) -> Progress:
+        if step.then is None and made.ended and made.after == len(step.after):
+            return replace(made, over="it has come to its end")
+        return made
+
+
+def progress_of(robot: Robot, records: Iterable[Record]) -> Progress:
+    """Return where a robot is after the steps of its log.
+
+    Raises:
+        Refused: the log is of another program.
+    """
+    steps = {step.move: step for step in robot.steps}
+    here = Progress(robot.start)
+    for number, record in enumerate(records, start=1):
+        if record["move"] != here.move or here.over:
+            raise Refused(f"line {number} of the log is no step of this program after those before it")
+        try:
+            here = here.then(str(record["label"]), str(record["detail"]), steps[here.move])
+        except (ValueError, KeyError) as error:
+            raise Refused(f"line {number} of the log is no step of this program") from error
+    return here
+
+
+def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]:
+    """Return the places that a robot has passed in its present sortie, with the moves that ended there.
+
+    Raises:
+        Refused: it went to an object, and nobody knows where that was.
+    """
+    steps = {step.move: step.movement for step in robot.steps}
+    track: list[tuple[str, Place]] = []
+    for record in records:
+        move = str(record["move"])
+        movement = steps[move]
+        if record["label"] == "begin" and isinstance(movement, TakeOff):
+            track = []
+        if record["label"] != "end":
+            continue
+        if isinstance(movement, TakeOff):
+            track = [(move, at_height(robot.home, movement.height))]
+        elif isinstance(movement, Recharge):
+            track = []
+        elif isinstance(movement, GoTo):
+            here = track[-1][1] if track else robot.home
+            track += [] if track else [(move, here)]
+            track += [(move, place) for place in _ends(here, movement)]
+    return track
+
+
+def rest_of_way(places: Sequence[Place], here: Place, target: Place | None) -> Sequence[Place]:
+    """Return what is left of a way to its last place, from somewhere on it or on the leg after it.
+
+    Raises:
+        Refused: the robot is not on its way.
+    """
+    legs = [*pairwise(places), *([(places[-1], target)] if target is not None else [])]
+    away = [_distance_to_leg(here, a, b) for a, b in legs] or [distance(here, places[-1])]
+    nearest = min(range(len(away)), key=lambda index: away[index])
+    if away[nearest] > OFF_ITS_WAY:
+        raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")
+    return places[nearest + 1 :] or places[-1:]
+
+
+def slots_of(robots: Iterable[Robot], records: Iterable[Record]) -> tuple[set[tuple[str, str]], int]:
+    """Return the slots that are active after the steps of these robots, and the last logical time."""
+    steps = {(robot.id, step.move): step for robot in robots for step in robot.steps}
+    active: set[tuple[str, str]] = set()
+    last = 0
+    for record in sorted(records, key=_order):
+        last = _order(record)[0]
+        if record["label"] == "ntf":
+            action = _action(steps[str(record["robot"]), str(record["move"])], record)
+            assert isinstance(action, Notify)
+            active = active | set(action.slots) if action.active else active - set(action.slots)
+    return active, last
+
+
+def still_on(robot: Robot, records: Iterable[Record]) -> Iterator[Operate]:
+    """Yield what has to be told a camera again, since it went on by itself before the break."""
+    steps = {step.move: step for step in robot.steps}
+    last: dict[tuple[str, int], Operate] = {}
+    for record in records:
+        if record["label"] != "act":
+            continue
+        action = _action(steps[str(record["move"])], record)
+        if isinstance(action, Operate) and action.command in CAMERA_STATES:
+            last[action.device, CAMERA_STATES[action.command]] = action
+    yield from last.values()
+
+
+def _distance_to_leg(here: Place, a: Place, b: Place) -> float:
+    along, leg = offset(a, here), offset(a, b)
+    square = sum(each * each for each in leg)
+    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
+    return distance(here, between(a, b, min(1.0, max(0.0, part))))
+
+
+def _order(record: Record) -> tuple[int, str, int]:
+    return int(str(record["lamport"])), str(record["robot"]), int(str(record["seq"]))
+
+
+def _action(step: Step, record: Record) -> Action:
+    when, _, index = str(record["detail"]).partition(":")
+    return (step.before if when == "pre" else step.after)[int(index)]
+
+
+def _next(label: str, detail: str, step: Step) -> str:
+    if label == "take" and isinstance(step.then, Then):
+        return step.then.move
+    if label == "choose" and isinstance(step.then, Choose):
+        return step.then.move if detail == "true" else step.then.otherwise
+    raise ValueError(label)
+
+
+def _ends(here: Place, movement: GoTo) -> tuple[Place, ...]:
+    target = movement.at
+    if isinstance(target, Object):
+        if target.expected is None:
+            raise Refused(f"object {target.description!a}: nobody knows where it was; start afresh")
+        target = target.expected
+    if isinstance(here, Local) != isinstance(target, Local):
+        raise Refused(f"{target}: is not in the frame of the robot's home")
+    return ends_of(here, target, movement.legs, movement.distance)

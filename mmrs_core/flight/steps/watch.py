@@ -1,0 +1,257 @@
+"""Looks, during every wait, for what should end it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection, Sequence
+
+from ..clock import Clock
+from ..faults import (
+    BATTERY_LOW,
+    LINK_LOST,
+    LOG_FAILED,
+    MOTORS_OFF,
+    POSITION_LOST,
+    TAKEN_OVER,
+    VEHICLE_RESTARTED,
+    Fault,
+    Stopped,
+)
+from ..links.link import Link
+from ..program import Policy, Robot
+from ..vehicles import modes
+from ..vehicles.ardupilot import MavlinkVehicle
+from ..vehicles.signs import Signs
+from .energy import COMES_DOWN, Reserve
+from .responses import CONTINUE, policy_for
+from .ways import Track
+
+SILENCE_SECONDS = 5.0
+LEAST_SILENCE = 2.0
+LASTING = {POSITION_LOST: 2.0}
+"""Seconds that something must last before it counts, where policies do not say; else none."""
+
+CAUSE_SECONDS = 1.5
+"""For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
+
+RESTART_SECONDS = 4.0
+"""For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
+
+FIRST_MODE = 0
+"""The mode that ArduPilot starts in unless it is told otherwise."""
+
+TOUCHING = 1.0
+"""Metres above home below which a vehicle that lands may stop its motors any moment."""
+
+COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
+"""Modes at whose end the motors stop."""
+
+Decide = Callable[[str, str, str], None]
+
+
+class Watch:
+    """Raises what ends a robot's program: a stop, a lost link, a pilot, whatever policies name.
+
+    Attributes:
+        current: the policies of the wait that the robot is in.
+        track: the places that the robot has passed in this sortie.
+        unkept: returns why what others tell the robot cannot be kept; empty where it can.
+        decide: is told what was decided without ending the program: event, reason, response.
+        moving: whether the robot is under way; one that stands on the ground may start anew.
+        looking: whether it looks for the cause of a change of mode, while nothing may be sent.
+        taken: whether it has found that a pilot has taken over.
+        silence: whether the vehicle may be silent, as while its battery is changed.
+    """
+
+    def __init__(self, robot: Robot, clock: Clock, stop: threading.Event) -> None:
+        """Watch for a stop only, until there is a vehicle."""
+        self.current: Callable[[], Sequence[Policy]] = lambda: ()
+        self.track: Callable[[], Track] = lambda: ()
+        self.unkept: Callable[[], str] = lambda: ""
+        self.decide: Decide = lambda event, why, response: None
+        self.moving = True
+        self.silence = False
+        self._robot = robot
+        self._clock = clock
+        self._stop = stop
+        self._reserve = Reserve(robot)
+        self._link: Link | None = None
+        self._vehicle: MavlinkVehicle | None = None
+        self._signs: Signs | None = None
+        self._heeded: frozenset[str] | None = None
+        self._hands_off = False
+        self.looking = False
+        self.taken = False
+        self._flown = False
+        self._since: dict[str, float] = {}
+        self._borne: set[str] = set()
+
+    def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
+        """Watch link and vehicle, too."""
+        self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
+
+    def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
+        """Heed less from now on: the robot already responds to something.
+
+        Args:
+            handled: the events that it has responded to; None: heed none any more.
+            response: what it does; what this cannot be carried out with, or would end by, is heeded,
+                and always the link and who has the vehicle.
+        """
+        heeded = {POSITION_LOST, VEHICLE_RESTARTED} if handled is not None else set()
+        if handled is not None and response not in COMES_DOWN:
+            heeded.add(BATTERY_LOW)
+        self._heeded = frozenset(heeded - set(handled or ()))
+
+    def let_go(self) -> None:
+        """Heed nothing but the link from now on: somebody else has the vehicle."""
+        self._heeded, self._hands_off = frozenset(), True
+
+    def tighten(self) -> None:
+        """Heed everything again: the robot goes on with its program."""
+        self._heeded, self._hands_off, self.silence = None, False, False
+        self.renew()
+
+    def renew(self) -> None:
+        """Forget what was: the vehicle is set up, or has another battery."""
+        self.taken = False
+        self._since.clear()
+        self._borne.clear()
+        self._flown = False
+        self._reserve.begin()
+        if self._signs is not None:
+            self._signs.renew()
+
+    @property
+    def restarted(self) -> bool:
+        """Return whether the vehicle has started anew since `renew`."""
+        return self._signs is not None and self._signs.restarted
+
+    def check(self) -> None:
+        """Raise what should end a wait.
+
+        Raises:
+            Fault: something should.
+        """
+        if self._stop.is_set() and self._heeded is None:
+            raise Stopped()
+        if self.looking:
+            return
+        if self._link is None or self._vehicle is None or self._signs is None:
+            self._weigh(LOG_FAILED, self.unkept())
+            return
+        self._check_link(self._link)
+        if self._hands_off:
+            return
+        # Whoever has the vehicle goes before all policies, also where both are seen at once.
+        self._check_pilot(self._vehicle, self._link, self._signs)
+        self._check_motors(self._vehicle)
+        for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
+            self._weigh(event, why)
+        self._weigh(LOG_FAILED, self.unkept())
+
+    def _check_motors(self, vehicle: MavlinkVehicle) -> None:
+        """Raise a fault where a vehicle that was in the air has stopped its motors elsewhere than to land.
+
+        It has crashed, or somebody has stopped it: whoever lies there must not be armed again.
+        """
+        tells = vehicle.telemetry
+        if self._robot.vehicle != "copter" or not self.moving or vehicle.state().mode in COMES_DOWN_IN:
+            low = tells.grounded() or vehicle.state().place.height < TOUCHING
+            self._flown = self._flown and self.moving and not low
+        elif tells.armed():
+            self._flown = self._flown or tells.airborne()
+        elif self._flown:
+            raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
+
+    def _low(self) -> str:
+        assert self._vehicle is not None
+        response = policy_for(BATTERY_LOW, self._robot, self.current()).response
+        state = self._vehicle.state()
+        low = self._reserve.low(state, response, self.track())
+        return low or (self._vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
+
+    def _weigh(self, event: str, why: str) -> None:
+        """Raise a fault for what has lasted long enough and must not be borne."""
+        if not why:
+            self._since.pop(event, None)
+            self._borne.discard(event)
+            return
+        if event in self._borne or not self._heeds(event):
+            return
+        policy = policy_for(event, self._robot, self.current())
+        limit = LASTING.get(event, 0.0) if policy.after is None else policy.after
+        since = self._since.setdefault(event, self._clock.now())
+        if self._clock.now() - since < limit:
+            return
+        if policy.response != CONTINUE:
+            raise Fault(event, why)
+        self._borne.add(event)
+        self.decide(event, why, CONTINUE)
+
+    def _heeds(self, event: str) -> bool:
+        return self._heeded is None or event in self._heeded
+
+    def _check_link(self, link: Link) -> None:
+        policy = policy_for(LINK_LOST, self._robot, self.current())
+        if self.silence or policy.response == CONTINUE:
+            return
+        limit = SILENCE_SECONDS if policy.after is None else policy.after
+        silent = link.silent_for()
+        if silent > self._clock.patience(limit, LEAST_SILENCE):
+            why = f" ({link.trouble})" if link.trouble else ""
+            raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
+
+    def _check_pilot(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> None:
+        """Raise a fault where the vehicle has left its mode: by its own failsafe, or by a pilot."""
+        left = _left(vehicle)
+        if left is None:
+            return
+        self.looking = True
+        try:
+            found = self._find_cause(vehicle, link, signs)
+        finally:
+            self.looking = False
+        if found is None:
+            self.taken = True
+            raise Fault(TAKEN_OVER, f"{left}")
+        raise Fault(found[0], f"{found[1]}; {left}")
+
+    def _find_cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
+        """Wait for the cause of a change of mode as long as it may still be on its way."""
+        tells = vehicle.telemetry
+        if not tells.armed() or tells.mode() == FIRST_MODE:
+            # One that has started anew has lost its position, too: that is no cause.
+            if link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS)):
+                return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
+            return None
+        by_itself = tells.mode() in modes.of_failsafes(link, self._robot.vehicle)
+        seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
+        return link.wait(lambda: self._cause(vehicle, link, signs), seconds)
+
+    def _cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
+        """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
+        if signs.restarted and self.moving:
+            return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
+        left, mode = _left(vehicle), vehicle.telemetry.mode()
+        told = [(left.event, str(left))] if left is not None and left.event != TAKEN_OVER else []
+        for event, why in (*signs.seen(moving=self.moving), *told):
+            if why and mode in modes.answers_to(link, self._robot.vehicle, event):
+                return self._answered(event, why)
+        return None
+
+    def _answered(self, event: str, why: str) -> tuple[str, str] | None:
+        """Return an event with its reason, unless the robot does not heed it, or carries on."""
+        if not self._heeds(event):
+            return None
+        borne = policy_for(event, self._robot, self.current()).response == CONTINUE
+        return None if borne else (event, why)
+
+
+def _left(vehicle: MavlinkVehicle) -> Fault | None:
+    """Return why the vehicle is no longer in the mode that it should be in; None if it is."""
+    try:
+        vehicle.check()
+    except Fault as fault:
+        return fault
+    return None

@@ -1,0 +1,1 @@
+"""Vehicles in the words of programs, and what they tell."""

@@ -1,0 +1,347 @@
+"""A vehicle at the end of a MAVLink link, in the words of a robot's program.
+
+ArduPilot is stepped in GUIDED and PX4 in OFFBOARD; both run missions in AUTO. What else differs
+between them is in ``habits.py`` and ``px4.py``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import inf
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import NO_PROGRESS, Fault, Refused
+from ..links.link import ANYBODY, Link, Message
+from ..places import at_height
+from ..program import Geographic, Look, Place, Travel
+from ..services.commands import Unanswered, command, name_of
+from ..services.missions import Item, mark_of
+from . import modes, preparation, safeguards
+from .enclosure import enclose
+from .following import Following
+from .helm import MODE_SECONDS, Helm
+from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
+from .telemetry import Telemetry
+from .travel import set_up
+from .vehicle import State
+
+FORCE_DISARM = 21_196
+VALUE_SECONDS = 10.0
+IMAGE_SECONDS = 10.0
+IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
+BEFORE_MISSION_ID = 6
+"""Bytes of MISSION_CURRENT before the id of the mission."""
+
+
+class MavlinkVehicle:
+    """A vehicle, stepped in GUIDED and run in AUTO."""
+
+    def __init__(
+        self,
+        link: Link,
+        kind: str,
+        home: Place,
+        *,
+        acceptance: float | None = None,
+        travel: Travel = Travel(),  # noqa: B008  it is frozen
+        home_tolerance: float = 20.0,
+        tell: Callable[[str], None] = lambda line: None,
+    ) -> None:
+        """Drive the vehicle at the end of a link.
+
+        Args:
+            link: open.
+            kind: ``copter``, ``sub`` or ``rover``.
+            home: of the robot, as its program says.
+            acceptance: metres from a place at which it counts as reached; None: as `travel` says.
+            travel: how carefully it is to go.
+            home_tolerance: metres that the vehicle may be from home at the beginning.
+            tell: is given what people should know, as what the vehicle does by itself.
+        """
+        self._tell = tell
+        self._link = link
+        self._telemetry = Telemetry(link, home)
+        self._helm = Helm(link, self._telemetry, kind)
+        self._acceptance = travel.acceptance if acceptance is None else acceptance
+        self._steering = Steering(link, self._telemetry, self._helm, self._acceptance)
+        self._travel = travel
+        self._kind = kind
+        self._home = home
+        self._home_tolerance = home_tolerance
+        self._mission: Sequence[Item] = ()
+        self._mark = 0
+
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
+        """Upload what there is to upload, and wait until the vehicle is ready to move.
+
+        A vehicle that is in the air already may be away from home. `places` are all that the program
+        leads to: the vehicle's own fences must leave them free.
+
+        Raises:
+            Refused: something is not accepted or read back differently, the vehicle is not where the
+                program begins, or it does not become ready.
+        """
+        geographic = isinstance(self._home, Geographic)
+        preparation.ask_for_messages(self._link, geographic=geographic)
+        preparation.await_position(self._link, self._telemetry)
+        tolerance = inf if self._telemetry.airborne() else self._home_tolerance
+        preparation.check_identity(self._link, self._telemetry, self._kind, self._home, tolerance)
+        for line in enclose(self._link, self._home, places, rally, polygons=bool(fence)):
+            self._tell(line)
+        if geographic:
+            self._mission = mission
+            mission = self._helm.habits.mission(mission)
+            self._mark = preparation.replace_all(self._link, mission, fence, rally)
+        for line in safeguards.report(self._link, self._kind):
+            self._tell(line)
+        for line in set_up(self._link, self._kind, self._travel):
+            self._tell(line)
+        preparation.await_ready(self._link, self._telemetry)
+        if fence:
+            self._helm.habits.enable_fence()
+
+    def check(self) -> None:
+        """Make sure that nobody else has taken over.
+
+        Raises:
+            Fault: somebody has, or the vehicle has answered something by itself.
+        """
+        self._helm.check()
+
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
+        """Have the vehicle respond by itself when it has not heard the ground for some seconds.
+
+        Raises:
+            Refused: it cannot respond so, or does not say that it will.
+        """
+        otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
+        if otherwise:
+            self._tell(otherwise)
+
+    def answer_breach(self, response: str) -> None:
+        """Have the vehicle respond by itself when it breaks its fence.
+
+        Raises:
+            Refused: it cannot respond so, or does not say that it will.
+        """
+        preparation.answer_breach(self._link, self._kind, response)
+
+    @property
+    def telemetry(self) -> Telemetry:
+        """Return what the vehicle tells about itself."""
+        return self._telemetry
+
+    def take_off(self, height: float) -> None:
+        """Climb to a height above home, or go there straight up or down from where it is in the air.
+
+        Raises:
+            Refused: the vehicle does not arm or take off. Fault: it does not get there.
+        """
+        if self._telemetry.airborne():
+            self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
+            return
+        self._helm.leave_ground(height)
+        limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
+        self._helm.until(
+            lambda: abs(self._telemetry.here().height - height) <= self._acceptance, limit, "to take off"
+        )
+
+    def land(self) -> None:
+        """Descend and stop the motors.
+
+        Raises:
+            Fault: it does not come to the ground.
+        """
+        self._helm.enter(modes.LAND)
+        limit = PATIENCE_SECONDS + PATIENCE_FACTOR * 2.0 * max(0.0, self._telemetry.here().height)
+        self._helm.until(lambda: not self._telemetry.armed(), limit, "to land")
+        self._helm.let_go()
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Go straight to a place.
+
+        Raises:
+            Fault: it does not get there.
+        """
+        self._steering.go_to(place, speed, look, through)
+
+    def turn(self, look: Look) -> None:
+        """Turn until a device points at something; a device with a gimbal turns by itself."""
+        self._steering.turn(look)
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+        """Fly items of the uploaded mission; the one after `last` must make the vehicle wait.
+
+        Raises:
+            Refused: the vehicle has another mission by now, or does not begin with that item.
+            Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
+        """
+        self._helm.arm()
+        self._check_mission()
+        self._helm.habits.select(self._helm.habits.number(first))
+        if not self._link.wait(lambda: self._item() == first, self._link.clock.patience(MODE_SECONDS)):
+            raise Refused(f"the vehicle does not go to item {first} of its mission")
+        self._helm.enter(modes.AUTO)
+        following = Following(self._telemetry, self._places(first, last), self._item, first)
+        done = first - 1
+        while done < last:
+            now = self._await_item_after(done + 1, following)
+            for seq in range(done + 1, now):
+                reached(seq)
+            done = now - 1
+        self._helm.enter(modes.GUIDED)
+        self._steering.stay(self._place_of(last))
+
+    def rest(self, seconds: float) -> None:
+        """Stay for so many seconds."""
+        until = self._link.clock.now() + seconds
+        self._link.wait(lambda: self._link.clock.now() >= until, seconds)
+        self._helm.check()
+
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
+        """Have a device do something.
+
+        Args:
+            number: of the command.
+            params: of the command.
+            confirmed: whether the vehicle has promised to tell the image that it takes.
+
+        Raises:
+            Unanswered: the vehicle does not answer, or tells no image.
+            Refused: it does not do it.
+        """
+        with self._link.inbox(*IMAGES, component=ANYBODY) as inbox:
+            command(self._link, number, *params)
+            if confirmed and not self._link.wait(
+                lambda: any(_taken(message) for message in tuple(inbox)),
+                self._link.clock.patience(IMAGE_SECONDS),
+            ):
+                raise Unanswered(f"{name_of(number)}: no image was told within {IMAGE_SECONDS:.0f} s")
+
+    def measure(self, value: str) -> float:
+        """Return the next value published under that name.
+
+        Raises:
+            Refused: none comes.
+        """
+        with self._link.inbox("NAMED_VALUE_FLOAT") as inbox:
+            found = self._link.wait(
+                lambda: next((m for m in inbox if m.name == value), None),
+                self._link.clock.patience(VALUE_SECONDS),
+            )
+        if found is None:
+            raise Refused(f"{value}: no such value comes from the vehicle")
+        return float(found.value)
+
+    def hold(self) -> bool:
+        """Halt and stay, and return when the vehicle does; on the ground, disarm.
+
+        Returns:
+            Whether it is still armed, so that somebody must watch it.
+
+        Raises:
+            Refused: it does not halt.
+        """
+        if not self._telemetry.armed():
+            return False
+        if self._telemetry.grounded():
+            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+            return False
+        self._helm.enter(modes.HOLD)
+        if not self._link.wait(lambda: self._telemetry.speed() <= STILL, PATIENCE_SECONDS):
+            raise Refused("the vehicle does not come to a halt")
+        return True
+
+    def carry_on(self) -> None:
+        """Go on being steered after a hold, where the vehicle is; nothing happens on the ground."""
+        if self._telemetry.airborne() or (self._telemetry.armed() and self._kind != "copter"):
+            self._helm.arm()
+            self._steering.stay()
+
+    def take_back(self) -> None:
+        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        try:
+            self._helm.check()
+        except Fault:
+            self._helm.let_go()
+
+    def surface(self) -> None:
+        """Come up to the water surface."""
+        self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)
+        self._helm.until(
+            lambda: self._telemetry.here().height > -self._acceptance, 10 * PATIENCE_SECONDS, "to surface"
+        )
+
+    def disarm(self) -> None:
+        """Switch off propulsion, whatever happens then."""
+        command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
+
+    def finish(self) -> None:
+        """End the mission: a vehicle that does not fly is disarmed, one that does is not."""
+        if self._telemetry.armed() and (self._kind != "copter" or self._telemetry.grounded()):
+            self._helm.disarm()
+
+    def running_low(self, reserve: float) -> bool:
+        """Return whether the motors run and less than that part of the energy is left."""
+        left = self._telemetry.energy()
+        return left is not None and left < reserve and self._telemetry.armed()
+
+    def state(self) -> State:
+        """Return what is known now."""
+        mode, armed = self._helm.mode(), self._telemetry.armed()
+        return replace(self._telemetry.state(), mode=mode, armed=armed)
+
+    def _item(self) -> int:
+        """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
+        found = self._telemetry.item()
+        return found - self._helm.habits.number(0) if found >= 0 else -1
+
+    def _place_of(self, seq: int) -> Place | None:
+        """Return where an item of the mission is, or the last one before it that is anywhere."""
+        for item in reversed(self._mission[: seq + 1]):
+            if item.x or item.y:
+                return Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
+        return None
+
+    def _places(self, first: int, last: int) -> dict[int, Place]:
+        """Return where the items of a run are, by their number, as far as they are anywhere."""
+        return {
+            seq: Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
+            for seq, item in enumerate(self._mission[: last + 1])
+            if seq >= first and (item.x or item.y)
+        }
+
+    def _check_mission(self) -> None:
+        """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
+
+        Raises:
+            Refused: somebody has.
+        """
+        current = self._link.latest("MISSION_CURRENT")
+        found = mark_of(current, BEFORE_MISSION_ID) if current is not None else 0
+        if self._mark and found and found != self._mark:
+            raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
+
+    def _await_item_after(self, seq: int, following: Following) -> int:
+        def behind() -> int | None:
+            now = following.look()
+            return now if now > seq else None
+
+        found = self._link.wait(behind, 10 * PATIENCE_SECONDS)
+        self._helm.check()
+        if found is None:
+            raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
+        return found
+
+
+def _taken(message: Message) -> bool:
+    """Return whether a message tells of an image that was taken."""
+    return message.get_type() == "CAMERA_FEEDBACK" or bool(message.capture_result == 1)

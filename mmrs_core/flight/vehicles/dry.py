@@ -1,0 +1,129 @@
+"""A vehicle that is not there: it goes where it is told at a steady speed, for trials without a link."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from ..clock import Clock
+from ..places import at_height, bearing, distance
+from ..program import Geographic, Look, Place
+from ..services.missions import Item
+from .modes import GUIDED, HOLD, LAND, SURFACE
+from .vehicle import State
+
+CRUISE = 5.0
+CLIMB = 2.0
+
+
+class DryVehicle:
+    """Does everything at once that a real vehicle takes its time for, but takes the time, too."""
+
+    def __init__(self, clock: Clock, home: Place, guard: Callable[[], None]) -> None:
+        """Stand at home."""
+        self._clock = clock
+        self._here = home
+        self._home = home
+        self._guard = guard
+        self._items: Sequence[Item] = ()
+        self._mode = GUIDED
+        self._armed = False
+
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
+        """Do nothing: there is no link to lose."""
+
+    def answer_breach(self, response: str) -> None:
+        """Do nothing: there is no fence."""
+
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
+        """Keep the mission."""
+        self._items = mission
+
+    def take_off(self, height: float) -> None:
+        """Climb to a height above home."""
+        self._mode, self._armed = GUIDED, True
+        self._climb(height)
+
+    def land(self) -> None:
+        """Descend to the height of home."""
+        self._mode = LAND
+        self._climb(self._home.height)
+        self._armed = False
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Be at a place after the time that the way takes."""
+        self._mode = GUIDED
+        self.rest(distance(self._here, place) / (speed or CRUISE))
+        self._here = place
+
+    def turn(self, look: Look) -> None:
+        """Turn at once."""
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+        """Pass the mission's items one after the other."""
+        for seq in range(first, last + 1):
+            item = self._items[seq]
+            if item.x or item.y:
+                self.go_to(Geographic(item.x * 1e-7, item.y * 1e-7, item.z), None, None, True)
+            reached(seq)
+
+    def rest(self, seconds: float) -> None:
+        """Stay for so many seconds."""
+        until = self._clock.now() + seconds
+        while (left := until - self._clock.now()) > 0:
+            before = self._clock.now()
+            self._guard()
+            # A hold is obeyed inside the guard, and is no part of the time that something takes.
+            until += self._clock.now() - before
+            time.sleep(min(self._clock.real(left), 0.1))
+        self._guard()
+
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
+        """Do nothing."""
+
+    def measure(self, value: str) -> None:
+        """Measure nothing: there is nothing to measure."""
+
+    def hold(self) -> bool:
+        """Stay."""
+        self._mode = HOLD
+        self._guard()
+        return False
+
+    def carry_on(self) -> None:
+        """Be ready."""
+        self._mode = GUIDED
+
+    def check(self) -> None:
+        """Do nothing: nobody takes over what is not there."""
+
+    def take_back(self) -> None:
+        """Do nothing: it does nothing by itself."""
+
+    def surface(self) -> None:
+        """Be at the surface."""
+        self._mode = SURFACE
+        self._here = at_height(self._here, 0.0)
+
+    def disarm(self) -> None:
+        """Do nothing."""
+
+    def finish(self) -> None:
+        """Do nothing."""
+
+    def state(self) -> State:
+        """Return where the vehicle would be, with a full battery."""
+        heading = bearing(self._home, self._here)
+        return State(
+            self._clock.now(), self._here, 0.0, heading, 1.0, self._mode, armed=self._armed, wind=0.0
+        )
+
+    def _climb(self, height: float) -> None:
+        self.rest(abs(height - self._here.height) / CLIMB)
+        self._here = at_height(self._here, height)

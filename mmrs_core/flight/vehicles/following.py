@@ -1,0 +1,99 @@
+"""Whether a vehicle really flies the items of its mission that it says it has left behind.
+
+MISSION_CURRENT alone proves nothing: another ground station may set the mission ahead, and the
+vehicle then goes straight to an item over ground that nobody has checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import hypot
+
+from ..faults import NO_PROGRESS, Fault
+from ..places import offset
+from ..program import Place
+from .telemetry import Telemetry
+
+NEAR_METRES = 4.0
+"""How near a vehicle comes to every place of its mission, however it cuts its corners."""
+
+
+JUDGED_AFTER = 2
+"""How many positions must have come since an item was left behind: the last before may be old."""
+
+
+class Following:
+    """Keeps how near the vehicle has come to each place of a run.
+
+    Between two positions that were told it may have been anywhere that its speed allows; so much is
+    added to what counts as near.
+    """
+
+    def __init__(
+        self, telemetry: Telemetry, places: Mapping[int, Place], item: Callable[[], int], first: int
+    ) -> None:
+        """Begin at an item.
+
+        Args:
+            telemetry: of the vehicle.
+            places: by item.
+            item: gives the item that the vehicle is at; less than 0: not known.
+            first: that it begins with.
+        """
+        self._telemetry = telemetry
+        self._places = places
+        self._item = item
+        self._claimed = self._proven = first
+        self._here = telemetry.here()
+        self._missed: dict[int, float] = {}
+        self._since: dict[int, int] = {}
+        self._approach(self._here)
+
+    def look(self) -> int:
+        """Take note of where the vehicle is; return the first item that it has not surely left behind.
+
+        Raises:
+            Fault: it has left items out, or has gone back.
+        """
+        here, now = self._telemetry.here(), self._item()
+        if 0 <= now < self._claimed:
+            raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
+        self._claimed = max(self._claimed, now)
+        if here != self._here:
+            self._approach(here)
+            for seq in range(self._proven, self._claimed):
+                self._since[seq] = self._since.get(seq, 0) + 1
+        while self._proven < self._claimed and self._was_near(self._proven):
+            self._proven += 1
+        return self._proven
+
+    def _was_near(self, seq: int) -> bool:
+        """Return whether the vehicle has been near an item, or the item is nowhere.
+
+        Raises:
+            Fault: it surely has not.
+        """
+        if self._missed.get(seq, 0.0) <= 0.0:
+            return True
+        if self._since.get(seq, 0) >= JUDGED_AFTER:
+            ahead = f"the mission was set ahead to item {self._claimed}"
+            raise Fault(NO_PROGRESS, f"{ahead}: the vehicle has not been near item {seq}")
+        return False
+
+    def _approach(self, here: Place) -> None:
+        """Keep by how many metres each place was missed up to now; 0: not at all."""
+        gap = hypot(*offset(self._here, here))
+        for seq, place in self._places.items():
+            if seq >= self._proven:
+                missed = max(0.0, _distance(place, self._here, here) - NEAR_METRES - gap / 2.0)
+                self._missed[seq] = min(self._missed.get(seq, missed), missed)
+        self._here = here
+
+
+def _distance(place: Place, a: Place, b: Place) -> float:
+    """Return the metres between a place and the straight way from `a` to `b`."""
+    way, to = offset(a, b), offset(a, place)
+    squared = sum(each * each for each in way)
+    part = sum(p * q for p, q in zip(way, to, strict=True)) / squared if squared else 0.0
+    part = min(1.0, max(0.0, part))
+    return hypot(*(q - part * p for p, q in zip(way, to, strict=True)))

@@ -1,0 +1,167 @@
+"""What differs between autopilots when they are steered, and ArduPilot's way of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..links.link import Link, Message
+from ..program import Geographic, Place
+from ..services.commands import command
+from ..services.items import Item
+from . import modes
+
+POSITION_AND_YAW = (
+    mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+)
+
+
+class Habits(Protocol):
+    """How one sort of autopilot is steered.
+
+    Attributes:
+        climbs_in: the mode that take-off is asked for in.
+    """
+
+    climbs_in: str
+
+    def begin_guiding(self) -> None:
+        """Get ready for GUIDED, before it is asked for."""
+        ...
+
+    def end_guiding(self) -> None:
+        """Steer no longer: another mode has been entered, or somebody else has the vehicle."""
+        ...
+
+    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
+        """Have the vehicle go to a place and look in a direction (radians clockwise from north)."""
+        ...
+
+    def take_off(self, height: float) -> tuple[float, ...]:
+        """Return the parameters of the command to climb to a height above home."""
+        ...
+
+    def climbing(self) -> tuple[int, ...]:
+        """Return the numbers of the modes that a take-off may go through by itself."""
+        ...
+
+    def paces(self) -> bool:
+        """Return whether the vehicle heeds a commanded speed when it is steered."""
+        ...
+
+    def above(self, height: float) -> float:
+        """Return a height above home as commands without a frame have it, metres."""
+        ...
+
+    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
+        """Return a mission that begins with home as this autopilot takes it."""
+        ...
+
+    def number(self, seq: int) -> int:
+        """Return the vehicle's number of an item of a mission that begins with home as item 0."""
+        ...
+
+    def select(self, seq: int) -> None:
+        """Have the mission go on at the vehicle's item of that number."""
+        ...
+
+    def enable_fence(self) -> None:
+        """Have the vehicle heed its fence."""
+        ...
+
+
+class ArduPilot:
+    """ArduPilot: one target at a time, item 0 is home, heights count from home."""
+
+    climbs_in = modes.GUIDED
+
+    def __init__(self, link: Link) -> None:
+        """Steer the vehicle at a link."""
+        self._link = link
+
+    def begin_guiding(self) -> None:
+        """Do nothing: targets may come when the mode is there."""
+
+    def end_guiding(self) -> None:
+        """Do nothing: a target that was sent is forgotten with the mode."""
+
+    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
+        """Send a target; speed is told by another command."""
+        frame = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+        self._link.send(target(self._link, place, yaw, frame))
+
+    def take_off(self, height: float) -> tuple[float, ...]:
+        """Return the parameters of NAV_TAKEOFF."""
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height)
+
+    def climbing(self) -> tuple[int, ...]:
+        """Return none: it stays in GUIDED."""
+        return ()
+
+    def paces(self) -> bool:
+        """Return that it heeds DO_CHANGE_SPEED."""
+        return True
+
+    def above(self, height: float) -> float:
+        """Return the height itself."""
+        return height
+
+    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
+        """Return the items as they are."""
+        return items
+
+    def number(self, seq: int) -> int:
+        """Return the same number."""
+        return seq
+
+    def select(self, seq: int) -> None:
+        """Send DO_SET_MISSION_CURRENT."""
+        command(self._link, mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, seq)
+
+    def enable_fence(self) -> None:
+        """Send DO_FENCE_ENABLE."""
+        command(self._link, mavlink.MAV_CMD_DO_FENCE_ENABLE, 1)
+
+
+def target(link: Link, place: Place, yaw: float, frame: int, sea_level: float = 0.0) -> Message:
+    """Return a set-point of a position and a direction.
+
+    Args:
+        link: to the vehicle.
+        place: where to.
+        yaw: radians clockwise from north.
+        frame: of the height of geographic places.
+        sea_level: metres to add to their heights.
+    """
+    rest = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, yaw, 0.0)
+    if isinstance(place, Geographic):
+        return mavlink.MAVLink_set_position_target_global_int_message(
+            0,
+            link.system,
+            link.component,
+            frame,
+            POSITION_AND_YAW,
+            round(place.latitude * 1e7),
+            round(place.longitude * 1e7),
+            place.height + sea_level,
+            *rest,
+        )
+    return mavlink.MAVLink_set_position_target_local_ned_message(
+        0,
+        link.system,
+        link.component,
+        mavlink.MAV_FRAME_LOCAL_NED,
+        POSITION_AND_YAW,
+        place.north,
+        place.east,
+        -place.height,
+        *rest,
+    )

@@ -1,0 +1,200 @@
+"""Who has the vehicle: its mode, whether it is armed, and how long it may take to obey."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
+from ..links.link import Link
+from ..services.commands import command
+from . import modes
+from .habits import ArduPilot, Habits
+from .px4 import Px4
+from .readiness import REPEATED_SECONDS
+from .telemetry import Telemetry
+
+MODE_SECONDS = 5.0
+MODE_TRIES = 3
+TAKE_OFF_TRIES = 3
+WORDS_SECONDS = 0.5
+"""After which a vehicle that refuses has said why."""
+
+AFRESH_SECONDS = 3.0
+"""After which at least one new heartbeat should have come, even over a poor link."""
+
+
+class Helm:
+    """Keeps a vehicle in the mode that the program needs.
+
+    Modes are believed when heartbeats show them, never by acknowledgement alone. A mode that
+    nobody here asked for means that a pilot has taken over: the program then ends and leaves the
+    vehicle alone.
+    """
+
+    def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
+        """Take the helm of a vehicle of a kind, ``copter``, ``sub`` or ``rover``; change nothing yet."""
+        self._link = link
+        self._telemetry = telemetry
+        self._kind = kind
+        self._accepted: frozenset[int] = frozenset()
+        self._mode: str | None = None
+        self._speed: float | None = None
+        self._habits: Habits | None = None
+
+    @property
+    def habits(self) -> Habits:
+        """Return how the vehicle is steered, once its heartbeat has told what it is."""
+        if self._habits is None:
+            px4 = modes.is_px4(self._link)
+            self._habits = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
+        return self._habits
+
+    @property
+    def _modes(self) -> Mapping[str, modes.Mode]:
+        return modes.modes_of(self._link, self._kind)
+
+    def has(self, mode: str) -> bool:
+        """Return whether the vehicle has such a mode."""
+        return mode in self._modes
+
+    def mode(self) -> str:
+        """Return the vehicle's mode in the runtime's words, or its number where there is none."""
+        return modes.word_of(self._link, self._kind, self._telemetry.mode())
+
+    def enter(self, mode: str) -> None:
+        """Change the mode; the vehicle forgets the speed it was told.
+
+        Raises:
+            Refused: the vehicle does not go into the mode.
+            Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
+        """
+        wanted, before, accepted = self._modes[mode], self._telemetry.mode(), self._accepted
+        if mode == modes.GUIDED:
+            self.habits.begin_guiding()
+        self.let_go()
+        for _ in range(MODE_TRIES):
+            command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
+            self._link.wait(
+                lambda: (
+                    self._telemetry.mode() == wanted.number
+                    or self._telemetry.mode() not in {before, *accepted}
+                ),
+                self._link.clock.patience(MODE_SECONDS),
+            )
+            if (number := self._telemetry.mode()) not in {before, wanted.number, *accepted}:
+                raise self._left(number, modes.word_of(self._link, self._kind, before))
+            if self._telemetry.mode() == wanted.number:
+                self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
+                if mode != modes.GUIDED:
+                    self.habits.end_guiding()
+                return
+        raise Refused(f"the vehicle does not go into mode {mode}")
+
+    def let_go(self) -> None:
+        """Accept whatever mode the vehicle goes into, as after landing."""
+        self._mode, self._accepted = None, frozenset()
+
+    def check(self) -> None:
+        """Make sure that nobody else has taken over.
+
+        Raises:
+            Fault: the vehicle has left the mode; TAKEN_OVER, or what it has answered by itself.
+        """
+        number = self._telemetry.mode()
+        if not self._accepted or number in self._accepted:
+            return
+        if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
+            raise self._left(number, self._mode or "take-off")
+
+    def _left(self, number: int, mode: str) -> Fault:
+        """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
+        self.habits.end_guiding()
+        cause = self._telemetry.failsafe()
+        if cause is not None and number in modes.answers_to(self._link, self._kind, cause):
+            return Fault(cause, f"the vehicle left mode {mode} by itself, for mode {self.mode()}")
+        return Fault(
+            TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: somebody else has taken over"
+        )
+
+    def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
+        """Wait until a test holds.
+
+        Raises:
+            Fault: it does not in that time; `doing` says what takes too long.
+        """
+        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0)):
+            raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
+
+    def arm(self) -> None:
+        """Be in GUIDED and armed.
+
+        Raises:
+            Refused: the vehicle does not arm; it says why, where the vehicle does.
+        """
+        self._be_in(modes.GUIDED)
+        self.start_motors()
+
+    def start_motors(self) -> None:
+        """Arm, if the vehicle is not armed.
+
+        Raises:
+            Refused: it does not arm; it says why, where the vehicle does.
+        """
+        if self._telemetry.armed():
+            return
+        try:
+            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+        except Refused as error:
+            self._link.wait(lambda: None, WORDS_SECONDS)
+            said = self._telemetry.texts.refusals(REPEATED_SECONDS)
+            why = "; ".join(said or self._telemetry.lacks())
+            raise Refused(f"{error}{': ' if why else ''}{why}") from error
+        self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
+
+    def leave_ground(self, height: float) -> None:
+        """Arm and take off, again where the vehicle has disarmed itself in between."""
+        for attempt in range(TAKE_OFF_TRIES):
+            self._be_in(self.habits.climbs_in)
+            self.start_motors()
+            try:
+                command(self._link, mavlink.MAV_CMD_NAV_TAKEOFF, *self.habits.take_off(height))
+                self._follow_climb()
+                return
+            except Refused:
+                # It refuses also when it has left the ground already, and its first answer was lost.
+                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS):
+                    self._follow_climb()
+                    return
+                if attempt + 1 == TAKE_OFF_TRIES:
+                    raise
+
+    def disarm(self) -> None:
+        """Stop the motors of a vehicle that does not fly; one that does refuses.
+
+        Raises:
+            Refused: the vehicle does not disarm.
+        """
+        command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+        self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
+
+    def pace(self, speed: float | None) -> None:
+        """Go at a speed in metres per second from now on; None: as before."""
+        if speed is not None and speed != self._speed and self.habits.paces():
+            command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
+            self._speed = speed
+
+    def _be_in(self, mode: str) -> None:
+        """Be in a mode, whatever anybody has chosen while nobody here cared."""
+        if self._mode != mode or not (self._telemetry.armed() or self._is_in(mode)):
+            self.enter(mode)
+
+    def _is_in(self, mode: str) -> bool:
+        return self._telemetry.mode() == self._modes[mode].number
+
+    def _follow_climb(self) -> None:
+        """Accept the modes that a take-off goes through by itself; none here is entered then."""
+        through = self.habits.climbing()
+        if through:
+            self._mode, self._accepted = None, frozenset(through)

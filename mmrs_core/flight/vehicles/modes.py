@@ -1,0 +1,240 @@
+"""Flight modes by autopilot and kind of vehicle, and what each can do by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
+from ..faults import LINK_LOST as LOST_LINK
+from ..links.link import Link
+
+Answers: TypeAlias = Mapping[str, Mapping[str, int]]
+"""By response of a policy, parameters and their values."""
+
+GUIDED = "guided"
+AUTO = "auto"
+HOLD = "hold"
+LAND = "land"
+SURFACE = "surface"
+
+MODES: Mapping[str, Mapping[str, int]] = {
+    "copter": {GUIDED: 4, AUTO: 3, HOLD: 17, LAND: 9},
+    "sub": {GUIDED: 4, AUTO: 3, HOLD: 16, SURFACE: 9},
+    "rover": {GUIDED: 15, AUTO: 10, HOLD: 4},
+}
+"""ArduPilot's numbers, by kind of vehicle."""
+
+PX4_MODES: Mapping[str, tuple[int, int]] = {
+    GUIDED: (6, 0),
+    AUTO: (4, 4),
+    HOLD: (4, 3),
+    LAND: (4, 6),
+}
+"""PX4's main mode and sub-mode (``px4_custom_mode.h``): OFFBOARD, and of AUTO mission, loiter, land."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A mode: what heartbeats say of it, and the parameters of the command that asks for it."""
+
+    number: int
+    params: tuple[float, ...]
+
+
+def modes_of(link: Link, kind: str) -> Mapping[str, Mode]:
+    """Return the modes of the vehicle at a link, by the runtime's words."""
+    if is_px4(link):
+        return {
+            name: Mode(px4_number(main, sub), (1.0, float(main), float(sub)))
+            for name, (main, sub) in PX4_MODES.items()
+        }
+    return {name: Mode(number, (1.0, float(number))) for name, number in MODES[kind].items()}
+
+
+OTHERS: Mapping[str, Mapping[int, str]] = {
+    "copter": {
+        0: "stabilize",
+        1: "acro",
+        2: "altitude hold",
+        5: "loiter",
+        6: "return",
+        16: "position hold",
+        21: "smart return",
+    },
+    "sub": {0: "stabilize", 1: "acro", 2: "depth hold", 19: "manual"},
+    "rover": {0: "manual", 1: "acro", 3: "steering", 5: "loiter", 11: "return", 12: "smart return"},
+}
+PX4_OTHERS: Mapping[tuple[int, int], str] = {
+    (1, 0): "manual",
+    (2, 0): "altitude",
+    (3, 0): "position",
+    (4, 2): "take-off",
+    (4, 5): "return",
+    (5, 0): "acro",
+    (7, 0): "stabilize",
+}
+"""Modes that programs never ask for, for people."""
+
+
+def word_of(link: Link, kind: str, number: int) -> str:
+    """Return a mode in words, or its number where nobody here has a word for it."""
+    for word, mode in modes_of(link, kind).items():
+        if mode.number == number:
+            return word
+    if is_px4(link):
+        return {px4_number(*each): word for each, word in PX4_OTHERS.items()}.get(number, str(number))
+    return OTHERS[kind].get(number, str(number))
+
+
+FAILSAFES: Mapping[str, frozenset[int]] = {
+    "copter": frozenset({2, 6, 9, 17, 21}),
+    "rover": frozenset({4, 11, 12}),
+    "sub": frozenset({9, 16, 19}),
+}
+PX4_FAILSAFES = frozenset({(4, 3), (4, 5), (4, 6)})
+
+
+def of_failsafes(link: Link, kind: str) -> frozenset[int]:
+    """Return the numbers of the modes that a vehicle goes into by itself when something is wrong."""
+    if is_px4(link):
+        return frozenset(px4_number(main, sub) for main, sub in PX4_FAILSAFES)
+    return FAILSAFES[kind]
+
+
+ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
+    "copter": {
+        POSITION_LOST: frozenset({9}),
+        FENCE_BREACHED: frozenset({6, 9, 17, 21}),
+        BATTERY_LOW: frozenset({6, 9, 21}),
+        LOST_LINK: frozenset({6, 9, 17, 21}),
+    },
+    "rover": {event: frozenset({4, 11, 12}) for event in (FENCE_BREACHED, BATTERY_LOW, LOST_LINK)}
+    | {POSITION_LOST: frozenset({4})},
+    "sub": {event: frozenset({9}) for event in (POSITION_LOST, BATTERY_LOW, LOST_LINK)},
+}
+"""Modes into which an ArduPilot goes by itself, by the event that it answers so.
+
+A pilot who takes over because of an event goes into another: that the event is there is no reason to
+take the vehicle back. What a pilot may choose as well (to hold the height without a position) is left
+out, although ArduPilot can be told to answer so.
+"""
+
+
+def answers_to(link: Link, kind: str, event: str) -> frozenset[int]:
+    """Return the numbers of the modes into which a vehicle goes by itself when an event happens."""
+    if is_px4(link):
+        return of_failsafes(link, kind)
+    return ANSWERS[kind].get(event, frozenset())
+
+
+def px4_number(main: int, sub: int) -> int:
+    """Return what a PX4's heartbeat says of a mode: the sub-mode above the main mode above 16 bits."""
+    return sub << 24 | main << 16
+
+
+ON_LOST_LINK = "FS_GCS_ENABLE"
+ON_ANY_LOSS = "FS_ACTION"
+NEAREST = "RALLY_INCL_HOME"
+"""Whether home counts as a rally point when a copter returns to the nearest of them."""
+
+FARTHEST = "RALLY_LIMIT_KM"
+"""Beyond which a copter goes home instead, where that is nearer; 0: never."""
+
+LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
+    "copter": {
+        "CONTINUE": {ON_LOST_LINK: 0},
+        "RETURN": {ON_LOST_LINK: 3},
+        "EMERGENCY_AREA": {NEAREST: 0, FARTHEST: 0, ON_LOST_LINK: 1},
+        "LAND": {ON_LOST_LINK: 5},
+        "HOLD": {ON_LOST_LINK: 7},
+    },
+    "sub": {
+        "CONTINUE": {ON_LOST_LINK: 1},
+        "STOP_THRUST": {ON_LOST_LINK: 2},
+        "HOLD": {ON_LOST_LINK: 3},
+        "SURFACE": {ON_LOST_LINK: 4},
+        "LAND": {ON_LOST_LINK: 4},
+        "RETURN": {ON_LOST_LINK: 4},
+    },
+    "rover": {
+        "CONTINUE": {ON_LOST_LINK: 0},
+        "RETURN": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
+        "EMERGENCY_AREA": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
+        "HOLD": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
+        "LAND": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
+        "STOP_THRUST": {ON_ANY_LOSS: 5, ON_LOST_LINK: 1},
+    },
+}
+"""Parameters with which a vehicle responds by itself when it no longer hears the ground.
+
+By kind and by the policy's response, or by what comes nearest to it: a copter returns by the way it
+came, or to the nearest rally point, and lands where it may not hold for ever; a sub comes up. A
+rover heeds its action only where the failsafe of the ground station is switched on, too, which it is
+not at first.
+"""
+
+BREACH: Mapping[str, Answers] = {
+    "copter": {
+        "CONTINUE": {"FENCE_ACTION": 0},
+        "RETURN": {"FENCE_ACTION": 3},
+        "EMERGENCY_AREA": {"FENCE_ACTION": 3},
+        "LAND": {"FENCE_ACTION": 2},
+        "HOLD": {"FENCE_ACTION": 4},
+    },
+    "rover": {
+        "CONTINUE": {"FENCE_ACTION": 0},
+        "RETURN": {"FENCE_ACTION": 3},
+        "EMERGENCY_AREA": {"FENCE_ACTION": 3},
+        "HOLD": {"FENCE_ACTION": 2},
+        "LAND": {"FENCE_ACTION": 2},
+    },
+    "sub": {},
+}
+"""What an ArduPilot does by itself when it breaks its fence."""
+
+PX4_LINK_LOST: Answers = {
+    "CONTINUE": {"NAV_DLL_ACT": 0},
+    "HOLD": {"NAV_DLL_ACT": 1},
+    "RETURN": {"NAV_DLL_ACT": 2},
+    "EMERGENCY_AREA": {"NAV_DLL_ACT": 2},
+    "LAND": {"NAV_DLL_ACT": 3},
+    "STOP_THRUST": {"NAV_DLL_ACT": 6},
+}
+PX4_BREACH: Answers = {
+    "CONTINUE": {"GF_ACTION": 1},
+    "HOLD": {"GF_ACTION": 2},
+    "RETURN": {"GF_ACTION": 3},
+    "EMERGENCY_AREA": {"GF_ACTION": 3},
+    "LAND": {"GF_ACTION": 5},
+}
+PATIENCE = {"copter": ("FS_GCS_TIMEOUT", 2.0, 120.0), "rover": ("FS_GCS_TIMEOUT", 2.0, 120.0)}
+PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
+"""The parameter for the seconds until a link counts as lost, with its least and largest value."""
+
+PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), mavlink.MAV_PARAM_TYPE_INT32)
+"""Types of parameters that are not of single precision."""
+
+
+def is_px4(link: Link) -> bool:
+    """Return whether the autopilot is a PX4, as its heartbeat says."""
+    beat = link.latest("HEARTBEAT")
+    return beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_PX4
+
+
+def lost_link_answers(link: Link, kind: str) -> Answers:
+    """Return what the vehicle at a link can do by itself when it no longer hears the ground."""
+    return PX4_LINK_LOST if is_px4(link) else LINK_LOST[kind]
+
+
+def patience(link: Link, kind: str) -> tuple[str, float, float] | None:
+    """Return the parameter for the seconds until a link counts as lost: name, least, largest."""
+    return PX4_PATIENCE if is_px4(link) else PATIENCE.get(kind)
+
+
+def breach_answers(link: Link, kind: str) -> Answers:
+    """Return what the vehicle at a link can do by itself when it breaks its fence."""
+    return PX4_BREACH if is_px4(link) else BREACH[kind]

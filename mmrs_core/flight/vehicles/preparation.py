@@ -1,0 +1,157 @@
+"""What is set up on a vehicle before it moves: what it tells, what it does by itself, what it keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from math import hypot
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import Refused
+from ..links.link import Link
+from ..places import offset
+from ..program import Place
+from ..services import parameters
+from ..services.commands import command
+from ..services.missions import FENCE, MISSION, RALLY, Item, upload, verify
+from . import modes
+from .telemetry import Telemetry
+
+READY_SECONDS = 120.0
+STREAMED = {
+    "GLOBAL_POSITION_INT": 5.0,
+    "EXTENDED_SYS_STATE": 2.0,
+    "SYS_STATUS": 1.0,
+    "BATTERY_STATUS": 0.5,
+    "GPS_RAW_INT": 1.0,
+    "MISSION_CURRENT": 5.0,
+}
+"""Messages that the program lives by, and how often they are asked for, hertz."""
+
+STREAMED_LOCAL = {"LOCAL_POSITION_NED": 5.0}
+STREAMED_BY = {
+    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: {"EKF_STATUS_REPORT": 1.0, "FENCE_STATUS": 1.0, "WIND": 1.0},
+    mavlink.MAV_AUTOPILOT_PX4: {"ESTIMATOR_STATUS": 1.0, "WIND_COV": 1.0},
+}
+"""Those that only one kind of autopilot knows, by MAV_AUTOPILOT."""
+
+
+def ask_for_messages(link: Link, *, geographic: bool) -> None:
+    """Ask for every message at its rate; a vehicle that refuses sends it as it likes, or does without."""
+    beat = link.latest("HEARTBEAT")
+    own = STREAMED_BY.get(beat.autopilot, {}) if beat is not None else {}
+    for name, rate in (STREAMED | own | ({} if geographic else STREAMED_LOCAL)).items():
+        number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
+        with suppress(Refused):
+            command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=2)
+
+
+def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rally: Sequence[Item]) -> int:
+    """Replace mission, fence and rally points, and read back what the vehicle has kept.
+
+    Returns:
+        The id that the vehicle gave to the mission; 0 where it gives none.
+
+    Raises:
+        Refused: something is not accepted, or read back differently.
+    """
+    marks = []
+    for items, kind in ((mission, MISSION), (fence, FENCE), (rally, RALLY)):
+        marks.append(upload(link, items, kind))
+        verify(link, items, kind)
+    return marks[0]
+
+
+VEHICLES = {
+    "copter": frozenset({2, 3, 4, 13, 14, 15, 29, 35}),
+    "rover": frozenset({10, 11}),
+    "sub": frozenset({12}),
+}
+"""Kinds of vehicles by MAV_TYPE."""
+
+
+def check_identity(link: Link, telemetry: Telemetry, kind: str, home: Place, tolerance: float) -> None:
+    """Make sure that the vehicle is the robot's: the only one with its id, of its kind, at its home.
+
+    Raises:
+        Refused: it is not.
+    """
+    beat = link.latest("HEARTBEAT")
+    if beat is not None and beat.type not in VEHICLES[kind] | {mavlink.MAV_TYPE_GENERIC}:
+        entry = mavlink.enums["MAV_TYPE"].get(beat.type)
+        shown = entry.name.removeprefix("MAV_TYPE_").lower().replace("_", " ") if entry else beat.type
+        raise Refused(f"the vehicle is a {shown}, and the program is for a {kind}")
+    if link.doubt():
+        raise Refused(link.doubt())
+    away = hypot(*offset(home, telemetry.here())[:2])
+    if away > tolerance:
+        raise Refused(f"the vehicle is {away:.0f} m from the home of its program")
+
+
+def await_position(link: Link, telemetry: Telemetry) -> None:
+    """Wait until the vehicle has told where it is, before anything is uploaded that may be another's.
+
+    Raises:
+        Refused: it does not tell.
+    """
+    if not link.wait(telemetry.placed, READY_SECONDS):
+        raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
+
+
+def await_ready(link: Link, telemetry: Telemetry) -> None:
+    """Wait until the vehicle knows where it is and its own checks pass.
+
+    Raises:
+        Refused: it does not get ready.
+    """
+    if not link.wait(telemetry.ready, READY_SECONDS):
+        raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
+
+
+def answer_lost_link(link: Link, kind: str, response: str, after: float | None = None) -> str:
+    """Have the vehicle respond by itself when it no longer hears the ground.
+
+    Args:
+        link: to the vehicle.
+        kind: ``copter``, ``sub`` or ``rover``.
+        response: of a policy.
+        after: seconds of silence until then; None: as it is set.
+
+    Returns:
+        What the vehicle does otherwise than wanted; empty if nothing.
+
+    Raises:
+        Refused: it cannot respond so, or does not say that it will.
+    """
+    _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
+    found = modes.patience(link, kind)
+    if after is None or found is None:
+        return ""
+    name, least, largest = found
+    seconds = min(max(after, least), largest)
+    if not parameters.write(link, name, seconds, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+        return f"the vehicle does not confirm {name} = {seconds:g}: it may respond sooner or later than that"
+    return (
+        ""
+        if seconds == after
+        else f"the vehicle responds to a lost link after {seconds:g} s, not {after:g} s"
+    )
+
+
+def answer_breach(link: Link, kind: str, response: str) -> None:
+    """Have the vehicle respond by itself when it breaks its fence.
+
+    Raises:
+        Refused: it cannot respond so, or does not say that it will.
+    """
+    _answer(link, "a broken fence", modes.breach_answers(link, kind), response, kind)
+
+
+def _answer(link: Link, event: str, answers: modes.Answers, response: str, kind: str) -> None:
+    values = answers.get(response)
+    if values is None:
+        raise Refused(f"response to {event}: a {kind} cannot do {response} by itself")
+    for name, value in values.items():
+        if not parameters.write(link, name, value, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+            raise Refused(f"response to {event}: the vehicle does not confirm {name} = {value}")

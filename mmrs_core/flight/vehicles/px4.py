@@ -1,0 +1,174 @@
+"""PX4's way of being steered. Written from its documents and source; no PX4 has flown by it yet.
+
+OFFBOARD takes nothing but a stream of set-points, which must have begun a second before the mode is
+asked for, and ends the mode when it stops (https://docs.px4.io, "Offboard Mode"). So a thread of its
+own sends them, at 10 Hz, until another mode has been entered. A set-point moves along the leg at the
+commanded speed: OFFBOARD heeds no DO_CHANGE_SPEED.
+
+Heights of set-points are above sea level: with MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, PX4 1.13 to 1.15 put
+the set-point on the wrong side of home wherever home is not where the estimator began
+(``mavlink_receiver.cpp``, ``handle_message_set_position_target_global_int``).
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from math import nan, radians
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import Refused
+from ..links.link import Link
+from ..places import between, distance
+from ..program import Place
+from ..services.items import Item
+from . import modes
+from .habits import target
+from .telemetry import Telemetry
+
+STREAM_SECONDS = 0.1
+LEAST_PAUSE = 0.01
+"""Real seconds between two set-points at least."""
+
+AHEAD_SECONDS = 1.5
+"""For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
+
+TAKING_OFF = (4, 2)
+
+
+class Stream:
+    """Sends set-points that move towards a target, as long as it runs."""
+
+    def __init__(self, link: Link, telemetry: Telemetry) -> None:
+        """Send nothing yet."""
+        self._link = link
+        self._telemetry = telemetry
+        self._lock = threading.Lock()
+        self._running: threading.Event | None = None
+        self._at: Place | None = None
+        self._target: Place | None = None
+        self._yaw = 0.0
+        self._speed: float | None = None
+        self._moved = 0.0
+
+    @property
+    def runs(self) -> bool:
+        """Return whether set-points are being sent."""
+        return self._running is not None
+
+    def begin(self) -> None:
+        """Send the place where the vehicle is, again and again, if nothing is being sent."""
+        with self._lock:
+            if self._running is not None:
+                return
+            self._at = self._target = self._telemetry.here()
+            self._yaw = radians(self._telemetry.heading() or 0.0)
+            self._moved = self._link.clock.now()
+            self._running = threading.Event()
+            threading.Thread(target=self._send, args=(self._running,), name="set-points", daemon=True).start()
+
+    def end(self) -> None:
+        """Send no more."""
+        with self._lock:
+            if self._running is not None:
+                self._running.set()
+            self._running = None
+
+    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
+        """Move to a place from now on; None for the speed: as fast as the vehicle can."""
+        with self._lock:
+            self._target, self._yaw, self._speed = place, yaw, speed
+
+    def _send(self, ended: threading.Event) -> None:
+        clock = self._link.clock
+        while not ended.is_set() and self._link.listening:
+            with self._lock:
+                place, yaw = self._move(clock.now()), self._yaw
+            level = self._telemetry.sea_level() or 0.0
+            self._link.send(target(self._link, place, yaw, mavlink.MAV_FRAME_GLOBAL_INT, level))
+            ended.wait(max(LEAST_PAUSE, clock.real(STREAM_SECONDS)))
+
+    def _move(self, now: float) -> Place:
+        assert self._at is not None
+        assert self._target is not None
+        passed, self._moved = now - self._moved, now
+        left = distance(self._at, self._target)
+        if self._speed is None or left <= self._speed * passed:
+            self._at = self._target
+        else:
+            self._at = between(self._at, self._target, self._speed * passed / left)
+        return self._at
+
+
+class Px4:
+    """PX4: set-points as a stream, no home in missions, heights above sea level."""
+
+    climbs_in = modes.HOLD
+
+    def __init__(self, link: Link, telemetry: Telemetry) -> None:
+        """Steer the vehicle at a link."""
+        self._link = link
+        self._telemetry = telemetry
+        self._stream = Stream(link, telemetry)
+
+    def begin_guiding(self) -> None:
+        """Send set-points for long enough that OFFBOARD is granted."""
+        if not self._stream.runs:
+            self._stream.begin()
+            self._link.wait(lambda: None, AHEAD_SECONDS)
+
+    def end_guiding(self) -> None:
+        """End the stream."""
+        self._stream.end()
+
+    def aim(self, place: Place, yaw: float, speed: float | None) -> None:
+        """Move the set-point towards a place."""
+        self._stream.aim(place, yaw, speed)
+
+    def take_off(self, height: float) -> tuple[float, ...]:
+        """Return the parameters of NAV_TAKEOFF, straight up from here.
+
+        Raises:
+            Refused: the vehicle has not told how high its home is.
+        """
+        return (-1.0, 0.0, 0.0, nan, nan, nan, self.above(height))
+
+    def climbing(self) -> tuple[int, ...]:
+        """Return take-off, and loitering when it is high enough."""
+        return (modes.px4_number(*TAKING_OFF), modes.px4_number(*modes.PX4_MODES[modes.HOLD]))
+
+    def paces(self) -> bool:
+        """Return that it heeds no commanded speed: set-points move as fast as it shall."""
+        return False
+
+    def above(self, height: float) -> float:
+        """Return a height above sea level.
+
+        Raises:
+            Refused: the vehicle has not told how high its home is.
+        """
+        level = self._telemetry.sea_level()
+        if level is None:
+            raise Refused("the vehicle has not told how high above the sea its home is")
+        return level + height
+
+    def mission(self, items: Sequence[Item]) -> Sequence[Item]:
+        """Return the items without home."""
+        return items[1:]
+
+    def number(self, seq: int) -> int:
+        """Return the number without home."""
+        return seq - 1
+
+    def select(self, seq: int) -> None:
+        """Send MISSION_SET_CURRENT, which every PX4 knows; MISSION_CURRENT shows whether it came."""
+        for _ in range(self._link.retries.tries):
+            self._link.send(
+                mavlink.MAVLink_mission_set_current_message(self._link.system, self._link.component, seq)
+            )
+            if self._link.wait(lambda: self._telemetry.item() == seq, self._link.patience):
+                return
+
+    def enable_fence(self) -> None:
+        """Do nothing: a PX4 heeds the fence that it has (GF_ACTION)."""

@@ -1,0 +1,39 @@
+"""What a vehicle tells that has gone wrong, as the events that policies answer."""
+
+from __future__ import annotations
+
+from ..faults import FENCE_BREACHED, OBSTACLE, POSITION_LOST, VEHICLE_RESTARTED
+from .telemetry import Telemetry
+
+
+class Signs:
+    """Reads what a vehicle tells; nothing here waits."""
+
+    def __init__(self, telemetry: Telemetry) -> None:
+        """Take the vehicle's restarts up to now for granted."""
+        self._telemetry = telemetry
+        self._starts = telemetry.starts()
+
+    def renew(self) -> None:
+        """Take the vehicle's restarts up to now for granted."""
+        self._starts = self._telemetry.starts()
+
+    @property
+    def restarted(self) -> bool:
+        """Return whether the vehicle has started anew since `renew`."""
+        return self._telemetry.starts() > self._starts
+
+    def seen(self, *, moving: bool) -> tuple[tuple[str, str], ...]:
+        """Return each event with the reason to believe that it is there; an empty one: it is not.
+
+        Args:
+            moving: whether the robot is under way; one that is not may start anew.
+        """
+        tells = self._telemetry
+        active = moving and tells.armed()
+        return (
+            (VEHICLE_RESTARTED, "the vehicle has started anew" if moving and self.restarted else ""),
+            (POSITION_LOST, tells.position_trouble() if active else ""),
+            (FENCE_BREACHED, tells.breach() if active else ""),
+            (OBSTACLE, tells.obstacle() if active else ""),
+        )

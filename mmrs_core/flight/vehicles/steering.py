@@ -1,0 +1,157 @@
+"""Going to places and turning to them, step by step in GUIDED."""
+
+from __future__ import annotations
+
+from math import atan2, degrees, hypot, nan, radians
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import NO_PROGRESS, Fault
+from ..links.link import Link
+from ..places import bearing, distance, offset
+from ..program import Geographic, Local, Look, Object, Place
+from ..services.commands import command
+from .helm import Helm
+from .telemetry import Telemetry
+
+PATIENCE_FACTOR = 4.0
+PATIENCE_SECONDS = 60.0
+RESEND_SECONDS = 1.0
+STILL = 0.3
+CLOSE_DEGREES = 5.0
+ABREAST_METRES = 0.1
+"""How near a place must be that is gone through: chains of short legs around a corner would add up more."""
+
+
+class Steering:
+    """Steers a vehicle by position targets, which are sent again until it is there."""
+
+    def __init__(self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float) -> None:
+        """Steer a vehicle by the habits of its helm; places within `acceptance` metres count as reached."""
+        self._link = link
+        self._telemetry = telemetry
+        self._helm = helm
+        self._acceptance = acceptance
+        self._yaw: float | None = None
+        self._speed: float | None = None
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Go straight to a place; `through`: without a stop there.
+
+        Raises:
+            Fault: it does not get there.
+        """
+        self._helm.arm()
+        self._helm.pace(speed)
+        self._speed = speed
+        self._point(look)
+        begun = self._telemetry.here()
+        way = distance(begun, place)
+        limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
+        while True:
+            self._steer(place, look)
+            if look is not None and isinstance(look.at, Local):
+                self._point(look)
+            if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
+                break
+            self._helm.check()
+            if self._link.clock.now() > limit:
+                raise Fault(
+                    NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
+                )
+        self._unpoint(look)
+
+    def turn(self, look: Look) -> None:
+        """Turn until a device points at something; a device with a gimbal turns by itself.
+
+        Raises:
+            Fault: it does not turn so far.
+        """
+        self._helm.arm()
+        if look.gimbal:
+            self._point(look)
+            return
+        here = self._telemetry.here()
+        wanted = self._yaw = _yaw(here, look)
+        until = self._link.clock.now() + self._link.clock.patience(PATIENCE_SECONDS, 2.0)
+        while not self._faces(wanted):
+            if self._link.clock.now() > until:
+                raise Fault(NO_PROGRESS, "the vehicle takes too long to turn")
+            self._send_target(here, wanted)
+            self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
+            self._helm.check()
+
+    def stay(self, place: Place | None = None) -> None:
+        """Stay at a place, None: where the vehicle is, and look where it looks."""
+        self._send_target(self._telemetry.here() if place is None else place, self._heading())
+
+    def _point(self, look: Look | None) -> None:
+        if look is None or not look.gimbal:
+            return
+        if isinstance(look.at, Local):
+            self._aim_gimbal(look, look.at)
+        elif isinstance(look.at, Geographic):
+            at = (look.at.latitude, look.at.longitude, self._helm.habits.above(look.at.height))
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, look.device, 0, 0, 0, *at)
+
+    def _aim_gimbal(self, look: Look, at: Local) -> None:
+        """Turn a gimbal to a place near home: regions of interest are places on the Earth."""
+        here = self._telemetry.here()
+        north, east, up = offset(here, at)
+        pitch, yaw = degrees(atan2(up, hypot(north, east))), (bearing(here, at) - look.angle) % 360.0
+        locked = mavlink.GIMBAL_MANAGER_FLAGS_YAW_LOCK
+        command(
+            self._link,
+            mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+            pitch,
+            yaw,
+            nan,
+            nan,
+            locked,
+            0,
+            look.device,
+        )
+
+    def _unpoint(self, look: Look | None) -> None:
+        if look is not None and look.gimbal and isinstance(look.at, Geographic):
+            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_NONE, look.device)
+
+    def _steer(self, place: Place, look: Look | None) -> None:
+        here = self._telemetry.here()
+        if look is not None and not look.gimbal:
+            self._yaw = _yaw(here, look)
+        elif hypot(*offset(here, place)[:2]) > 1.0:
+            self._yaw = bearing(here, place)
+        self._send_target(place, self._heading() if self._yaw is None else self._yaw)
+
+    def _send_target(self, place: Place, yaw: float) -> None:
+        self._helm.habits.aim(place, radians(yaw), self._speed)
+
+    def _arrived(self, place: Place, begun: Place | None) -> bool:
+        """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
+        here = self._telemetry.here()
+        away = distance(here, place)
+        if away > self._acceptance:
+            return False
+        if self._telemetry.speed() <= STILL:
+            return True
+        return begun is not None and (away <= ABREAST_METRES or _is_past(begun, here, place))
+
+    def _faces(self, wanted: float) -> bool:
+        return abs((self._heading() - wanted + 180.0) % 360.0 - 180.0) < CLOSE_DEGREES
+
+    def _heading(self) -> float:
+        told = self._telemetry.heading()
+        return (self._yaw or 0.0) if told is None else told
+
+
+def _is_past(begun: Place, here: Place, place: Place) -> bool:
+    """Return whether a vehicle on a leg from `begun` is abreast of its end, or has passed it."""
+    leg, left = offset(begun, place), offset(here, place)
+    return sum(p * q for p, q in zip(leg, left, strict=True)) <= 0.0
+
+
+def _yaw(here: Place, look: Look) -> float:
+    if isinstance(look.at, Object):
+        raise ValueError(f"{look.at} has not been found yet")
+    return (bearing(here, look.at) - look.angle - look.mount) % 360.0

@@ -1,0 +1,221 @@
+"""What a vehicle tells about itself, read from the latest messages of its link."""
+
+from __future__ import annotations
+
+from math import atan2, degrees, hypot
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
+from ..links.link import Link, Message
+from ..program import Geographic, Local, Place
+from .detections import Detections
+from .readiness import lacks, unlocated
+from .texts import Texts
+from .vehicle import State
+
+NO_HEADING = 65_535
+NO_DISTANCE = 65_535
+STALE_SECONDS = 3.0
+"""After which a position that has not come again counts as lost, while the vehicle is heard."""
+
+RECENT_SECONDS = 5.0
+"""For how long an obstacle or a breach that was told counts."""
+
+IN_AIR = frozenset(
+    {
+        mavlink.MAV_LANDED_STATE_IN_AIR,
+        mavlink.MAV_LANDED_STATE_TAKEOFF,
+        mavlink.MAV_LANDED_STATE_LANDING,
+    }
+)
+OBSTACLE_METRES = 5.0
+FAILSAFE_WORDS = (
+    (POSITION_LOST, ("ekf failsafe", "gps failsafe", "position lost", "no valid position", "no position")),
+    (FENCE_BREACHED, ("fence breach", "geofence")),
+    (BATTERY_LOW, ("battery failsafe", "battery 1 is", "low battery", "critical battery", "battery level")),
+    (LINK_LOST, ("gcs failsafe", "gcs connection lost", "data link lost")),
+)
+"""What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
+
+CHARGE = {2: "low", 3: "critical", 4: "an emergency", 5: "failed", 6: "unhealthy"}
+BREACHES = {1: "too low", 2: "too high", 3: "at its boundary"}
+
+
+class Telemetry:
+    """Reads the latest messages of a link; nothing here waits.
+
+    Attributes:
+        texts: what the vehicle has said.
+    """
+
+    def __init__(self, link: Link, home: Place) -> None:
+        """Read a link; the frame of `home` decides which positions count."""
+        self._link = link
+        self._home = home
+        self._geographic = isinstance(home, Geographic)
+        self._position = "GLOBAL_POSITION_INT" if self._geographic else "LOCAL_POSITION_NED"
+        self.texts = Texts(link.clock)
+        link.observe(self.texts)
+        self._detections = Detections()
+        link.observe(self._detections)
+
+    def state(self) -> State:
+        """Return all that conditions are asked with."""
+        wind = self.wind()
+        return State(
+            self._link.clock.now(),
+            self.here(),
+            self.speed(),
+            self.heading() or 0.0,
+            self.energy(),
+            wind=None if wind is None else wind[0],
+            wind_from=None if wind is None else wind[1],
+            detected=self._detections.names,
+        )
+
+    def lacks(self) -> tuple[str, ...]:
+        """Return in words what keeps the vehicle from being ready to move; empty when nothing does."""
+        return lacks(self._link, self.texts, self._position, geographic=self._geographic)
+
+    def placed(self) -> bool:
+        """Return whether the vehicle has told where it is."""
+        return self._link.latest(self._position) is not None
+
+    def ready(self) -> bool:
+        """Return whether the vehicle knows where it is and its own checks pass."""
+        return not self.lacks()
+
+    def position_trouble(self) -> str:
+        """Return why the vehicle no longer knows where it is; empty if it does, or never did."""
+        if self._link.latest(self._position) is None:
+            return ""
+        trouble = unlocated(self._link, geographic=self._geographic)
+        silent = self._link.since(self._position) - self._link.silent_for()
+        if not trouble and silent > self._link.clock.patience(STALE_SECONDS, 1.0):
+            return f"it has not told where it is for {silent:.0f} s ({self._position})"
+        return trouble
+
+    def starts(self) -> int:
+        """Return how often the vehicle was seen to start anew."""
+        return self._link.starts
+
+    def obstacle(self, within: float = OBSTACLE_METRES) -> str:
+        """Return what the vehicle reports to be in its way; empty if there is nothing.
+
+        Args:
+            within: metres from which on a distance that it measures counts.
+        """
+        collision, scan = self._recent("COLLISION"), self._recent("OBSTACLE_DISTANCE")
+        if collision is not None and collision.threat_level == mavlink.MAV_COLLISION_THREAT_LEVEL_HIGH:
+            return f"a collision threatens in {collision.time_to_minimum_delta:.0f} s"
+        if scan is not None:
+            known = [cm for cm in scan.distances if cm != NO_DISTANCE and cm <= scan.max_distance]
+            if known and min(known) <= within * 100.0:
+                return f"something is {min(known) / 100.0:.1f} m away"
+        return ""
+
+    def breach(self) -> str:
+        """Return how the vehicle says that it has broken its fence; empty if it does not."""
+        fence = self._recent("FENCE_STATUS")
+        if fence is None or not fence.breach_status:
+            return ""
+        return f"it is outside its fence: {BREACHES.get(fence.breach_type, 'somehow')}"
+
+    def wind(self) -> tuple[float, float] | None:
+        """Return metres per second, and from where, degrees; None where the vehicle does not say."""
+        told, estimated = self._link.latest("WIND"), self._link.latest("WIND_COV")
+        if told is not None:
+            return float(told.speed), float(told.direction) % 360.0
+        if estimated is not None:
+            speed = hypot(estimated.wind_x, estimated.wind_y)
+            return speed, (degrees(atan2(estimated.wind_y, estimated.wind_x)) + 180.0) % 360.0
+        return None
+
+    def failsafe(self) -> str | None:
+        """Return the event that the vehicle has just answered by itself, as it says; None if it has not."""
+        if self.position_trouble():
+            return POSITION_LOST
+        if self.breach():
+            return FENCE_BREACHED
+        now = self._link.clock.now()
+        said = [
+            text.text.lower() for text in self.texts.since(now - self._link.clock.patience(RECENT_SECONDS))
+        ]
+        for event, words in FAILSAFE_WORDS:
+            if any(word in text for text in said for word in words):
+                return event
+        return None
+
+    def here(self) -> Place:
+        """Return the position; home before there is one."""
+        found = self._link.latest(self._position)
+        if found is None:
+            return self._home
+        if self._geographic:
+            return Geographic(found.lat * 1e-7, found.lon * 1e-7, found.relative_alt * 1e-3)
+        return Local(found.x, found.y, -found.z)
+
+    def sea_level(self) -> float | None:
+        """Return the metres of the vehicle's own home above mean sea level; None before it says."""
+        found = self._link.latest("GLOBAL_POSITION_INT")
+        return None if found is None else (found.alt - found.relative_alt) * 1e-3
+
+    def velocity(self) -> tuple[float, float, float]:
+        """Return the speed north, east and up in metres per second."""
+        found = self._link.latest(self._position)
+        if found is None:
+            return (0.0, 0.0, 0.0)
+        unit = 0.01 if self._geographic else 1.0
+        return (found.vx * unit, found.vy * unit, -found.vz * unit)
+
+    def speed(self) -> float:
+        """Return the speed in metres per second."""
+        return float(hypot(*self.velocity()))
+
+    def heading(self) -> float | None:
+        """Return the heading in degrees clockwise from north; None where the vehicle does not say."""
+        found = self._link.latest("GLOBAL_POSITION_INT")
+        return found.hdg / 100.0 if found is not None and found.hdg != NO_HEADING else None
+
+    def energy(self) -> float | None:
+        """Return the part of the battery that is left; None where the vehicle does not say."""
+        for kind in ("SYS_STATUS", "BATTERY_STATUS"):
+            told = self._link.latest(kind)
+            if told is not None and told.battery_remaining >= 0:
+                return float(told.battery_remaining) / 100.0
+        return None
+
+    def battery_trouble(self) -> str:
+        """Return what the vehicle itself says against its battery; empty if nothing."""
+        told = self._link.latest("BATTERY_STATUS")
+        word = CHARGE.get(told.charge_state) if told is not None else None
+        return "" if word is None else f"it says that its battery is {word}"
+
+    def armed(self) -> bool:
+        """Return whether the motors may run."""
+        beat = self._link.latest("HEARTBEAT")
+        return bool(beat is not None and beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
+    def mode(self) -> int:
+        """Return the number of the mode; -1 before the first heartbeat."""
+        beat = self._link.latest("HEARTBEAT")
+        return int(beat.custom_mode) if beat is not None else -1
+
+    def grounded(self) -> bool:
+        """Return whether the vehicle says that it stands on the ground."""
+        state = self._link.latest("EXTENDED_SYS_STATE")
+        return bool(state is not None and state.landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
+
+    def airborne(self) -> bool:
+        """Return whether the vehicle says that it is in the air."""
+        state = self._link.latest("EXTENDED_SYS_STATE")
+        return state is not None and self.armed() and state.landed_state in IN_AIR
+
+    def item(self) -> int:
+        """Return the mission item that the vehicle is at; -1 where it does not say."""
+        current = self._link.latest("MISSION_CURRENT")
+        return int(current.seq) if current is not None else -1
+
+    def _recent(self, kind: str) -> Message | None:
+        return self._link.latest(kind) if self._link.since(kind) < RECENT_SECONDS else None

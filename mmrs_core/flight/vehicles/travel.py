@@ -1,0 +1,48 @@
+"""How carefully a vehicle travels: by the robot's travel mode, never less than its owner has set it.
+
+The places of a mission count as passed within a radius (WPNAV_RADIUS in centimetres, WP_RADIUS_M
+since ArduPilot 4.7, Rover's WP_RADIUS, PX4's NAV_ACC_RAD): it is made smaller where the mode asks for
+that. What the vehicle perceives itself it keeps away from by AVOID_MARGIN, and where it also plans its
+own way round by OA_MARGIN_MAX: these are made larger. Whether it avoids anything at all
+(AVOID_ENABLE, OA_TYPE) is its owner's business, since a vehicle that leaves its way leaves what was
+checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from ..links.link import Link
+from ..program import Travel
+from ..services import parameters
+from .modes import is_px4
+
+_CENTIMETRES = 100.0
+
+RADII: Mapping[str, Mapping[str, float]] = {
+    "copter": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
+    "sub": {"WP_RADIUS_M": 1.0, "WPNAV_RADIUS": _CENTIMETRES},
+    "rover": {"WP_RADIUS": 1.0},
+}
+"""By kind of vehicle: names of the radius in ArduPilot's versions, with their units in a metre."""
+
+PX4_RADIUS = "NAV_ACC_RAD"
+MARGINS = ("AVOID_MARGIN", "OA_MARGIN_MAX")
+
+
+def set_up(link: Link, kind: str, travel: Travel) -> Iterator[str]:
+    """Set a vehicle up for a way of travelling; yield what was changed, and what was not confirmed."""
+    radii = {PX4_RADIUS: 1.0} if is_px4(link) else RADII[kind]
+    margins = () if is_px4(link) else MARGINS
+    found = parameters.read(link, [*radii, *margins])
+    for name, value in found.items():
+        if name in radii and value > (wanted := travel.radius * radii[name]):
+            yield _changed(link, name, value, wanted, travel)
+        elif name in margins and value < travel.margin:
+            yield _changed(link, name, value, travel.margin, travel)
+
+
+def _changed(link: Link, name: str, was: float, wanted: float, travel: Travel) -> str:
+    if parameters.write(link, name, wanted):
+        return f"{name} = {wanted:g}, which was {was:g}: it travels {travel.mode}"
+    return f"{name} = {was:g}: the vehicle does not confirm {wanted:g}, for travelling {travel.mode}"

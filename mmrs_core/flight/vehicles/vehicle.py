@@ -1,0 +1,133 @@
+"""What a robot's program needs of a vehicle, whether there is one or not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from ..program import Look, Place
+from ..services.missions import Item
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What a robot knows of itself; conditions are asked with it.
+
+    Attributes:
+        time: seconds of the run. place: where it is. speed: metres per second.
+        heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
+            None where the vehicle does not say.
+        wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
+        detected: names of what the vehicle has detected so far.
+        answers: what the operator has answered so far, by question.
+        mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
+            for it, the vehicle's number. armed: whether the motors may run.
+    """
+
+    time: float
+    place: Place
+    speed: float
+    heading: float
+    energy: float | None
+    mode: str = ""
+    armed: bool = False
+    wind: float | None = None
+    wind_from: float | None = None
+    detected: frozenset[str] = frozenset()
+    answers: Mapping[str, bool] = field(default_factory=dict)
+
+    @property
+    def charge(self) -> float | None:
+        """Return the part of the battery that is left, as the standard conditions call it."""
+        return self.energy
+
+
+class Vehicle(Protocol):
+    """What a robot's program needs of a vehicle."""
+
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
+        """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""
+        ...
+
+    def answer_breach(self, response: str) -> None:
+        """Have the vehicle respond so by itself when it is outside its fence."""
+        ...
+
+    def prepare(
+        self,
+        fence: Sequence[Item],
+        rally: Sequence[Item],
+        mission: Sequence[Item],
+        places: Sequence[Place] = (),
+    ) -> None:
+        """Upload what there is to upload, and wait until the vehicle is ready to go to all places."""
+        ...
+
+    def take_off(self, height: float) -> None:
+        """Climb to a height above home, or go on climbing to it."""
+        ...
+
+    def land(self) -> None:
+        """Descend and stop the motors."""
+        ...
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Go straight to a place; `through`: without a stop there."""
+        ...
+
+    def turn(self, look: Look) -> None:
+        """Turn until a device points at something."""
+        ...
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+        """Fly items of the uploaded mission, and tell each item that is behind."""
+        ...
+
+    def rest(self, seconds: float) -> None:
+        """Stay for so many seconds."""
+        ...
+
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
+        """Have a device do something; `confirmed`: and wait for the image that it has promised to tell."""
+        ...
+
+    def measure(self, value: str) -> float | None:
+        """Return the next value published under that name; None where there is only a dry run."""
+        ...
+
+    def hold(self) -> bool:
+        """Halt and stay, and return when it does; say whether it must be watched from then on."""
+        ...
+
+    def carry_on(self) -> None:
+        """Be ready to move again after a hold; what flies stays where it is."""
+        ...
+
+    def check(self) -> None:
+        """Make sure, without waiting, that nobody else has taken the vehicle over.
+
+        Raises:
+            Fault: somebody has.
+        """
+        ...
+
+    def take_back(self) -> None:
+        """Be ready to command the vehicle out of a mode that it went into by itself."""
+        ...
+
+    def surface(self) -> None:
+        """Come up to the water surface."""
+        ...
+
+    def disarm(self) -> None:
+        """Switch off propulsion, whatever happens then."""
+        ...
+
+    def finish(self) -> None:
+        """End the mission: nothing moves any more."""
+        ...
+
+    def state(self) -> State:
+        """Return what is known now."""
+        ...
