@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from mmrs_core.cli.output import tell
 from mmrs_core.cli.settings import Settings as CliSettings
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.sitl.battery import load_at
+from mmrs_core.sitl.parameters import defaults
 from mmrs_core.sitl.settings import Settings
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 
@@ -103,6 +104,7 @@ class Berths:
                 recharge=berth.recharge if self.recharge is None else self.recharge,
                 parameters=dict(map(_parameter, self.parameters)),
             )
+            _refuse_unknown(settings)
             return SimulatedVehicle(
                 self.port + self.step * number,
                 settings,
@@ -114,6 +116,12 @@ class Berths:
             )
         except ValueError as error:
             raise typer.BadParameter(str(error)) from error
+
+
+def _refuse_unknown(settings: Settings) -> None:
+    unknown = sorted(settings.parameters.keys() - defaults(replace(settings, parameters={})).keys())
+    if unknown:
+        raise ValueError(f"parameter {unknown[0]}: the simulated vehicle has none of that name")
 
 
 def plain_berths(count: int, home: str, kind: str) -> list[Berth]:

@@ -129,11 +129,7 @@ _BY_KIND: Mapping[str, Mapping[str, float]] = {"copter": _COPTER, "rover": _ROVE
 
 
 def defaults(settings: Settings) -> dict[str, float]:
-    """Return the parameters of a vehicle that nobody has set up, but for what its settings say.
-
-    Raises:
-        ValueError: the settings name one that the vehicle does not have.
-    """
+    """Return the parameters of a vehicle that nobody has set up, but for what its settings say."""
     found = dict(_PX4) if settings.firmware == PX4 else {**_COMMON, **_BY_KIND[settings.kind]}
     own = {
         "SYSID_THISMAV": settings.system,
@@ -143,9 +139,6 @@ def defaults(settings: Settings) -> dict[str, float]:
         "BATT_CAPACITY": settings.capacity,
     }
     found.update({name: value for name, value in own.items() if name in found})
-    unknown = sorted(settings.parameters.keys() - found)
-    if unknown:
-        raise ValueError(f"parameter {unknown[0]}: the simulated vehicle has none of that name")
     return {**found, **settings.parameters}
 
 

@@ -15,6 +15,9 @@ MARGIN = 0.05
 SLOWEST = 0.5
 """Metres per second; a robot that the wind keeps from being faster than that does not come back."""
 
+TURNING_SECONDS = 6.0
+"""To brake, turn round, get up to speed, and stop at the end."""
+
 USUAL_CRUISE = 3.0
 USUAL_DESCENT = 1.0
 LEAST_USED = 0.05
@@ -89,6 +92,8 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
     for place in way_back(robot, response, track, here):
         seconds += _seconds(robot, state, here, place)
         here = place
+    if seconds > 0.0:
+        seconds += TURNING_SECONDS
     if robot.vehicle != "copter":
         return seconds
     return seconds + max(0.0, here.height) / (robot.descent or USUAL_DESCENT)

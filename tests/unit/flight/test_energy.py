@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.flight.program import Local, Robot
-from mmrs_core.flight.steps.energy import Reserve, seconds_back
+from mmrs_core.flight.steps.energy import TURNING_SECONDS, Reserve, seconds_back
 from mmrs_core.flight.steps.ways import way_back
 from mmrs_core.flight.vehicles.vehicle import State
 
@@ -23,21 +23,24 @@ def state(energy, *, time=100.0, place=TRACK[-1][1], armed=True, **wind):
 
 
 def test_the_way_back_is_the_way_that_the_robot_came_and_the_descent():
-    assert seconds_back(robot(), state(0.5), "RETURN", TRACK) == pytest.approx(400.0 / 5.0 + 10.0)
+    assert seconds_back(robot(), state(0.5), "RETURN", TRACK) == pytest.approx(
+        400.0 / 5.0 + TURNING_SECONDS + 10.0
+    )
     assert seconds_back(robot(), state(0.5), "LAND", TRACK) == pytest.approx(10.0)
 
 
 def test_an_emergency_area_ends_the_way_back_where_it_is_left_for():
     given = robot(escapes=(("a", Local(300.0, -50.0, 10.0)),))
     assert list(way_back(given, "EMERGENCY_AREA", TRACK))[-1] == Local(300.0, -50.0, 10.0)
-    assert seconds_back(given, state(0.5), "EMERGENCY_AREA", TRACK) == pytest.approx((100 + 50) / 5.0 + 10.0)
+    seconds = (100 + 50) / 5.0 + TURNING_SECONDS + 10.0
+    assert seconds_back(given, state(0.5), "EMERGENCY_AREA", TRACK) == pytest.approx(seconds)
 
 
 def test_head_wind_makes_the_way_longer_and_tail_wind_no_shorter():
     against = seconds_back(robot(), state(0.5, wind=2.5, wind_from=180.0), "RETURN", TRACK)
     behind = seconds_back(robot(), state(0.5, wind=2.5, wind_from=0.0), "RETURN", TRACK)
-    assert against == pytest.approx(100.0 / 5.0 + 300.0 / 2.5 + 10.0)
-    assert behind == pytest.approx(90.0)
+    assert against == pytest.approx(100.0 / 5.0 + 300.0 / 2.5 + TURNING_SECONDS + 10.0)
+    assert behind == pytest.approx(90.0 + TURNING_SECONDS)
 
 
 def test_the_reserve_counts_wherever_the_robot_is():
