@@ -56,6 +56,7 @@ def test_a_robot_that_is_killed_and_started_again_goes_on_exactly(fleet, point):
     check_success(fleet)
 
 
+@pytest.mark.thorough
 def test_a_robot_that_is_killed_at_any_moment_and_started_again_goes_on_exactly(fleet):
     fleet = fleet("exchange", 8)
     fleet.start("a", pause=0.01)

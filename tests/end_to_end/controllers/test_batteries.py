@@ -10,6 +10,8 @@ import pytest
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
 
+pytestmark = pytest.mark.thorough
+
 LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22
 

@@ -81,6 +81,7 @@ def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(contr
     assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
 
 
+@pytest.mark.thorough
 def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
     vehicles, links = hangar(made.program)
@@ -93,6 +94,7 @@ def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controll
     assert made.replayed(partial=True).faults == {"alpha": "LINK_LOST"}
 
 
+@pytest.mark.thorough
 def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
     vehicles, links = hangar(made.program)
@@ -105,6 +107,7 @@ def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     assert process.returncode == 0, said
 
 
+@pytest.mark.thorough
 def test_a_low_battery_brings_the_robot_home(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN"), hold=600.0))
     vehicles, links = hangar(made.program, energy=100.0)
@@ -132,6 +135,7 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
 
 
+@pytest.mark.thorough
 def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "LAND"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -141,6 +145,7 @@ def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     assert not vehicles["alpha"].autopilot.armed
 
 
+@pytest.mark.thorough
 @pytest.mark.thorough
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
@@ -178,6 +183,7 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     assert vehicles["alpha"].autopilot.mode == LOITER
 
 
+@pytest.mark.thorough
 @pytest.mark.thorough
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
@@ -221,6 +227,7 @@ def waiting_pair(*policies: Policy):
     return program(replace(giver, moves=moves), replace(taker, policies=policies))
 
 
+@pytest.mark.thorough
 def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     made = controllers(waiting_pair(Policy("PEER_LOST", "LAND", 5.0)))
     vehicles, links = hangar(made.program)

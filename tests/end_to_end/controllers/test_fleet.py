@@ -71,6 +71,7 @@ def test_fence_and_rally_points_are_uploaded(flown):
     assert vehicles["alpha"].autopilot.parameters["FENCE_ENABLE"] == 1.0
 
 
+@pytest.mark.thorough
 def test_a_lossy_link_changes_nothing(controllers, hangar):
     made = controllers(two_drones())
     _, links = hangar(made.program, speedup=10.0, loss=0.15)
@@ -203,4 +204,4 @@ def test_an_object_is_not_followed_to_where_it_may_not_be(controllers):
     find_buoy(made, "type(expected)(expected.latitude + 0.001, expected.longitude, expected.height)")
     code, said = made.run("fleet.py", "--dry-run")
     assert code == 1
-    assert "111.3 m from where it should be" in said
+    assert "111.1 m from where it should be" in said

@@ -10,6 +10,8 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
 
+pytestmark = pytest.mark.thorough
+
 AUTO, BRAKE = 3, 17
 PLACES = [(0.0, 60.0, 20.0), (60.0, 60.0, 20.0), (60.0, 0.0, 20.0), (30.0, -30.0, 20.0), (0.0, -60.0, 20.0)]
 

@@ -71,6 +71,7 @@ def pace(vehicle) -> float:
     return vehicle.autopilot.body.pace
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), full("down")])
 def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, hangar, state):
     made = controllers(survey())

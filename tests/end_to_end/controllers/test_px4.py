@@ -7,6 +7,8 @@ import pytest
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
 
+pytestmark = pytest.mark.thorough
+
 OFFBOARD, TAKE_OFF, MISSION, LAND = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
 ROUND = [(0.0, 60.0, 20.0), (0.0, 120.0, 20.0), (0.0, 180.0, 20.0), (60.0, 180.0, 20.0)]
 

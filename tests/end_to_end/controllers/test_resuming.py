@@ -22,6 +22,8 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
+pytestmark = pytest.mark.thorough
+
 LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22
 TRANSECTS = [(x, y, 12.0) for x in (20.0, 30.0, 40.0) for y in ((0.0, 60.0) if x != 30.0 else (60.0, 0.0))]

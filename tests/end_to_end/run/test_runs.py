@@ -129,6 +129,7 @@ def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("move", [pytest.param("out", marks=pytest.mark.thorough), "tour 0"])
 def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     flown = fleet(
@@ -144,6 +145,7 @@ def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     assert landed(flown)
 
 
+@pytest.mark.thorough
 def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
     first = flown.start()
