@@ -21,6 +21,9 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
+pytestmark = pytest.mark.thorough
+"""The fault table flies the same, and more, in the fast profile; these say each thing by itself."""
+
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE = 17
 LOITER = 5
@@ -68,7 +71,6 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
-@pytest.mark.thorough
 def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(controllers, hangar):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
@@ -81,7 +83,6 @@ def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(contr
     assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
 
 
-@pytest.mark.thorough
 def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
     vehicles, links = hangar(made.program)
@@ -94,7 +95,6 @@ def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controll
     assert made.replayed(partial=True).faults == {"alpha": "LINK_LOST"}
 
 
-@pytest.mark.thorough
 def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
     vehicles, links = hangar(made.program)
@@ -107,7 +107,6 @@ def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     assert process.returncode == 0, said
 
 
-@pytest.mark.thorough
 def test_a_low_battery_brings_the_robot_home(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN"), hold=600.0))
     vehicles, links = hangar(made.program, energy=100.0)
@@ -135,7 +134,6 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
 
 
-@pytest.mark.thorough
 def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "LAND"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -145,8 +143,6 @@ def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     assert not vehicles["alpha"].autopilot.armed
 
 
-@pytest.mark.thorough
-@pytest.mark.thorough
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
     _, links = hangar(made.program, silent=frozenset({2000}))
@@ -156,7 +152,6 @@ def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     assert made.replayed().complaints == ()
 
 
-@pytest.mark.thorough
 def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -168,7 +163,6 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
     assert "cannot carry out HOLD: the vehicle has been silent" in said
 
 
-@pytest.mark.thorough
 def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -183,8 +177,6 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     assert vehicles["alpha"].autopilot.mode == LOITER
 
 
-@pytest.mark.thorough
-@pytest.mark.thorough
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -227,7 +219,6 @@ def waiting_pair(*policies: Policy):
     return program(replace(giver, moves=moves), replace(taker, policies=policies))
 
 
-@pytest.mark.thorough
 def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     made = controllers(waiting_pair(Policy("PEER_LOST", "LAND", 5.0)))
     vehicles, links = hangar(made.program)
@@ -242,7 +233,6 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
 
 
-@pytest.mark.thorough
 def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
     made = controllers(waiting_pair(Policy("WAIT_TOO_LONG", "LAND", 2.0)))
     vehicles, links = hangar(made.program)
@@ -350,7 +340,6 @@ def test_a_vehicle_that_has_fallen_is_not_armed_again(controllers, hangar):
     assert 400 not in [command for seconds, command, _ in alpha.autopilot.history if seconds > fallen]
 
 
-@pytest.mark.thorough
 def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN")))
     vehicles, links = hangar(made.program, recharge=1e9)

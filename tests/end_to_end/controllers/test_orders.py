@@ -19,6 +19,9 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
+pytestmark = pytest.mark.thorough
+"""The fault table flies the same, and more, in the fast profile; these say each thing by itself."""
+
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE, GUIDED, LANDING = 17, 4, 9
 PROMPT = 1.0
@@ -71,7 +74,6 @@ def pace(vehicle) -> float:
     return vehicle.autopilot.body.pace
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), full("down")])
 def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, hangar, state):
     made = controllers(survey())
@@ -142,7 +144,6 @@ def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(control
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
-@pytest.mark.thorough
 def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, hangar):
     made = controllers(survey(leg=80.0))
     vehicles, links = hangar(made.program, speedup=10.0)
@@ -160,7 +161,6 @@ def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, 
     assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
 
 
-@pytest.mark.thorough
 def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar):
     made = controllers(survey(leg=20.0, waits=True))
     vehicles, links = hangar(made.program, speedup=10.0)
@@ -174,7 +174,6 @@ def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar)
     assert process.returncode == 130, said
 
 
-@pytest.mark.thorough
 def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     made = controllers(survey())
     _, links = hangar(made.program, speedup=10.0)
@@ -187,7 +186,6 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     assert told["place"]["height"] == pytest.approx(12.0, abs=1.0)
 
 
-@pytest.mark.thorough
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
     made = controllers(survey(leg=20.0))
     vehicles, links = hangar(made.program, speedup=10.0, silent=frozenset({2000}))
