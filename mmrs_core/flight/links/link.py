@@ -166,6 +166,11 @@ class Link:
         """Return how often the vehicle was seen to start anew."""
         return self._identity.starts
 
+    @property
+    def named(self) -> bool:
+        """Return whether it was said which system is meant, and not the first that speaks."""
+        return bool(self._wanted)
+
     def doubt(self) -> str:
         """Return why this may not be the robot's vehicle; empty if it is, as far as can be heard."""
         twin = self._roaming.twin or self._identity.twin

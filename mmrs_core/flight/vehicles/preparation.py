@@ -18,6 +18,9 @@ from ..services.missions import FENCE, MISSION, RALLY, Item, upload, verify
 from . import modes
 from .telemetry import Telemetry
 
+HEARING_SECONDS = 2.5
+"""Vehicles tell their heartbeats once a second; one of them may get lost."""
+
 READY_SECONDS = 120.0
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
@@ -87,6 +90,12 @@ def check_identity(link: Link, telemetry: Telemetry, kind: str, home: Place, tol
     away = hypot(*offset(home, telemetry.here())[:2])
     if away > tolerance:
         raise Refused(f"the vehicle is {away:.0f} m from the home of its program")
+
+
+def hear_out(link: Link) -> None:
+    """Listen to a link whose vehicle nobody has named until every vehicle there has had time to speak."""
+    if not link.named:
+        link.wait(link.doubt, link.clock.patience(HEARING_SECONDS))
 
 
 def await_position(link: Link, telemetry: Telemetry) -> None:

@@ -34,6 +34,7 @@ def recognise(
     telemetry = vehicle.telemetry
     preparation.ask_for_messages(link, geographic=isinstance(robot.home, Geographic))
     preparation.await_position(link, telemetry)
+    preparation.hear_out(link)
     if system and link.system != system:
         raise Refused(f"the vehicle is system {link.system}, and the robot's was system {system}")
     preparation.check_identity(link, telemetry, robot.vehicle, robot.home, tolerance)

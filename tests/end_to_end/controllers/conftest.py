@@ -108,7 +108,7 @@ def _open_hangar():
             vehicle.start()
             vehicles.append(vehicle)
             found[robot.id] = vehicle
-            links += ["--connect", f"{robot.id}=udpin:127.0.0.1:{port}"]
+            links += ["--connect", f"{robot.id}=udpin:127.0.0.1:{port}@{given.system}"]
         return found, links
 
     try:

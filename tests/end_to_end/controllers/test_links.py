@@ -104,7 +104,7 @@ def test_a_url_that_is_none_is_a_usage_error(controllers, url):
 def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar):
     made = controllers(UP_AND_DOWN)
     vehicles, links = hangar(UP_AND_DOWN)
-    port = int(links[-1].rpartition(":")[2])
+    port = int(links[-1].rpartition(":")[2].partition("@")[0])
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger,
         made.start("fleet.py", *links) as process,
@@ -163,7 +163,7 @@ def test_a_program_for_one_vehicle_does_not_reach_the_other(controllers, one_rad
 def test_which_of_two_vehicles_is_meant_must_be_said(controllers, one_radio):
     made = controllers(UP_AND_DOWN)
     url, vehicles = one_radio([(42.37, 13.35), (42.37, 13.3501)])
-    code, said = made.run("fleet.py", "--speedup", "5", "--connect", url)
+    code, said = made.run("fleet.py", "--speedup", "20", "--connect", url)
     assert code == 1
     assert "vehicles with the system ids 1 and 2 speak on this link: say which, as URL@" in said
     assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)

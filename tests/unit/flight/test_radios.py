@@ -15,6 +15,7 @@ from mmrs_core.flight.links.link import ANYBODY, Link
 from mmrs_core.flight.links.ports import split_system
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.radios import Radios
+from mmrs_core.flight.vehicles.preparation import HEARING_SECONDS, hear_out
 
 THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
 ITEM = mavlink.MAVLink_mission_current_message(3)
@@ -246,3 +247,21 @@ def test_a_url_may_name_a_system(text, found):
 def test_a_system_that_is_none_is_refused(text):
     with pytest.raises(ValueError, match="is no MAVLink system from 1 to 255"):
         split_system(text)
+
+
+def test_a_link_whose_vehicle_nobody_named_is_heard_out_for_others():
+    wire, clock = Wire(), Clock(10.0)
+    link = Link(Radio(wire, clock), clock, retries=QUICK)
+    wire.beat(system=1, sender=HERE)
+    assert link.wait(lambda: link.component, 5.0)
+    assert link.doubt() == ""
+    threading.Timer(0.2, wire.beat, kwargs={"system": 2, "sender": THERE}).start()
+    hear_out(link)
+    assert "system ids 1 and 2" in link.doubt()
+    link.close()
+
+
+def test_a_vehicle_that_was_named_is_not_waited_for(shared):
+    begun = shared.first.clock.now()
+    hear_out(shared.first)
+    assert shared.first.clock.now() - begun < HEARING_SECONDS / 2
