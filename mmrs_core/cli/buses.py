@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +12,9 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_core.flight.bus import Doubled
+from mmrs_core.flight.bus import Doubled, Incomplete, begin_together
 from mmrs_core.flight.bus.carrier import Carrier
 from mmrs_core.flight.bus.endpoints import first_fault
-from mmrs_core.runtime.orders import Orders
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
 
@@ -29,19 +27,19 @@ class BusWishes:
         used: whether robots of other processes are to be reached.
         listen, connect: endpoints, such as ``tcp/0.0.0.0:7447``.
         config: file of Zenoh's configuration.
-        sync: whether all robots begin at one instant.
+        sync: real seconds to wait for all robots, which then begin at one instant; None: they need not.
     """
 
     used: bool = False
     listen: tuple[str, ...] = ()
     connect: tuple[str, ...] = ()
     config: Path | None = None
-    sync: bool = False
+    sync: float | None = None
 
     @property
     def shared(self) -> bool:
         """Return whether there is anything but this process."""
-        return self.used or self.sync or bool(self.listen or self.connect or self.config)
+        return self.used or self.sync is not None or bool(self.listen or self.connect or self.config)
 
 
 def bus_for(
@@ -100,41 +98,40 @@ def refuse_endpoints(option: str, endpoints: Sequence[str]) -> None:
 
 
 def begin_all(
-    bus: ProgramBus, program: Program, here: Sequence[str], run: str, orders: Orders
-) -> Callable[[], None]:
-    """Return what waits until all robots of all processes are ready, and begin at one instant."""
+    bus: ProgramBus, program: Program, robots: Iterable[str], run: str, patience: float | None
+) -> Callable[[Callable[[], None]], Mapping[str, str]]:
+    """Return what has robots of this process begin at one instant with those of all others.
 
-    def begin() -> None:
-        threads = [
-            threading.Thread(target=_begin, args=(bus, program, robot, run, orders), daemon=True)
-            for robot in here
-        ]
-        for thread in threads:
-            thread.start()
-        while any(thread.is_alive() for thread in threads):
-            threads[0].join(0.05)
-            threads = [thread for thread in threads if thread.is_alive()] or threads[:1]
-        if orders.waiting:
-            raise KeyboardInterrupt
+    It is given a look at what else happens, which may raise, and returns in words how well each began.
+
+    Args:
+        robots: of this process, that begin anew.
+        patience: real seconds to wait; None: nobody waits.
+    """
+    here = tuple(robots)
+
+    def begin(look: Callable[[], None]) -> Mapping[str, str]:
+        if patience is None or not here:
+            return {}
+        told: set[str] = set()
+
+        def guard(why: str) -> None:
+            look()
+            if why and why not in told:
+                told.add(why)
+                tell(f"waits for the others, {patience:g} s at most: {why}")
+
+        everybody = [robot.id for robot in program.robots]
+        try:
+            found = begin_together(
+                bus.node, here[0], run, everybody, guard, beside=here[1:], patience=patience
+            )
+        except Incomplete as error:
+            raise LinkLostError(f"{error}; nothing has begun, --resume tries again") from error
+        tell(f"begins together with the others, {found}")
+        return dict.fromkeys(here, str(found))
 
     return begin
-
-
-def _begin(bus: ProgramBus, program: Program, robot: str, run: str, orders: Orders) -> None:
-    from mmrs_core.flight.bus import begin_together
-
-    told: list[str] = []
-
-    def guard(why: str) -> None:
-        if orders.waiting:
-            raise SystemExit
-        if why and why not in told:
-            told.append(why)
-            tell(f"'{robot}': waits for the others: {why}")
-
-    all_robots = [each.id for each in program.robots]
-    found = begin_together(bus.node, robot, run, all_robots, guard)
-    tell(f"'{robot}': begins together with the others, at most {1000 * found.skew:.1f} ms apart")
 
 
 def _refuse_strangers(program: Program, here: Sequence[str]) -> None:

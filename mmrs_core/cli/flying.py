@@ -150,7 +150,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             links=links,
             resumed=resumed,
             patience=wishes.patience,
-            meet=begin_all(bus, program, here, run, orders) if wishes.bus.sync else lambda: None,
+            meet=begin_all(bus, program, _unbegun(here, resumed), run, wishes.bus.sync),
             observe=observer.observe,
             say=tell,
         )
@@ -202,6 +202,11 @@ def _robots(program: Program, wanted: tuple[str, ...]) -> tuple[str, ...]:
         if robot not in known:
             raise typer.BadParameter(f"--robot {robot}: not in the behaviour, which has {', '.join(known)}")
     return tuple(robot for robot in known if not wanted or robot in wanted)
+
+
+def _unbegun(robots: tuple[str, ...], resumed: tuple[StepRecord, ...]) -> list[str]:
+    begun = {record.robot for record in resumed}
+    return [robot for robot in robots if robot not in begun]
 
 
 def _on_stop(word: str) -> str:

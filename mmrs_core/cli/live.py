@@ -70,6 +70,15 @@ def run(
     sync: Annotated[
         bool, typer.Option("--sync", help="Begin at one instant, once the robots of all processes are ready.")
     ] = False,
+    sync_patience: Annotated[
+        float,
+        typer.Option(
+            "--sync-patience",
+            min=0.1,
+            metavar="SECONDS",
+            help="To wait with --sync for robots that are not ready; then nothing begins.",
+        ),
+    ] = 300.0,
     signing_key: Annotated[
         Path | None, typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink frames with it.")
     ] = None,
@@ -116,7 +125,13 @@ def run(
         on_stop=on_stop,
         patience=battery_patience,
         assume=answers(assume),
-        bus=BusWishes(bus, tuple(bus_listen or ()), tuple(bus_connect or ()), bus_config, sync),
+        bus=BusWishes(
+            bus,
+            tuple(bus_listen or ()),
+            tuple(bus_connect or ()),
+            bus_config,
+            sync_patience if sync else None,
+        ),
     )
     loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
     result = carry_out(workshop, loaded, wishes)

@@ -11,6 +11,7 @@ POSITION_LOST = "POSITION_LOST"
 OBSTACLE = "OBSTACLE"
 FENCE_BREACHED = "FENCE_BREACHED"
 VEHICLE_RESTARTED = "VEHICLE_RESTARTED"
+GROUND_LOST = "GROUND_LOST"
 NO_PROGRESS = "NO_PROGRESS"
 TAKEN_OVER = "TAKEN_OVER"
 MOTORS_OFF = "MOTORS_OFF"
@@ -40,6 +41,13 @@ class Refused(Fault):
 
 class Strange(Refused):
     """The vehicle is not the robot's, or somebody else may have it: it must be told nothing."""
+
+
+class Alone(Fault):
+    """The robots that it was to begin with have not come: nothing has begun."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(PEER_LOST, message)
 
 
 class Stopped(Fault):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .bus import PATIENCE
 from .clock import Clock
 from .faults import Fault
 from .injection import HELP, Injections, injections
@@ -82,7 +83,7 @@ class Options:
         on_stop: ``hold``, ``return`` or ``land``.
         battery_patience: real seconds to wait for a changed battery when no other robot works.
         fence: whether to upload it.
-        sync: whether all robots begin at one instant.
+        sync: real seconds to wait for all robots, which then begin at one instant; None: they need not.
         inject: faults to be made on purpose.
     """
 
@@ -97,7 +98,7 @@ class Options:
     tolerances: Tolerances
     reach: Reach
     bus: Bus
-    sync: bool
+    sync: float | None
     inject: Injections
 
 
@@ -122,6 +123,7 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
     add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
     add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
+    add("--sync-patience", type=float, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
@@ -157,11 +159,15 @@ def options_of(
         tolerances=Tolerances(given.acceptance, given.home_tolerance),
         reach=reach,
         bus=_bus(given),
-        sync=given.sync,
+        sync=_sync(parser, given),
         inject=_inject(parser, reach, given),
     )
 
 
+_SYNC_PATIENCE = (
+    f"real seconds to wait with --sync for robots that are not ready, default {PATIENCE:g};"
+    " then nothing begins"
+)
 _PATIENCE = (
     "how long to wait for the order resume when a robot has come home for its battery and no other works"
 )
@@ -263,6 +269,12 @@ def _inject(parser: argparse.ArgumentParser, reach: Reach, given: Any) -> Inject
         return injections(given.inject, reach.urls, dry=given.dry_run, alone=alone)
     except ValueError as error:
         parser.error(f"--inject {error}")
+
+
+def _sync(parser: argparse.ArgumentParser, given: Any) -> float | None:
+    if given.sync_patience <= 0:
+        parser.error("--sync-patience must be positive")
+    return float(given.sync_patience) if given.sync else None
 
 
 def _bus(given: Any) -> Bus:

@@ -18,7 +18,7 @@ from .bus import begin_together
 from .conditions import Condition
 from .crews import Crews
 from .desk import Desk, Meet
-from .faults import CRASHED, Fault, Refused, Strange
+from .faults import CRASHED, Alone, Fault, Refused, Strange
 from .injection import Rehearsal
 from .judgement import Judgement
 from .links.link import Link
@@ -112,7 +112,7 @@ class Session:
     def _carry_out(self, ending: Ending) -> int:
         try:
             self._crew.pilot.fly()
-        except Strange as fault:
+        except (Strange, Alone) as fault:
             return ending.refuse(fault)
         except Fault as fault:
             return ending.end(fault)
@@ -212,10 +212,11 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
 
 
 def _meeting(robot: Robot, shared: Shared) -> Meet | None:
-    robots = robot.fleet or (robot.id,)
-    if not shared.options.sync:
+    robots, patience = robot.fleet or (robot.id,), shared.options.sync
+    if patience is None:
         return None
-    return lambda guard: begin_together(shared.slots.node, robot.id, shared.options.run, robots, guard)
+    node, run = shared.slots.node, shared.options.run
+    return lambda guard: begin_together(node, robot.id, run, robots, guard, patience=patience)
 
 
 def _recognition(

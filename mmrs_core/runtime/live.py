@@ -18,6 +18,7 @@ from mmrs_core.contributions.execution import (
     Closing,
     Condition,
     Live,
+    Noting,
     Preparing,
 )
 from mmrs_core.errors import LinkLostError, MmrsError
@@ -44,7 +45,8 @@ class Venture:
         resumed: the steps made before the run was broken off.
         suspends: whether a low battery only breaks a program off.
         patience: seconds to wait for the order to resume once nobody else works.
-        meet: waits for robots of other processes once those of this one are ready.
+        meet: waits for robots of other processes once those of this one are ready, calling again and
+            again what it is given; returns, by robot, how well they begin together.
         observe: called with each step before it has an effect.
         say: tells people what goes on.
     """
@@ -61,7 +63,7 @@ class Venture:
     resumed: tuple[StepRecord, ...] = ()
     suspends: bool = True
     patience: float = 0.0
-    meet: Callable[[], None] = lambda: None
+    meet: Callable[[Callable[[], None]], Mapping[str, str]] = lambda look: {}
     observe: Callable[[StepRecord], None] | None = None
     say: Callable[[str], None] = print
 
@@ -86,7 +88,6 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     with ExitStack() as stack:
         robots = _connected(venture, backend, attention, stack)
         _get_ready(robots, venture)
-        venture.meet()
         steps = interpret(
             venture.program,
             robots,
@@ -155,7 +156,19 @@ def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
         early.look()
         if waiting:
             clock.sleep_until(clock.now() + PACE)
+    _meet(robots, venture, early)
     early.pass_on()
+
+
+def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
+    def look() -> None:
+        early.look()
+        for id, robot in robots.items():
+            _refuse_fault(id, robot, venture.clock.now())
+
+    for id, why in venture.meet(look).items():
+        if isinstance(robot := robots[id], Noting):
+            robot.note("decision", {"what": "TOGETHER", "why": why, "response": "begins"})
 
 
 class _EarlyOrders:

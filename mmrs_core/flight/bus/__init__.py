@@ -10,13 +10,14 @@ Zenoh take part.
 from .carrier import Carrier, Hub
 from .delivery import Delivery
 from .journal import FileJournal, NoJournal
-from .meeting import Beginning, begin_together
+from .meeting import PATIENCE, Beginning, Incomplete, begin_together
 from .members import Member, Recorded
 from .node import Doubled, Node
 from .owner import Owned
 from .words import CommandId, SlotId, SlotState
 
 __all__ = [
+    "PATIENCE",
     "Beginning",
     "Carrier",
     "CommandId",
@@ -24,6 +25,7 @@ __all__ = [
     "Doubled",
     "FileJournal",
     "Hub",
+    "Incomplete",
     "Member",
     "NoJournal",
     "Node",

@@ -2,14 +2,15 @@
 
 The robot whose name comes first keeps the list of who is ready, and sets the instant by its clock.
 The others measure by round trips how far their clocks are from that one: half of the shortest round
-trip is how wrong that can be.
+trip is how wrong that can be. Whoever has waited for too long is no longer ready, and says who has not
+come; if all begin at that very moment, it begins, too.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .words import Answer, CommandId, Meet
@@ -17,12 +18,21 @@ from .words import Answer, CommandId, Meet
 if TYPE_CHECKING:
     from .node import Node
 
+PATIENCE = 300.0
+"""Real seconds that robots usually wait for each other."""
+
 NOTICE_SECONDS = 1.0
 """How long before the instant it is set, so that everybody hears of it and can measure."""
 
 GLANCE_SECONDS = 0.05
 ROUND_TRIPS = 16
 SLOWEST_SECONDS = 2.0
+FAREWELLS = 3
+"""How often a robot that waits no longer says so at most, until it is answered."""
+
+
+class Incomplete(Exception):  # noqa: N818  # what the team is
+    """Not all robots that were to begin together have come in time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +54,13 @@ class Beginning:
         """Return by how many seconds at most this robot began away from the instant."""
         return self.late + self.uncertainty
 
+    def __str__(self) -> str:
+        """Return it for people, in milliseconds."""
+        return (
+            f"at most {self.skew * 1e3:.1f} ms from the instant: {self.late * 1e3:.1f} ms late, by clocks"
+            f" {self.offset * 1e3:.1f} ms apart, known to {self.uncertainty * 1e3:.1f} ms"
+        )
+
 
 class Meeting:
     """What the first robot knows: who is ready, and when all begin."""
@@ -54,16 +71,30 @@ class Meeting:
         self._ready: set[str] = set()
         self._at = 0.0
 
-    def answer(self, asked: Meet) -> Answer:
-        """Note that a robot is ready; say what the time is, and when all begin if that is known."""
-        self._ready.add(asked.id.sender)
+    def answer(self, asked: Meet, gone: Callable[[str], bool] = lambda robot: False) -> Answer:
+        """Note that a robot is ready, or no longer; say what the time is, who is ready, and when all begin.
+
+        Args:
+            asked: by the robot.
+            gone: whether a robot that was ready has ended since, or is out of reach.
+        """
         now = self._now()
-        if not self._at and len(self._ready) >= asked.robots:
-            self._at = now + NOTICE_SECONDS
+        if not self._at:
+            self._note(asked, gone)
+            if asked.robots and len(self._ready) >= asked.robots:
+                self._at = now + NOTICE_SECONDS
+        ready = tuple(sorted(self._ready))
         if self._at:
-            return Answer("begin", time=now, at=self._at)
-        here = ", ".join(map(ascii, sorted(self._ready)))
-        return Answer("wait", time=now, why=f"{len(self._ready)} of {asked.robots} are ready: {here}")
+            return Answer("begin", time=now, at=self._at, ready=ready)
+        why = f"{len(ready)} of {asked.robots} are ready: {', '.join(map(ascii, ready))}"
+        return Answer("wait", time=now, why=why, ready=ready)
+
+    def _note(self, asked: Meet, gone: Callable[[str], bool]) -> None:
+        self._ready = {robot for robot in self._ready if not gone(robot)}
+        if asked.robots:
+            self._ready.add(asked.id.sender)
+        else:
+            self._ready.discard(asked.id.sender)
 
 
 def begin_together(
@@ -74,6 +105,7 @@ def begin_together(
     guard: Callable[[str], None],
     now: Callable[[], float] = time.monotonic,
     beside: Sequence[str] = (),
+    patience: float = PATIENCE,
 ) -> Beginning:
     """Return when all robots begin, with how well this one does.
 
@@ -85,59 +117,117 @@ def begin_together(
         guard: called again and again meanwhile with what is still missing; raises what should end it.
         now: the clock of the node.
         beside: further robots of this process that are ready and begin with this one.
+        patience: real seconds to wait for the others.
+
+    Raises:
+        Incomplete: not all are ready by then; says who is not.
     """
-    for other in beside:
-        _Asking(node, other, run, min(robots), len(set(robots)), now).report(guard)
-    asking = _Asking(node, robot, run, min(robots), len(set(robots)), now)
-    why = "nobody has answered yet"
-    while not asking.at or (asking.trips < ROUND_TRIPS and asking.left() > GLANCE_SECONDS):
-        guard(why)
-        why = asking.ask() or why
-        if not asking.at:
-            time.sleep(GLANCE_SECONDS)
+    calls = [_Asking(node, each, run, robots, now) for each in (robot, *beside)]
+    asking = calls[0]
+    _gather(calls, guard, time.monotonic() + patience)
+    if not asking.at:
+        raise Incomplete(f"after {patience:g} s {_absent(node, asking.missing())}")
+    while asking.trips < ROUND_TRIPS and asking.left() > GLANCE_SECONDS:
+        guard("")
+        asking.ask()
     while (left := asking.left()) > 0:
         guard("")
         time.sleep(min(left, GLANCE_SECONDS))
     return Beginning(asking.offset, asking.shortest / 2, -asking.left())
 
 
+def _gather(calls: Sequence[_Asking], guard: Callable[[str], None], until: float) -> None:
+    """Have it known that robots are ready, until the first of them knows the instant or time is up."""
+    asking, why = calls[0], "nobody has answered yet"
+    while not asking.at and time.monotonic() < until:
+        guard(why)
+        why = asking.ask()
+        for each in calls[1:]:
+            if asking.lacks(each):
+                each.ask()
+        if not asking.at:
+            time.sleep(GLANCE_SECONDS)
+    for each in calls:
+        if not asking.at and each.heard:
+            each.withdraw()
+            asking.at = asking.at or each.at
+
+
+def _absent(node: Node, missing: Sequence[str]) -> str:
+    words = f"{', '.join(map(ascii, missing))} {'is' if len(missing) == 1 else 'are'} not ready"
+    unseen = node.unseen(missing)
+    return words + (f"; never seen on the bus: {', '.join(map(ascii, unseen))}" if unseen else "")
+
+
 class _Asking:
-    """Asks the first robot for the time, and keeps the best answer."""
+    """Asks the first robot for the time, and keeps the best answer.
+
+    Attributes:
+        at: when all begin, by the first robot's clock; 0: nobody knows.
+        offset: seconds by which that clock is ahead, measured in a round trip of the `shortest` time.
+        trips: round trips since the instant is known.
+        heard: whether the first robot knows that this one is ready.
+    """
 
     def __init__(
-        self, node: Node, robot: str, run: str, first: str, robots: int, now: Callable[[], float]
+        self, node: Node, robot: str, run: str, robots: Sequence[str], now: Callable[[], float]
     ) -> None:
         self.at = self.offset = 0.0
         self.shortest = float("inf")
         self.trips = 0
-        self._node, self._first, self._now = node, first, now
-        self._request = Meet(CommandId(run, robot, node.incarnation, 0), robots)
+        self.heard = False
+        self._ready: tuple[str, ...] = ()
+        self._robot = robot
+        self._robots, self._first = sorted(set(robots)), min(robots)
+        self._node, self._now = node, now
+        self._request = Meet(CommandId(run, robot, node.incarnation, 0), len(self._robots))
 
     def left(self) -> float:
         """Return the seconds until the instant, by this robot's clock."""
         return self.at - self.offset - self._now()
 
+    def lacks(self, other: _Asking) -> bool:
+        """Return whether the first robot has answered, but does not know that another one is ready."""
+        return bool(self._ready) and other._robot not in self._ready
+
+    def missing(self) -> list[str]:
+        """Return the robots that are not ready, or are out of reach where nobody says who is ready."""
+        if not self._ready:
+            return [each for each in self._robots if each in self._node.missing(self._robots)] or [
+                self._first
+            ]
+        return [each for each in self._robots if each not in self._ready]
+
     def ask(self) -> str:
         """Ask once; return what is missing, if anything."""
+        answer = self._answer_to(self._request)
+        if answer is None:
+            self._ready = ()
+            return f"no answer from {self._first!a}"
+        self.heard, self._ready = True, answer.ready
+        missing = ", ".join(map(ascii, self.missing()))
+        return f"{answer.why}; not yet: {missing}" if answer.why and missing else answer.why
+
+    def withdraw(self) -> None:
+        """Say that the robot waits no longer; where all begin at this very moment, it does, too."""
+        for _ in range(FAREWELLS):
+            if self._answer_to(replace(self._request, robots=0)) is not None:
+                return
+
+    def _answer_to(self, request: Meet) -> Answer | None:
         found: list[tuple[Answer, float]] = []
         asked = self._now()
-        sender = self._request.id.sender
 
         def take(answer: Answer) -> None:
             found.append((answer, self._now()))
 
-        self._node.ask_once(sender, self._first, self._request, take)
+        self._node.ask_once(request.id.sender, self._first, request, take)
         while not found and self._now() - asked < SLOWEST_SECONDS:
             time.sleep(0.0005)
         if not found:
-            return f"no answer from {self._first!a}"
+            return None
         self._learn(found[0][0], asked, found[0][1])
-        return found[0][0].why
-
-    def report(self, guard: Callable[[str], None]) -> None:
-        """Have it known that the robot is ready."""
-        while self.shortest == float("inf"):
-            guard(self.ask() or "nobody has answered yet")
+        return found[0][0]
 
     def _learn(self, answer: Answer, asked: float, heard: float) -> None:
         if answer.what == "begin":

@@ -440,7 +440,7 @@ class Node:
 
     def _answer_of(self, robot: str, request: Request, *, here: bool) -> Answer:
         if isinstance(request, Meet):
-            return self._meeting.answer(request)
+            return self._meeting.answer(request, self._watching.is_gone)
         if isinstance(request, Leave):
             return self._see_off(robot, request)
         if isinstance(request, Begin):

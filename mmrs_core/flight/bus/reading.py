@@ -72,6 +72,7 @@ def answer_in(text: str | bytes) -> Answer:
         text_in(content, "why", ""),
         _seconds_in(content, "time"),
         _seconds_in(content, "at"),
+        names_in(content, "ready") if "ready" in content else (),
     )
 
 
@@ -182,7 +183,7 @@ def _recorded(each: object) -> tuple[str, bool, int]:
 
 def _brief(answer: Answer) -> dict[str, object]:
     usual = Answer(answer.what)
-    told = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at")}
+    told = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at", "ready")}
     return {"is": answer.what, **{k: v for k, v in told.items() if v != getattr(usual, k)}}
 
 

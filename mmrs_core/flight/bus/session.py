@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import IO, Any
 
 from .delivery import Delivery
-from .meeting import begin_together
+from .meeting import Incomplete, begin_together
 from .node import Node
 from .reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
 from .troubles import Net, tell_people
@@ -134,16 +134,16 @@ class Session:
         return {"is": "lost", "robots": list(self._node.lost(names_in(content, "robots")))}
 
     def _begin(self, content: Mapping[str, Any]) -> Mapping[str, object]:
-        until = time.monotonic() + number_in(content, "seconds", 60)
-
-        def guard(why: str) -> None:
-            if time.monotonic() > until:
-                raise Unreadable(f"not everybody is ready: {why}")
-
+        patience = number_in(content, "seconds", 60)
         robots = names_in(content, "robots")
         if self._robot not in robots:
             raise Unreadable(f"robots: {self._robot!a} is not among them")
-        begun = begin_together(self._node, self._robot, self._run, robots, guard)
+        try:
+            begun = begin_together(
+                self._node, self._robot, self._run, robots, lambda why: None, patience=patience
+            )
+        except Incomplete as error:
+            raise Unreadable(str(error)) from None
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
 
     def _leave(self, content: Mapping[str, Any]) -> Mapping[str, object]:

@@ -114,7 +114,7 @@ class Leave:
 
 @dataclass(frozen=True, slots=True)
 class Meet:
-    """Asks when all begin, and what the time is; `robots` is how many begin together."""
+    """Asks when all begin, and what the time is; `robots` is how many begin together, 0: not with me."""
 
     id: CommandId
     robots: int
@@ -132,6 +132,7 @@ class Answer:
         lamport: of a grant: the least logical time that the notify may have.
         why: of a refusal.
         time: of a meeting: the answerer's clock, seconds. at: when all begin by that clock.
+        ready: of a meeting: the robots that are ready.
     """
 
     what: str
@@ -139,6 +140,7 @@ class Answer:
     why: str = ""
     time: float = 0.0
     at: float = 0.0
+    ready: tuple[str, ...] = ()
 
 
 def digest(name: str) -> str:

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 from ..desk import Desk
 from ..faults import (
     BATTERY_LOW,
+    GROUND_LOST,
     LINK_LOST,
     ORDERED,
     POSITION_LOST,
     STOPPED,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
+    Alone,
     Fault,
+    Strange,
 )
 from ..links.link import Link
 from ..orders.obedience import OBEYED_IN, Obedience, Ordered
@@ -39,7 +42,7 @@ NEARER = 0.3
 """Metres by which a vehicle must have come nearer to the first place of its way back to be seen to obey."""
 
 CODES = {STOPPED: INTERRUPTED, ORDERED: INTERRUPTED, LINK_LOST: LINK}
-OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, STOPPED})
+OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST, STOPPED})
 """Events that are answered although the robot already responds to another."""
 
 
@@ -110,17 +113,18 @@ class Ending:
         crew.say("stopped" if first.event == STOPPED else "ended early")
         return CODES.get(first.event, FAILED)
 
-    def refuse(self, fault: Fault) -> int:
-        """Leave a vehicle alone that is not the robot's; return the exit code.
+    def refuse(self, fault: Strange | Alone) -> int:
+        """Leave a vehicle alone that is not the robot's, or robots that have not come; return the exit code.
 
-        A log that others will go on with is left as it is.
+        A log that others will go on with, or which can still begin, is left as it is.
         """
         self._tell(fault, NOTHING)
-        self.suspended = bool(self._crew.desk.log.steps)
+        waits = isinstance(fault, Alone)
+        self.suspended = waits or bool(self._crew.desk.log.steps)
         if not self.suspended:
             self._log(fault)
-        self._crew.say("ended early")
-        return FAILED
+        self._crew.say("has not begun; --resume tries again" if waits else "ended early")
+        return LINK if waits else FAILED
 
     def _carry_out(self, fault: Fault, response: str) -> None:
         crew = self._crew

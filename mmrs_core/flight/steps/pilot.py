@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+from ..bus import Incomplete
 from ..desk import Desk, Meet
-from ..faults import BATTERY_LOW, FENCE_BREACHED, Fault, Refused, Strange
+from ..faults import BATTERY_LOW, FENCE_BREACHED, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, distance, ends_of
@@ -115,6 +116,8 @@ class Pilot:
             raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None and not self._desk.dry:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
+        for line in self._watch.words_at_start():
+            self._desk.say(f"{self._robot.id!a} {line}")
 
     def _tell_fence(self, fence: bool) -> None:
         """Tell the vehicle what to do by itself when it is outside its fence."""
@@ -126,7 +129,11 @@ class Pilot:
             self._desk.say(f"{self._robot.id!a}: {error}")
 
     def _meet(self, meet: Meet) -> None:
-        """Begin together with all other robots."""
+        """Begin together with all other robots.
+
+        Raises:
+            Alone: they have not come in time.
+        """
         told: set[str] = set()
 
         def guard(missing: str) -> None:
@@ -135,9 +142,12 @@ class Pilot:
                 told.add(missing)
                 self._desk.say(f"{self._robot.id!a} is ready to begin with the others: {missing}")
 
-        begun = meet(guard)
-        why = f"{begun.late * 1e3:.1f} ms after the instant, clocks known to {begun.uncertainty * 1e3:.1f} ms"
-        self.journal.decide("TOGETHER", why, "begins")
+        try:
+            begun = meet(guard)
+        except Incomplete as error:
+            raise Alone(str(error)) from None
+        self._desk.say(f"{self._robot.id!a}: begins together with the others, {begun}")
+        self.journal.decide("TOGETHER", str(begun), "begins")
 
     def _take_up_again(self) -> None:
         """Be where the interrupted leg began, by the way that the robot came in this sortie."""

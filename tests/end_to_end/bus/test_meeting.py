@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from mmrs_core.flight.bus import begin_together
+from mmrs_core.flight.bus import Incomplete, begin_together
 
 NAMES = ("a", "b", "c")
 
@@ -61,6 +61,30 @@ def test_nobody_begins_before_all_are_ready_and_each_is_told_who_is(ends):
     for each in (*first, last):
         each.thread.join(20.0)
         assert each.begun is not None
+
+
+def ignore(why: str) -> None:
+    """Need no words."""
+
+
+def test_whoever_waits_for_too_long_says_who_has_not_come(ends):
+    first = ends.open("a")
+    with pytest.raises(Incomplete, match="'b', 'c' are not ready; never seen on the bus: 'b', 'c'"):
+        begin_together(first, "a", "run-0", NAMES, ignore, patience=0.2)
+
+
+def test_a_robot_whose_list_keeper_has_not_come_says_so(ends):
+    with pytest.raises(Incomplete, match="'a', 'c' are not ready"):
+        begin_together(ends.open("b"), "b", "run-0", NAMES, ignore, patience=0.2)
+
+
+def test_a_robot_that_waits_no_longer_is_not_counted_as_ready(ends):
+    for robot in NAMES[:2]:
+        ends.open(robot)
+    with pytest.raises(Incomplete, match="'a', 'c' are not ready"):
+        begin_together(ends.nodes[1], "b", "run-0", NAMES, ignore, patience=1.0)
+    with pytest.raises(Incomplete, match="'b' is not ready"):
+        begin_together(ends.nodes[0], "a", "run-0", ("a", "b"), ignore, patience=0.5)
 
 
 def test_waiting_for_the_others_can_be_ended(ends):

@@ -3,6 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from fault_table.fleet import free_tcp_port
 
 from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.behaviour.replay import Outcome
@@ -115,7 +116,20 @@ def test_robots_that_begin_together_know_how_well_they_did(controllers):
     for robot in ("alpha", "beta"):
         (begun,) = made.box(robot, "decision")
         assert (begun["what"], begun["response"]) == ("TOGETHER", "begins")
+        assert "ms apart, known to" in begun["why"]
     assert made.replayed().complaints == ()
+
+
+def test_nothing_begins_where_the_others_do_not_come_and_it_can_be_tried_again(controllers):
+    made = controllers(two_drones())
+    endpoint = f"tcp/127.0.0.1:{free_tcp_port()}"
+    alone = ("--dry-run", "--sync", "--sync-patience", "1", "--speedup", "50", "--bus-listen", endpoint)
+    code, said = made.run("robot_alpha.py", *alone)
+    assert code == 5, said
+    assert "after 1 s 'beta' is not ready; never seen on the bus: 'beta'" in said
+    assert made.steps("alpha") == []
+    code, said = made.run("fleet.py", "--dry-run", "--sync", "--resume", "--speedup", "50")
+    assert code == 0, said
 
 
 def test_logs_are_never_overwritten(controllers):

@@ -76,6 +76,21 @@ def test_robots_of_two_processes_meet_on_the_bus_and_begin_together(fleet):
     assert (first.end(PATIENCE), second.end(PATIENCE)) == (0, 0), first.said + second.said
     assert judged(flown) is Outcome.SUCCESS
     assert any("begins together" in line for line in first.said)
+    for robot in "ab":
+        (begun,) = [line for line in flown.box(robot) if line.get("what") == "TOGETHER"]
+        assert begun["response"] == "begins"
+        assert "ms apart, known to" in begun["why"]
+
+
+def test_nothing_begins_where_robots_of_other_processes_do_not_come(fleet):
+    flown = fleet(*SYNCHRONISED)
+    listens = ("--bus-listen", f"tcp/127.0.0.1:{free_port()}")
+    process = flown.start(*listens, "--sync", "--sync-patience", "1", robot="a")
+    assert process.end(PATIENCE) == 5, process.said
+    assert "after 1 s 'b' is not ready; never seen on the bus: 'b'" in process.said[-1]
+    assert any("1 of 2 are ready: 'a'; not yet: 'b'" in line for line in process.said)
+    assert not any(number == 400 for _, number, _ in flown.vehicles["a"].autopilot.history)
+    assert flown.steps("a") == []
 
 
 def test_a_robot_whose_peers_run_elsewhere_needs_the_bus(fleet):

@@ -273,6 +273,24 @@ def test_a_robot_that_is_to_come_home_before_it_left_does_not_leave(live):
     assert "b end walk" in run.shown()
 
 
+def test_orders_while_robots_of_other_processes_are_waited_for_end_nothing_else(live):
+    met = threading.Event()
+
+    def meet(look):
+        while not met.wait(0.01):
+            look()
+        return {}
+
+    run = live(TWO, Script(), meet=meet)
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    assert run.order(HOLD, "a").refused == {"a": "is not ready yet"}
+    assert list(run.order(RETURN, "a").confirmed) == ["a"]
+    assert run.records == []
+    met.set()
+    assert run.end().faults == {"a": Fault("ORDERED", "order to return")}
+    assert "b end walk" in run.shown()
+
+
 def test_nothing_begins_once_every_robot_was_told_to_stop(live):
     run = live(TWO, Script(ready=inf))
     run.wait_for(lambda: len(run.script.robots) == 2)

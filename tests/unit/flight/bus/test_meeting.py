@@ -1,0 +1,47 @@
+"""The list of who is ready, as the first robot keeps it."""
+
+from __future__ import annotations
+
+from mmrs_core.flight.bus.meeting import Beginning, Meeting
+from mmrs_core.flight.bus.words import CommandId, Meet
+
+
+def ready(robot: str, robots: int = 2) -> Meet:
+    return Meet(CommandId("run-0", robot, "1", 0), robots)
+
+
+def test_all_begin_once_the_last_is_ready():
+    meeting = Meeting(lambda: 5.0)
+    assert meeting.answer(ready("a")).what == "wait"
+    assert meeting.answer(ready("b")).at > 5.0
+
+
+def test_the_answer_says_who_is_ready():
+    meeting = Meeting()
+    assert meeting.answer(ready("b", 3)).ready == ("b",)
+    assert meeting.answer(ready("a", 3)).ready == ("a", "b")
+
+
+def test_a_robot_that_waits_no_longer_is_not_ready():
+    meeting = Meeting()
+    meeting.answer(ready("a"))
+    assert meeting.answer(ready("a", 0)).ready == ()
+    assert meeting.answer(ready("b")).what == "wait"
+
+
+def test_a_robot_that_is_gone_is_not_ready():
+    meeting = Meeting()
+    meeting.answer(ready("a"))
+    assert meeting.answer(ready("b"), {"a"}.__contains__).what == "wait"
+
+
+def test_a_robot_that_gives_up_as_all_begin_is_told_so():
+    meeting = Meeting()
+    for robot in "ab":
+        meeting.answer(ready(robot))
+    assert meeting.answer(ready("a", 0)).what == "begin"
+
+
+def test_people_are_told_skew_offset_and_uncertainty():
+    words = str(Beginning(offset=0.0123, uncertainty=0.0004, late=0.0011))
+    assert words == "at most 1.5 ms from the instant: 1.1 ms late, by clocks 12.3 ms apart, known to 0.4 ms"
