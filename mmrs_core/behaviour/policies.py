@@ -12,6 +12,7 @@ AFTER: Mapping[str, float] = {
     "LINK_LOST": 10.0,
     "DEVICE_SILENT": 30.0,
     "WAIT_TOO_LONG": inf,
+    "GROUND_LOST": 10.0,
 }
 """Seconds that a fault lasts before the robot responds, where its policy does not say.
 
@@ -20,6 +21,9 @@ A wait is part of the plan, however long: it is too long only where somebody sai
 
 LAST_RESORT = "HOLD"
 """What a robot does about a fault that nobody declared a response to."""
+
+BORNE: Mapping[str, PolicyResponse] = {"GROUND_LOST": "CONTINUE"}
+"""What goes before that: nobody needs to look on for a robot to finish."""
 
 
 def in_precedence(
@@ -44,7 +48,7 @@ def policy_for(event: str, policies: Iterable[Policy]) -> Policy | None:
 def response_to(event: str, policies: Iterable[Policy]) -> str:
     """Return the response to an event, a literal of PolicyResponse."""
     policy = policy_for(event, policies)
-    return policy.response if policy else LAST_RESORT
+    return policy.response if policy else BORNE.get(event, LAST_RESORT)
 
 
 def patience(event: str, policies: Iterable[Policy]) -> float | None:

@@ -16,7 +16,7 @@ TravelMode: TypeAlias = Literal["SAFE", "NORMAL", "AGGRESSIVE"]
 AltitudeReference: TypeAlias = Literal["ELLIPSOID", "MSL", "ORIGIN"]
 """What altitudes are measured from."""
 
-PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED"]
+PolicyEvent: TypeAlias = Literal["LINK_LOST", "PEER_LOST", "BATTERY_LOW", "WAIT_TOO_LONG", "DEVICE_SILENT", "POSITION_LOST", "OBSTACLE", "FENCE_BREACHED", "VEHICLE_RESTARTED", "LOG_FAILED", "GROUND_LOST"]
 """Faults that a policy answers."""
 
 PolicyResponse: TypeAlias = Literal["HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"]

@@ -278,7 +278,11 @@ class MavlinkBackend:
         watch.begin(self._with.link, self._with.vehicle)
         watch.current = lambda: self._policies
         watch.track = lambda: self._moves.track
+        watch.decide = self._note_decision
         return watch
+
+    def _note_decision(self, what: str, why: str, response: str) -> None:
+        self.note("decision", {"what": what, "why": why, "response": response})
 
     def _look(self) -> None:
         """Look after the vehicle, whatever it does."""
@@ -317,6 +321,8 @@ class MavlinkBackend:
         self._ready = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
+        for line in self._watch.words_at_start():
+            self._with.say(line)
 
     def _tell_fence(self) -> None:
         """Tell the vehicle what to do by itself when it is outside its fence."""
@@ -372,8 +378,7 @@ class MavlinkBackend:
         lost = found is not None and found.event == POSITION_LOST
         if not (lost and self._robot.vehicle == "copter" and response in NEEDS_POSITION):
             return response
-        content = {"what": POSITION_LOST, "why": f"{response} needs a position", "response": "LAND"}
-        self.note("decision", content)
+        self._note_decision(POSITION_LOST, f"{response} needs a position", "LAND")
         return "LAND"
 
     def _respond(self, response: str) -> None:

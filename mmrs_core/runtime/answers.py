@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
+from mmrs_core.behaviour.policies import patience, policy_for, response_to
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Policy
 
@@ -13,7 +13,7 @@ HANDS_OFF = "NOTHING"
 TAKEN_OVER = "TAKEN_OVER"
 """A pilot has the robot: no policy answers that, the program lets go of it."""
 
-OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", TAKEN_OVER})
+OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", "GROUND_LOST", TAKEN_OVER})
 """What is answered anew where it happens while a robot still responds to something else."""
 
 UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
@@ -40,7 +40,7 @@ class Answers:
         if found.which == TAKEN_OVER:
             return HANDS_OFF
         if self.live and policy_for(found.which, self.policies) is None:
-            return UNDECLARED.get(found.which, LAST_RESORT)
+            return UNDECLARED.get(found.which, response_to(found.which, ()))
         return response_to(found.which, self.policies)
 
     def bears(self, found: Fault) -> bool:

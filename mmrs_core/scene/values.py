@@ -27,6 +27,7 @@ PolicyEvent: TypeAlias = Literal[
     "FENCE_BREACHED",
     "VEHICLE_RESTARTED",
     "LOG_FAILED",
+    "GROUND_LOST",
 ]
 PolicyResponse: TypeAlias = Literal[
     "HOLD", "RETURN", "EMERGENCY_AREA", "LAND", "SURFACE", "STOP_THRUST", "CONTINUE"

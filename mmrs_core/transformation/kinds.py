@@ -240,6 +240,7 @@ PLAIN_ROBOT = RobotKind(
         "FENCE_BREACHED": "HOLD",
         "VEHICLE_RESTARTED": "HOLD",
         "LOG_FAILED": "HOLD",
+        "GROUND_LOST": "CONTINUE",
     },
 )
 

@@ -34,7 +34,7 @@ from mmrs_core.sitl.words import deeds_of
 ARM, TAKE_OFF, JUMP, INTERVAL, REQUEST = 400, 22, 224, 511, 512
 COMMANDS = {ARM, TAKE_OFF, INTERVAL, REQUEST}
 PARAMETERS = {"PARAM_SET", "PARAM_REQUEST_READ", "PARAM_REQUEST_LIST"}
-GROUND = (255, 190)
+GROUND = (255, 191)
 
 
 class MavsdkVehicle(SimulatedVehicle):

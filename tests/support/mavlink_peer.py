@@ -96,11 +96,11 @@ def heartbeat(
 
 
 def acknowledged(command: int, result: int = 0, progress: int = 0):
-    return mavlink.MAVLink_command_ack_message(command, result, progress, 0, 255, 190)
+    return mavlink.MAVLink_command_ack_message(command, result, progress, 0, 255, 191)
 
 
-def value(name: str, number: float, kind: int = mavlink.MAV_PARAM_TYPE_REAL32):
-    return mavlink.MAVLink_param_value_message(name.encode(), number, kind, 1, 0)
+def value(name: str, number: float, kind: int = mavlink.MAV_PARAM_TYPE_REAL32, index: int = 65_535):
+    return mavlink.MAVLink_param_value_message(name.encode(), number, kind, 1, index)
 
 
 def bytewise(number: int) -> float:

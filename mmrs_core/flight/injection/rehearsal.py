@@ -14,12 +14,13 @@ from . import gps
 from .carrier import InjectedCarrier
 from .port import InjectedPort, Line
 from .process import Effect, effect_of
-from .spec import OF_BUS, OF_PROCESS, OF_VEHICLE, Injection, Injections
+from .spec import OF_BUS, OF_PROCESS, OF_STATIONS, OF_VEHICLE, Injection, Injections
 
 Note = Callable[[str, Mapping[str, object]], None]
 """Records a fault made on purpose: its text, and what is to be said about it."""
 
 LONGEST_WAIT = 60.0
+NO_STATION = "no ground station was heard yet"
 ONLY_SIMULATED = "the vehicle has no simulated satellites: it is a real one, or does not answer"
 
 
@@ -92,6 +93,9 @@ class Rehearsal:
     def attend(self, robot: str, link: Link) -> None:
         """Keep the link of a robot's vehicle, for faults of the vehicle itself."""
         self._links[robot] = link
+        now = self._clock.now()
+        if any(f.acts(now) for f in self._injections.of_stations() if f.robot in ("", robot)):
+            link.stations.deaf = True
 
     def _follow(self) -> None:
         coming = list(self._injections.timed())
@@ -115,6 +119,8 @@ class Rehearsal:
             effect.begin()
         if fault.name in OF_VEHICLE:
             self._switch(fault, on=False)
+        if fault.name in OF_STATIONS:
+            self._deafen(fault, deaf=True)
         if fault.name in OF_BUS:
             for carrier in self._carriers:
                 carrier.cut()
@@ -126,10 +132,21 @@ class Rehearsal:
             effect.end()
         if fault.name in OF_VEHICLE and not self._closed.is_set():
             self._switch(fault, on=True)
+        if fault.name in OF_STATIONS:
+            self._deafen(fault, deaf=False)
         if fault.name in OF_BUS and not self._closed.is_set():
             for carrier in self._carriers:
                 carrier.mend()
         self._tell(fault, "ends")
+
+    def _deafen(self, fault: Injection, *, deaf: bool) -> None:
+        """Have ground stations be heard or not; say where there is none, since nothing changes then."""
+        for robot, link in tuple(self._links.items()):
+            if fault.robot in ("", robot):
+                link.stations.deaf = deaf
+                if deaf and not link.stations.systems:
+                    self._say(f"{robot!a}: {fault.text}: {NO_STATION}")
+                    self._note((robot,), fault.text, {"state": "begins", "why": NO_STATION})
 
     def _switch(self, fault: Injection, on: bool) -> None:
         for robot, link in tuple(self._links.items()):

@@ -13,17 +13,19 @@ PARTS = ("loss", "duplicate", "corrupt", "bus-loss", "bus-duplicate")
 CUTS = ("cut", "cut-in", "cut-out")
 OF_LINK = ("loss", "duplicate", "corrupt", "delay", *CUTS)
 OF_VEHICLE = ("gps-lost",)
+OF_STATIONS = ("ground-cut",)
 OF_BUS = ("bus-loss", "bus-duplicate", "bus-delay", "bus-cut")
 OF_PROCESS = ("freeze", "disk-full", "clock-jump")
-TIMED = (*CUTS, "bus-cut", *OF_VEHICLE, *OF_PROCESS)
-NAMES = (*OF_LINK, *OF_BUS, *OF_VEHICLE, *OF_PROCESS)
+TIMED = (*CUTS, "bus-cut", *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
+NAMES = (*OF_LINK, *OF_BUS, *OF_VEHICLE, *OF_STATIONS, *OF_PROCESS)
 
 HELP = (
     "make faults on purpose: loss=0.15, duplicate=0.05, corrupt=0.01 (parts of what is sent and heard),"
     " delay=0.2~0.1 (seconds, more or less), cut@60+20 (nothing passes from second 60 of the run on, for"
-    " 20 s; cut-in, cut-out: one way), freeze@60+5, disk-full@60+20, clock-jump@60+3600, gps-lost@60+20"
-    " (simulated vehicles only), bus-loss=0.1, bus-duplicate=0.1, bus-delay=0.5, bus-cut@60+20, seed=7;"
-    " several with commas, ROBOT:loss=0.15 for one robot"
+    " 20 s; cut-in, cut-out: one way), ground-cut@60+20 (ground stations are not heard), freeze@60+5,"
+    " disk-full@60+20, clock-jump@60+3600, gps-lost@60+20 (simulated vehicles only), bus-loss=0.1,"
+    " bus-duplicate=0.1, bus-delay=0.5, bus-cut@60+20, seed=7; several with commas, ROBOT:loss=0.15 for one"
+    " robot"
 )
 
 _NUMBER = r"\d+(?:\.\d+)?"
@@ -74,6 +76,10 @@ class Injections:
     def of_bus(self) -> Injections:
         """Return what happens to the bus only."""
         return Injections(self.seed, tuple(f for f in self.faults if f.name in OF_BUS))
+
+    def of_stations(self) -> tuple[Injection, ...]:
+        """Return what happens to the hearing of ground stations."""
+        return tuple(f for f in self.faults if f.name in OF_STATIONS)
 
     def timed(self) -> tuple[Injection, ...]:
         """Return what begins at a second of the run, earliest first."""
@@ -155,7 +161,7 @@ def _check(fault: Injection, all: Sequence[Injection], urls: Mapping[str, str], 
         raise ValueError(f"{fault.text}: only a delay differs, and by no more than itself")
     if fault.name not in TIMED and sum(f.name == fault.name and f.robot == fault.robot for f in all) > 1:
         raise ValueError(f"{fault.text}: is asked for twice")
-    if dry and fault.name in (*OF_LINK, *OF_VEHICLE):
+    if dry and fault.name in (*OF_LINK, *OF_VEHICLE, *OF_STATIONS):
         raise ValueError(f"{fault.text}: a dry run has no link and no vehicle")
     if fault.name in (*OF_PROCESS, *OF_BUS) and fault.robot:
         raise ValueError(f"{fault.text}: concerns all robots of the process; say it without a robot")

@@ -17,6 +17,7 @@ from .ports import Address, Port
 from .radio import GLANCE_SECONDS, Radio, is_autopilot
 from .roaming import Roaming
 from .signing import Signer
+from .stations import Stations
 
 Message = Any
 Found = TypeVar("Found")
@@ -34,6 +35,9 @@ LEAST_SECONDS = 0.5
 
 LATE_FRAMES = 64
 """How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
+
+GAP_SECONDS, LEAST_GAP_SECONDS = 2.0, 0.5
+"""Silence of the vehicle, of the run and real, after which ground stations had no chance to be heard."""
 
 ANYBODY = 0
 """Stands for every component of the vehicle's system."""
@@ -82,6 +86,7 @@ class Link:
         guard: called again and again during every wait; raises what should end it.
         system, component: the vehicle's address; 0 until it was heard of.
         retries: how often, and how long apart, to send what is not answered.
+        stations: of people, as far as they are heard over the link.
     """
 
     def __init__(
@@ -110,6 +115,7 @@ class Link:
         self.system = system
         self.component = 0
         self.retries = retries or Retries()
+        self.stations = Stations()
         self._radio = radio
         self._wanted = system
         late = max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup)
@@ -285,6 +291,14 @@ class Link:
             self._keep(message, own=own)
             self._changed.notify_all()
 
+    def speaks_from(self, sender: Address | None) -> bool:
+        """Return whether that is where the vehicle speaks from."""
+        return bool(self.component) and sender == self._roaming.sender
+
+    def hears_station(self, heartbeat: Message) -> None:
+        """Take the heartbeat of a ground station."""
+        self.stations.hear(heartbeat, self.clock.now())
+
     def learns(self, reason: str) -> None:
         """Be told that nothing will come any more."""
         with self._changed:
@@ -299,6 +313,8 @@ class Link:
     def _keep(self, message: Message, *, own: bool) -> None:
         kind, now = message.get_type(), self.clock.now()
         if own:
+            if self.silent_for() > self.clock.patience(GAP_SECONDS, LEAST_GAP_SECONDS):
+                self.stations.pass_over(self.silent_for())
             self._heard = now
             if kind in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)

@@ -12,11 +12,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..clock import Clock
 from .ports import Address, Port
 from .signing import Signed, Signer
+from .stations import is_station
 
 Message = Any
 
 GROUND_SYSTEM = 255
-GROUND_COMPONENT = 190
+GROUND_COMPONENT = 191
+"""An onboard computer's, not a ground station's: autopilots could not tell the two, nor hand theirs on."""
+
 HEARTBEAT_SECONDS = 1.0
 GLANCE_SECONDS = 0.2
 SENDERS = 64
@@ -38,6 +41,14 @@ class Ear(Protocol):
 
     def hears(self, message: Message, sender: Address | None) -> None:
         """Take a message from the vehicle's system, or from the radio itself (RADIO_STATUS)."""
+        ...
+
+    def speaks_from(self, sender: Address | None) -> bool:
+        """Return whether that is where the vehicle speaks from."""
+        ...
+
+    def hears_station(self, heartbeat: Message) -> None:
+        """Take the heartbeat of a ground station."""
         ...
 
     def learns(self, reason: str) -> None:
@@ -183,6 +194,9 @@ class Radio:
         if is_autopilot(message):
             self.heard.add(system)
             self._introduce(message)
+        if is_station(message) and not self._is_own(message) and not self.claimed(system):
+            self._hear_station(message, sender)
+            return
         for ear in self._ears:
             if ear.system == system and ear.component:
                 ear.hears(message, sender)
@@ -190,6 +204,15 @@ class Radio:
         if all(ear.component for ear in self._ears):
             # Before everybody has met their vehicle, nobody can say whose this is.
             self.dropped[f"{message.get_type()}: from system {system}, which is no robot's"] += 1
+
+    def _is_own(self, message: Message) -> bool:
+        """Return whether a message says that a program of ours has sent it, as one that came back."""
+        return (message.get_srcSystem(), message.get_srcComponent()) == (GROUND_SYSTEM, GROUND_COMPONENT)
+
+    def _hear_station(self, heartbeat: Message, sender: Address | None) -> None:
+        """Tell it to those whose vehicles have handed it on, or to all if it came directly."""
+        for ear in [ear for ear in self._ears if ear.speaks_from(sender)] or self._ears:
+            ear.hears_station(heartbeat)
 
     def _introduce(self, heartbeat: Message) -> None:
         system = heartbeat.get_srcSystem()

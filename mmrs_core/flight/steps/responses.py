@@ -8,6 +8,7 @@ from functools import partial
 
 from ..faults import (
     BATTERY_LOW,
+    GROUND_LOST,
     LINK_LOST,
     POSITION_LOST,
     TAKEN_OVER,
@@ -23,7 +24,12 @@ NOTHING = "NOTHING"
 ESCAPE = "EMERGENCY_AREA"
 RETURN = "RETURN"
 
-DEFAULTS: Mapping[str, str] = {LINK_LOST: RETURN, BATTERY_LOW: RETURN, TAKEN_OVER: NOTHING}
+DEFAULTS: Mapping[str, str] = {
+    LINK_LOST: RETURN,
+    BATTERY_LOW: RETURN,
+    GROUND_LOST: CONTINUE,
+    TAKEN_OVER: NOTHING,
+}
 """Responses where no policy says anything; to anything else, robots hold."""
 
 BLOCKED = (

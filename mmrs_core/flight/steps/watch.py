@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Sequence
 from ..clock import Clock
 from ..faults import (
     BATTERY_LOW,
+    GROUND_LOST,
     LINK_LOST,
     LOG_FAILED,
     MOTORS_OFF,
@@ -23,6 +24,7 @@ from ..vehicles import modes
 from ..vehicles.ardupilot import MavlinkVehicle
 from ..vehicles.signs import Signs
 from .energy import COMES_DOWN, Reserve
+from .ground import WATCHED, Ground
 from .responses import CONTINUE, policy_for
 from .ways import Track
 
@@ -78,6 +80,7 @@ class Watch:
         self._link: Link | None = None
         self._vehicle: MavlinkVehicle | None = None
         self._signs: Signs | None = None
+        self._ground: Ground | None = None
         self._heeded: frozenset[str] | None = None
         self._hands_off = False
         self.looking = False
@@ -89,6 +92,11 @@ class Watch:
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle, too."""
         self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
+        self._ground = Ground(link)
+
+    def words_at_start(self) -> list[str]:
+        """Return what people should know about their ground stations before the robot moves."""
+        return [] if self._ground is None else self._ground.words(self._robot)
 
     def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
         """Heed less from now on: the robot already responds to something.
@@ -100,7 +108,7 @@ class Watch:
         """
         heeded = {POSITION_LOST, VEHICLE_RESTARTED} if handled is not None else set()
         if handled is not None and response not in COMES_DOWN:
-            heeded.add(BATTERY_LOW)
+            heeded |= {BATTERY_LOW, GROUND_LOST}
         self._heeded = frozenset(heeded - set(handled or ()))
 
     def let_go(self) -> None:
@@ -149,6 +157,18 @@ class Watch:
         for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
             self._weigh(event, why)
         self._weigh(LOG_FAILED, self.unkept())
+        if self._ground is not None:
+            self._check_ground(self._ground)
+
+    def _check_ground(self, ground: Ground) -> None:
+        if news := ground.news():
+            self.decide(GROUND_LOST, news, WATCHED)
+        policy = policy_for(GROUND_LOST, self._robot, self.current())
+        why = ground.silence(policy)
+        if not why:
+            self._borne.discard(GROUND_LOST)
+        elif GROUND_LOST not in self._borne and self._heeds(GROUND_LOST):
+            self._judge(GROUND_LOST, why, policy)
 
     def _check_motors(self, vehicle: MavlinkVehicle) -> None:
         """Raise a fault where a vehicle that was in the air has stopped its motors elsewhere than to land.
@@ -182,8 +202,11 @@ class Watch:
         policy = policy_for(event, self._robot, self.current())
         limit = LASTING.get(event, 0.0) if policy.after is None else policy.after
         since = self._since.setdefault(event, self._clock.now())
-        if self._clock.now() - since < limit:
-            return
+        if self._clock.now() - since >= limit:
+            self._judge(event, why, policy)
+
+    def _judge(self, event: str, why: str, policy: Policy) -> None:
+        """Raise a fault, or keep that it is borne."""
         if policy.response != CONTINUE:
             raise Fault(event, why)
         self._borne.add(event)

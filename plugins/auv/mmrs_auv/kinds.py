@@ -83,5 +83,6 @@ AUV_KIND = RobotKind(
         "FENCE_BREACHED": "SURFACE",
         "VEHICLE_RESTARTED": "SURFACE",
         "LOG_FAILED": "SURFACE",
+        "GROUND_LOST": "CONTINUE",
     },
 )

@@ -98,6 +98,7 @@ MULTICOPTER_KIND = RobotKind(
         "FENCE_BREACHED": "RETURN",
         "VEHICLE_RESTARTED": "HOLD",
         "LOG_FAILED": "RETURN",
+        "GROUND_LOST": "CONTINUE",
     },
 )
 

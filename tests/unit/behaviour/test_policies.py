@@ -34,3 +34,8 @@ def test_a_wait_is_too_long_only_where_somebody_said_how_long_that_is():
 
 def test_a_wait_without_a_policy_is_borne_for_ever():
     assert patience("WAIT_TOO_LONG", ()) is None
+
+
+def test_a_robot_that_nobody_looks_on_any_more_finishes_unless_somebody_said_otherwise():
+    assert response_to("GROUND_LOST", ()) == "CONTINUE"
+    assert response_to("GROUND_LOST", [Policy("GROUND_LOST", "RETURN")]) == "RETURN"

@@ -12,7 +12,7 @@ from mmrs_core.flight.services.missions import download, mark_of, upload, verify
 
 ITEMS = [Item(16, (float(n), 0.0, 0.0, 0.0), 423_700_000 + n, 133_500_000, 20.0 + n) for n in range(4)]
 ACCEPTED, NO_SPACE, WRONG = 0, 4, 13
-TO_US = (255, 190)
+TO_US = (255, 191)
 
 
 class Store:
@@ -211,8 +211,8 @@ def test_what_is_downloaded_is_what_the_vehicle_has():
 
 def test_the_id_of_a_plan_is_read_where_pymavlink_knows_no_field():
     mav = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
-    ack = mavlink.MAVLink_mission_ack_message(255, 190, 0, 0)
-    payload = bytes([255, 190, 0, 0]) + (0xCAFE).to_bytes(4, "little")
+    ack = mavlink.MAVLink_mission_ack_message(255, 191, 0, 0)
+    payload = bytes([255, 191, 0, 0]) + (0xCAFE).to_bytes(4, "little")
     frame = bytes(ack._pack(mav, ack.crc_extra, payload))
     (found,) = mavlink.MAVLink(None).parse_buffer(frame)
     assert mark_of(found, 4) == 0xCAFE
