@@ -12,8 +12,9 @@ from .delivery import Delivery
 from .journal import FileJournal, NoJournal
 from .meeting import PATIENCE, Beginning, Incomplete, begin_together
 from .members import Member, Recorded
-from .node import Doubled, Node
+from .node import Node
 from .owner import Owned
+from .watching import Doubled
 from .words import CommandId, SlotId, SlotState
 
 __all__ = [

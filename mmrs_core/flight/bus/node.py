@@ -8,16 +8,19 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from .answering import Answering
 from .carrier import Carrier, NoCarrier
+from .carrying import Courier
 from .delivery import Delivery
 from .errands import Errand, Message, Notice
 from .journal import Journal, NoJournal
-from .meeting import Meeting
 from .members import Member, Recorded
+from .outbox import Outbox, farewell_of, news_of
 from .owners import Owners
-from .reading import Unreadable, answer_in, request_in, written
+from .pacing import Pacing
+from .reading import written
 from .troubles import Keeping, Net, Tell, tell_people
-from .watching import DOUBLE_SECONDS, Watching
+from .watching import Watching, refuse_doubles
 from .words import (
     LARGEST,
     REACH,
@@ -25,7 +28,6 @@ from .words import (
     Begin,
     CommandId,
     Commit,
-    Leave,
     Meet,
     Prepare,
     Request,
@@ -39,15 +41,6 @@ LEASE_SECONDS = 1.5
 
 FAREWELL_SECONDS = 2.0
 """How long a robot that ends tries to tell those who are there."""
-
-LONGEST_SLEEP = 3600.0
-
-SORE_SECONDS = 0.5
-"""How long something that fails is left alone."""
-
-
-class Doubled(OSError):  # noqa: N818  # what is the matter with a robot
-    """A robot that another process runs, too."""
 
 
 class Node:
@@ -96,8 +89,7 @@ class Node:
         """
         self.lock = threading.Condition(threading.RLock())
         self.now = now
-        self._run, self._carrier, self._threaded = run, carrier or NoCarrier(), threaded
-        self._alone = carrier is None
+        self._run, self._alone = run, carrier is None
         self._watching = Watching(lease)
         self._members = {member.owned.robot: member for member in members}
         given = recorded or {}
@@ -111,39 +103,30 @@ class Node:
             self._watching,
             trusting=self._alone,
         )
-        self._meeting = Meeting(now)
-        self._errands: list[Errand | Notice] = []
-        self._farewells: dict[str, Notice] = {}
+        self._outbox = Outbox(self._net)
+        self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now)
+        self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
         self._callbacks: list[Callable[[], None]] = []
         self._chance = chance or random.Random()
-        self._thread: threading.Thread | None = None
-        self._closed = False
+        carrying = carrier or NoCarrier()
+        self._courier = Courier(carrying, self._net)
         self._begin(settle)
-        for robot in self._members:
+        for robot, member in self._members.items():
             if robot in given:
-                self._tell_recorded(robot, given[robot])
-            self._carrier.appear(robot)
+                self._send(news_of(member, self._id_of(robot), given[robot]))
+            carrying.appear(robot)
         self.pump()
 
     def _begin(self, settle: float) -> None:
         """Open the carrier, and begin if nobody else runs these robots."""
-        self._carrier.open(self)
+        self._courier.open(self)
         try:
-            self._refuse_doubles(settle)
+            refuse_doubles(self._watching, settle, self.now)
             self._owners.begin()
         except BaseException:
-            self._closed = True
-            self._carrier.close()
+            self._pacing.is_over = True
+            self._courier.close()
             raise
-
-    def _refuse_doubles(self, settle: float) -> None:
-        begun = self.now()
-        while (left := begun + settle - self.now()) > 0:
-            time.sleep(min(left, 0.05))
-        while settle and (there := self._watching.doubles()):
-            if self.now() - begun > settle + DOUBLE_SECONDS:
-                raise Doubled(f"{', '.join(map(ascii, there))}: another process runs it on this bus already")
-            time.sleep(0.05)
 
     @property
     def robots(self) -> tuple[str, ...]:
@@ -179,7 +162,7 @@ class Node:
             for owner in parts:
                 if owner in self._watching.left and owner not in self._owners:
                     errand.gone(owner)
-            self._errands.append(errand)
+            self._outbox.add(errand)
         self.pump()
         return Delivery(self, errand)
 
@@ -194,7 +177,7 @@ class Node:
         """Give a notify up; its owners are told until they have answered."""
         with self.lock:
             if (notice := errand.withdraw()) is not None:
-                self._errands.append(notice)
+                self._outbox.add(notice)
         self.pump()
 
     def state(self, slot: SlotId) -> SlotState:
@@ -243,8 +226,7 @@ class Node:
             if robot in self._watching.left or robot not in self._members:
                 return
             self._watching.left.add(robot)
-            self._farewells[robot] = self._farewell(robot)
-            self._errands.append(self._farewells[robot])
+            self._outbox.bid_farewell(robot, self._farewell(robot))
         self.pump()
         self._tell_changed()
 
@@ -289,52 +271,36 @@ class Node:
     def close(self) -> None:
         """Leave the bus, once; robots that have not ended are lost to the others."""
         with self.lock:
-            if self._closed:
+            if self._pacing.is_over:
                 return
             until = self.now() + FAREWELL_SECONDS
-            while self._farewells and self._threaded and self.now() < until:
+            while self._outbox.has_farewells and self._pacing.is_threaded and self.now() < until:
                 self.lock.wait(0.05)
-            self._closed = True
+            self._pacing.is_over = True
             self.lock.notify_all()
-        self._vanish(self._members)
-        self._carrier.close()
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join()
+        self._courier.vanish(self._members)
+        self._courier.close()
+        self._pacing.join()
 
     def ask_once(self, sender: str, owner: str, request: Meet, taken: Callable[[Answer], None]) -> None:
         """Ask a robot once; `taken` is called with the answer, from any thread, or never."""
-        if owner in self._owners:
-            if (answer := self._answer(owner, request)) is not None:
-                taken(answer)
-            return
-
-        def take(text: str) -> None:
-            try:
-                answer = answer_in(text)
-            except Unreadable:
-                return  # as good as none
+        if owner not in self._owners:
+            self._courier.ask(sender, owner, request, taken)
+        elif (answer := self._answer(owner, request)) is not None:
             taken(answer)
-
-        with self._net.under(f"asking {owner!a}"):
-            self._carrier.ask(sender, owner, written(request), take)
 
     def serve(self, owner: str, sender: str, request: str) -> str:
         """Return the answer of one of this process's robots to a request, whatever it is; empty: none now."""
-        try:
-            found = request_in(request)
-        except Unreadable as error:
-            return written(Answer("refused", why=f"not a request: {error}"))
-        if found.id.sender != sender:
-            return written(Answer("refused", why=f"{sender!a} cannot speak for {found.id.sender!a}"))
-        if owner not in self._owners or sender in self._owners:
-            return written(Answer("refused", why=f"{owner!a} is not to be asked here"))
+        found = self._answering.told(owner, sender, request)
+        if isinstance(found, Answer):
+            return written(found)
         answer = self._answer(owner, found)
         with self.lock:
-            self._keep_going()
+            self._pacing.keep_going()
         if not isinstance(found, Meet):
             self._tell_changed()
         if isinstance(found, Commit | Begin):
-            self._publish(owner)
+            self._courier.publish(owner)
         return "" if answer is None else written(answer)
 
     def noticed(self, robot: str, here: bool) -> None:
@@ -343,13 +309,12 @@ class Node:
             now = self.now()
             if robot in self._members:
                 self._watching.doubled(robot, here, now)
-                self._keep_going()
+                self._pacing.keep_going()
                 return
             self._watching.noticed(robot, here, now)
             if here:
-                for errand in self._errands:
-                    errand.back(robot, now)
-            self._keep_going()
+                self._outbox.back(robot, now)
+            self._pacing.keep_going()
         self._tell_changed()
 
     def shown(self, robot: str) -> str:
@@ -361,24 +326,25 @@ class Node:
         """Send what is due; called by itself where the bus is threaded."""
         with self.lock:
             now = self.now()
-            work = [(errand, message) for errand in self._errands for message in self._due_of(errand, now)]
+            work = self._outbox.take_due(now)
             for errand, message in work:
                 if message.owner in self._owners:
                     answer = self._answer(message.owner, message.request, here=True)
                     if answer is not None:
                         errand.answered(message.owner, _round(message.request), answer, now)
-            gone = self._sweep()
+            gone = self._outbox.sweep()
             ended = self._owners.end_lost(now)
             silent, back = self._keeping.look()
             self._tell_doubles(now)
-            self._keep_going()
+            self._pacing.keep_going()
         # Carriers may take other locks, or wait: never with ours.
         for errand, message in work:
             if message.owner not in self._owners:
-                self._ask(errand, message)
+                taken = self._taker(errand, message)
+                self._courier.ask(message.sender, message.owner, message.request, taken)
             elif isinstance(message.request, Commit | Begin):
-                self._publish(message.owner)
-        self._vanish([*gone, *silent])
+                self._courier.publish(message.owner)
+        self._courier.vanish([*gone, *silent])
         self._appear(back)
         if work or ended or silent or back:
             self._tell_changed()
@@ -388,102 +354,39 @@ class Node:
             self._net.forget(words := f"{robot!a} is run by another process, too: end one of them")
             self._net.tell(words)
 
-    def _due_of(self, errand: Errand | Notice, now: float) -> Iterable[Message]:
-        """Return what an errand has to send now; one that fails is left alone for a while."""
-        with self._net.under("a notify on its way"):
-            return errand.tick(now)
-        errand.due = now + SORE_SECONDS
-        return ()
-
-    def _ask(self, errand: Errand | Notice, message: Message) -> None:
-        with self._net.under(f"asking {message.owner!a}"):
-            self._carrier.ask(*_addressed(message), self._taker(errand, message))
-
-    def _publish(self, robot: str) -> None:
-        with self._net.under(f"showing the slots of {robot!a}"):
-            self._carrier.publish(robot)
-
     def _appear(self, robots: Iterable[str]) -> None:
         for robot in robots:
             with self.lock:
-                ended = self._closed or robot in self._watching.left
+                ended = self._pacing.is_over or robot in self._watching.left
             if not ended:
-                with self._net.under(f"coming back as {robot!a}"):
-                    self._carrier.appear(robot)
+                self._courier.appear(robot)
 
-    def _tell_recorded(self, robot: str, recorded: Recorded) -> None:
-        id = CommandId(self._run, robot, self.incarnation, 0)
-        requests: dict[str, Message] = {}
-        for owner in sorted(self._members[robot].contacts | {robot}):
-            known = [(s, *value) for (r, s), value in recorded.notifies.items() if r == owner]
-            requests[owner] = Message(robot, owner, Begin(id, tuple(known)))
+    def _id_of(self, robot: str) -> CommandId:
+        """Return what a robot's news of itself are known by."""
+        return CommandId(self._run, robot, self.incarnation, 0)
+
+    def _send(self, notice: Notice) -> None:
         with self.lock:
-            self._errands.append(Notice(requests))
+            self._outbox.add(notice)
 
     def _farewell(self, robot: str) -> Notice:
-        id = CommandId(self._run, robot, self.incarnation, 0)
         contacts = self._members[robot].contacts - self._watching.left
         there = {each for each in contacts if each in self._owners or self._watching.is_here(each)}
-        requests = {each: Message(robot, each, Leave(id, self._owners.lamport)) for each in sorted(there)}
-        return Notice(requests, until=self.now() + FAREWELL_SECONDS)
+        return farewell_of(self._id_of(robot), self._owners.lamport, there, self.now() + FAREWELL_SECONDS)
 
     def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:
-        """Return what a robot answers; None: nothing as long as it cannot keep it, and it is asked again."""
         with self.lock:
-            try:
-                return self._answer_of(robot, request, here=here)
-            except OSError:
-                return None  # whoever watches the journal has told
-            except Exception as error:
-                self._net.tell(f"{robot!a} cannot answer {request}: {error!r}")
-                return Answer("refused", why=f"{robot!a} cannot answer: {error!r}")
+            return self._answering.answer(robot, request, here=here)
 
-    def _answer_of(self, robot: str, request: Request, *, here: bool) -> Answer:
-        if isinstance(request, Meet):
-            return self._meeting.answer(request, self._watching.is_gone)
-        if isinstance(request, Leave):
-            return self._see_off(robot, request)
-        if isinstance(request, Begin):
-            self._watching.left.discard(request.id.sender)
-        return self._owners.answer(robot, request, self.now(), here=here)
-
-    def _see_off(self, robot: str, farewell: Leave) -> Answer:
-        sender = farewell.id.sender
-        # First the time: a notify that needs no answer any more must be later than all the robot did.
-        self._owners.use(farewell.lamport)
-        # It has ended, also where that cannot be kept: then it is told again as long as it is there.
-        self._watching.left.add(sender)
-        if sender not in self._owners:
-            for errand in self._errands:
-                errand.gone(sender)
-        return self._owners.see_off(robot, sender, farewell.lamport)
-
-    def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[str], None]:
-        def take(text: str) -> None:
-            try:
-                answer = answer_in(text)
-            except Unreadable:
-                return  # as good as none: it is asked again
+    def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[Answer], None]:
+        def take(answer: Answer) -> None:
             with self.lock:
                 errand.answered(message.owner, _round(message.request), answer, self.now())
-                gone = self._sweep()
-            self._vanish(gone)
+                gone = self._outbox.sweep()
+            self._courier.vanish(gone)
             self._tell_changed()
 
         return take
-
-    def _sweep(self) -> list[str]:
-        """Forget what is over; return the robots that have said farewell to everybody."""
-        self._errands = [errand for errand in self._errands if not errand.is_over]
-        gone = [robot for robot, notice in self._farewells.items() if notice.is_over]
-        for robot in gone:
-            del self._farewells[robot]
-        return gone
-
-    def _vanish(self, robots: Iterable[str]) -> None:
-        for robot in robots:
-            with self._net.under(f"leaving as {robot!a}"):
-                self._carrier.vanish(robot)
 
     def _least(self) -> int:
         return 0 if self._alone else self._owners.lamport + 1
@@ -496,36 +399,11 @@ class Node:
             with self._net.under("telling of a change"):
                 callback()
 
-    def _keep_going(self) -> None:
-        """Have a thread do what is due later; there is none as long as nothing is."""
-        due = self._next_due() < float("inf")
-        if self._threaded and self._thread is None and not self._closed and due:
-            self._thread = threading.Thread(target=self._work, name="bus", daemon=True)
-            self._thread.start()
-        self.lock.notify_all()
-
-    def _work(self) -> None:
-        while True:
-            with self.lock:
-                if self._closed:
-                    return
-                left = self._next_due() - self.now()
-                if left > 0:
-                    self.lock.wait(min(left, LONGEST_SLEEP))
-                    continue
-            with self._net.under("sending what is due"):
-                self.pump()
-                continue
-            time.sleep(SORE_SECONDS)
-
     def _next_due(self) -> float:
+        """Return when there is something to do; inf: never."""
         ends = (self._owners.next_end(), self._keeping.due, self._watching.next_double())
-        return min((*ends, *(errand.due for errand in self._errands)))
+        return min((*ends, self._outbox.due))
 
 
 def _round(request: Request) -> int:
     return request.round if isinstance(request, Prepare | Withdraw) else 0
-
-
-def _addressed(message: Message) -> tuple[str, str, str]:
-    return message.sender, message.owner, written(message.request)

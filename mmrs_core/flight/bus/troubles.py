@@ -16,6 +16,9 @@ from .journal import Journal
 PROBE_SECONDS = 1.0
 """How often it is tried whether something can be kept again."""
 
+SORE_SECONDS = 0.5
+"""How long something that fails is left alone."""
+
 MOST_TOLD = 100
 """What goes wrong in more different ways than that is no longer told each time."""
 

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+
 DOUBLE_SECONDS = 3.0
 """How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
+
+
+class Doubled(OSError):  # noqa: N818  # what is the matter with a robot
+    """A robot that another process runs, too."""
 
 
 class Watching:
@@ -79,3 +86,18 @@ class Watching:
         """Return whether a robot has been out of reach for longer than the lease."""
         at = self.long_lost_at(robot)
         return at is not None and now >= at
+
+
+def refuse_doubles(watching: Watching, settle: float, now: Callable[[], float]) -> None:
+    """Return when nobody else has been seen for so many seconds to run robots of this process.
+
+    Raises:
+        Doubled: another process runs one of them, and goes on doing so.
+    """
+    begun = now()
+    while (left := begun + settle - now()) > 0:
+        time.sleep(min(left, 0.05))
+    while settle and (there := watching.doubles()):
+        if now() - begun > settle + DOUBLE_SECONDS:
+            raise Doubled(f"{', '.join(map(ascii, there))}: another process runs it on this bus already")
+        time.sleep(0.05)

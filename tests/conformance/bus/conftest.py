@@ -142,7 +142,7 @@ class _Thread:
             self.node.close()
         except Gone:
             self.carrier.cut = True
-            self.node._closed = True
+            self.node._pacing.is_over = True
             self.carrier.close()
 
     def _await_change(self, seconds: float) -> None:

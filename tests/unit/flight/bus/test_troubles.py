@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.flight.bus import CommandId, Hub, Member, Node, Owned
+from mmrs_core.flight.bus.carrier import HubCarrier
 
 RUN = "run-0"
 
@@ -133,7 +134,7 @@ def test_a_carrier_that_fails_is_asked_again(pair, monkeypatch):
         raise RuntimeError("session closed")
 
     with monkeypatch.context() as patched:
-        patched.setattr(pair.a._carrier, "ask", fail)
+        patched.setattr(HubCarrier, "ask", fail)
         delivery = pair.a.prepare(CommandId(RUN, "a", "", 1), (("b", "go"),), True)
         pair.go_on()
     assert len(asked) > 1

@@ -1,0 +1,76 @@
+"""A thread that does what is due, as long as anything is."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+from .troubles import SORE_SECONDS, Net
+
+LONGEST_SLEEP = 3600.0
+
+
+class Pacing:
+    """Does what is due when it is due; there is no thread before anything is.
+
+    Attributes:
+        is_over: whether it has ended, or ends with what it does at present.
+    """
+
+    def __init__(
+        self,
+        lock: threading.Condition,
+        now: Callable[[], float],
+        next_due: Callable[[], float],
+        do: Callable[[], None],
+        net: Net,
+        *,
+        threaded: bool,
+    ) -> None:
+        """Do nothing yet.
+
+        Args:
+            lock: guards what it looks at; signalled when `next_due` may have changed.
+            now: seconds of a clock that never goes back.
+            next_due: returns when there is something to do; inf: never. Called with the lock.
+            do: does what is due. Called without the lock.
+            net: catches what that raises.
+            threaded: whether there may be a thread at all.
+        """
+        self.is_over = False
+        self._lock, self._now, self._next_due, self._do, self._net = lock, now, next_due, do, net
+        self._threaded = threaded
+        self._thread: threading.Thread | None = None
+
+    @property
+    def is_threaded(self) -> bool:
+        """Return whether what is due is done by itself."""
+        return self._threaded
+
+    def keep_going(self) -> None:
+        """Take note that something may be due; to be called with the lock."""
+        due = self._next_due() < float("inf")
+        if self._threaded and self._thread is None and not self.is_over and due:
+            self._thread = threading.Thread(target=self._work, name="bus", daemon=True)
+            self._thread.start()
+        self._lock.notify_all()
+
+    def join(self) -> None:
+        """Wait until the thread has ended, where there is one, and another one asks."""
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join()
+
+    def _work(self) -> None:
+        while True:
+            with self._lock:
+                if self.is_over:
+                    return
+                left = self._next_due() - self._now()
+                if left > 0:
+                    self._lock.wait(min(left, LONGEST_SLEEP))
+                    continue
+            with self._net.under("sending what is due"):
+                self._do()
+                continue
+            time.sleep(SORE_SECONDS)
