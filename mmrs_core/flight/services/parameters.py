@@ -13,6 +13,9 @@ from ..vehicles.modes import is_px4
 ROUNDS = 2
 """How often parameters are asked for that a vehicle may not have."""
 
+BY_NAME = -1
+"""The number that stands for none, where a parameter is asked for by its name."""
+
 REAL = mavlink.MAV_PARAM_TYPE_REAL32
 WHOLE: Mapping[int, str] = {
     mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx",
@@ -28,26 +31,34 @@ WHOLE: Mapping[int, str] = {
 def read(link: Link, names: Iterable[str]) -> dict[str, float]:
     """Return the values of parameters by name, without those that the vehicle does not tell.
 
-    All are asked for at once; a vehicle that answers none at all is not asked again.
+    All are asked for at once, and behind them one by its number: vehicles answer in the order in which
+    they are asked, so that nothing need be waited for once that one has come. A vehicle that answers
+    none at all is not asked again.
     """
     wanted, found = list(names), dict[str, float]()
     with link.inbox("PARAM_VALUE") as inbox:
-        for _ in range(ROUNDS):
-            missing = [name for name in wanted if name not in found]
-            for name in missing:
-                link.send(
-                    mavlink.MAVLink_param_request_read_message(link.system, link.component, name.encode(), -1)
-                )
+        for number in range(ROUNDS):
+            for name in (name for name in wanted if name not in found):
+                _ask(link, name)
+            _ask(link, "", number)
 
-            def complete() -> bool:
+            def answered(last: int = number) -> bool:
+                behind = False
                 while inbox:
                     message = inbox.popleft()
                     found[message.param_id] = value_of(link, message)
-                return all(name in found for name in wanted)
+                    behind = behind or (message.param_index == last and message.param_id not in wanted)
+                return behind or all(name in found for name in wanted)
 
-            if link.wait(complete, link.patience) or not found:
+            link.wait(answered, link.patience)
+            if not found or all(name in found for name in wanted):
                 break
     return {name: found[name] for name in wanted if name in found}
+
+
+def _ask(link: Link, name: str, number: int = BY_NAME) -> None:
+    """Ask for a parameter by its name, or by its number."""
+    link.send(mavlink.MAVLink_param_request_read_message(link.system, link.component, name.encode(), number))
 
 
 def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:

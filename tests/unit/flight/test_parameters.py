@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 from mavlink_peer import ARDUPILOT, PX4, bytewise, linked, value
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.links.link import Retries
 from mmrs_core.flight.services import parameters
 from mmrs_core.flight.vehicles import modes, preparation, safeguards
 
@@ -28,7 +31,10 @@ class Values:
             self.deaf -= 1
             return
         name = message.param_id
-        if name in self.values:
+        if message.get_type() == "PARAM_REQUEST_READ" and 0 <= message.param_index < len(self.values):
+            name = list(self.values)[message.param_index]
+            yield value(name, self.values[name], index=message.param_index)
+        elif name in self.values:
             if message.get_type() == "PARAM_SET" and not self.stubborn:
                 self.values[name] = message.param_value
             yield value(name, self.values[name])
@@ -38,13 +44,35 @@ def test_all_are_asked_for_at_once_and_those_that_are_not_there_are_left_out():
     with linked(Values(A=1.0, B=2.5)) as (link, wire):
         assert parameters.read(link, ["A", "NONE", "B"]) == {"A": 1.0, "B": 2.5}
         asked = [message.param_id for message in wire.of("PARAM_REQUEST_READ")]
-        assert asked == ["A", "NONE", "B", "NONE"]
+        assert asked == ["A", "NONE", "B", "", "NONE", ""]
+
+
+def test_what_has_not_come_before_a_parameter_that_was_asked_for_last_is_not_waited_for():
+    with linked(Values(FIRST=7.0, SECOND=8.0, A=1.0)) as (link, _):
+        link.retries = Retries(answer=10.0)
+        begun = time.monotonic()
+        assert parameters.read(link, ["A", "NONE"]) == {"A": 1.0}
+        assert time.monotonic() - begun < 5.0
+
+
+@pytest.mark.parametrize("copies", [1, 2])
+def test_an_answer_that_was_lost_or_doubled_on_the_way_makes_no_parameter_unknown(copies):
+    values, lost = Values(FIRST=7.0, SECOND=8.0, A=1.0, B=2.0), ["A"]
+
+    def answer(message):
+        if message.param_id in lost:
+            lost.remove(message.param_id)
+        else:
+            yield from (reply for reply in values(message) for _ in range(copies))
+
+    with linked(answer) as (link, _):
+        assert parameters.read(link, ["A", "NONE", "B"]) == {"A": 1.0, "B": 2.0}
 
 
 def test_a_vehicle_that_tells_none_is_asked_once():
     with linked() as (link, wire):
         assert parameters.read(link, ["A", "B"]) == {}
-        assert len(wire.sent) == 2
+        assert [message.param_id for message in wire.of("PARAM_REQUEST_READ")] == ["A", "B", ""]
 
 
 def test_a_lost_answer_is_asked_for_again():

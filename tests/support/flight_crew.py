@@ -1,0 +1,215 @@
+"""A robot of the flight runtime in this process: all that works for it, and a simulated vehicle by UDP."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.desk import Desk
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.ports import open_port
+from mmrs_core.flight.links.radio import Radio
+from mmrs_core.flight.orders.obedience import Obedience
+from mmrs_core.flight.orders.orders import Inbox
+from mmrs_core.flight.program import (
+    Geographic,
+    GoTo,
+    Hold,
+    Land,
+    Policy,
+    Robot,
+    Start,
+    Step,
+    Stop,
+    TakeOff,
+    Then,
+)
+from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.records.log import Log, read
+from mmrs_core.flight.slots import LocalSlots
+from mmrs_core.flight.steps.ending import Crew, Ending
+from mmrs_core.flight.steps.pilot import Pilot
+from mmrs_core.flight.steps.watch import Watch
+from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.sitl import Settings, SimulatedVehicle
+
+HOME = Geographic(42.37, 13.35, 0.0)
+SPEEDUP = 20.0
+OVERHEAD = Geographic(42.37, 13.35, 10.0)
+NORTH = Geographic(42.3702, 13.35, 10.0)
+"""22 metres north of home."""
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def until(test: Callable[[], object], seconds: float = 20.0) -> None:
+    """Wait for something, and fail if it does not come."""
+    end = time.monotonic() + seconds
+    while not test():
+        assert time.monotonic() < end, "it did not come to that"
+        time.sleep(0.005)
+
+
+def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
+    """Return a robot that climbs, goes north, stays there, comes back, and lands."""
+    moves = [
+        ("start", Start()),
+        ("up", TakeOff(10.0)),
+        ("out", GoTo(NORTH, 5.0)),
+        ("stay", Hold(5.0)),
+        ("back", GoTo(OVERHEAD, 5.0)),
+        ("down", Land()),
+        ("stop", Stop()),
+    ]
+    following = [Then(name) for name, _ in moves[1:]]
+    steps = tuple(
+        Step(name, movement, then=then)
+        for (name, movement), then in zip(moves, [*following, None], strict=True)
+    )
+    given = {"home": HOME, "start": "start", "reserve": 0.1} | more
+    return Robot(id, f"{id}.jsonl", "copter", steps=steps, policies=policies, fleet=(id,), **given)
+
+
+@dataclass
+class Manned:
+    """A robot with its crew.
+
+    Attributes:
+        crew: of the flight runtime. inbox: for orders to it. stop: asks it to stop.
+        simulated: its vehicle. said: what it told people. left: how often it told others that it has ended.
+    """
+
+    crew: Crew
+    inbox: Inbox
+    stop: threading.Event
+    simulated: SimulatedVehicle
+    said: list[str]
+    log: Path
+    box: BlackBox
+    left: int = 0
+    decided: list[tuple[str, str]] = field(default_factory=list)
+
+    def fly_up(self) -> None:
+        """Have the vehicle climb to ten metres, as the robot's program begins."""
+        crew = self.crew
+        crew.vehicle.prepare((), (), ())
+        crew.watch.renew()
+        crew.vehicle.take_off(10.0)
+        crew.pilot.track.append(("up", crew.vehicle.state().place))
+
+    def fly_out(self) -> None:
+        """Have it climb, and go north."""
+        self.fly_up()
+        self.crew.vehicle.go_to(NORTH, 5.0, None, False)
+        self.crew.pilot.track.append(("out", NORTH))
+
+    def caught(self, seconds: float = 20.0) -> Fault:
+        """Return what the watch raises as soon as it does; fail if it raises nothing for so long."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            try:
+                self.crew.watch.check()
+            except Fault as fault:
+                return fault
+            time.sleep(0.005)
+        raise AssertionError("the watch notices nothing")
+
+    def quiet(self, seconds: float) -> None:
+        """Look for so many seconds of the run, in which the watch must raise nothing."""
+        clock = self.crew.desk.clock
+        end = clock.now() + seconds
+        while clock.now() < end:
+            self.crew.watch.check()
+            time.sleep(0.005)
+
+    def ending(self) -> Ending:
+        """Return what ends its program."""
+
+        def leave() -> None:
+            self.left += 1
+
+        return Ending(self.crew, leave)
+
+    def events(self) -> list[str]:
+        """Return the faults in its log."""
+        return [str(line["detail"]) for line in read(self.log) if line["label"] == "fault"]
+
+    @property
+    def mode(self) -> str:
+        """Return the mode of the vehicle itself."""
+        return self.simulated.autopilot.mode_name
+
+
+@contextmanager
+def manned(
+    folder: Path, robot: Robot | None = None, *, on_stop: str = "hold", **settings: object
+) -> Iterator[Manned]:
+    """Give a robot whose vehicle stands at home, ready, and whose program has not begun."""
+    robot = robot or robot_of()
+    clock, stop, said = Clock(SPEEDUP), threading.Event(), []
+    with ExitStack() as stack:
+        port = free_port()
+        simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
+        link = Link(
+            Radio(open_port(f"udpin:127.0.0.1:{port}"), clock), clock, simulated.autopilot.settings.system
+        )
+        stack.callback(link.close)
+        log = folder / robot.log
+        desk = Desk(
+            clock=clock,
+            slots=LocalSlots([robot]),
+            log=Log(log, "run-0", robot.id),
+            box=BlackBox(log.with_suffix(".blackbox.ndjson"), "run-0", robot.id, clock.now),
+            conditions={},
+            locators={},
+            stop=stop,
+            say=said.append,
+        )
+        stack.callback(desk.log.close)
+        stack.callback(desk.box.close)
+        assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
+        inbox = Inbox(robot.id, arrived=link.wake)
+        watch, obedience = Watch(robot, clock, stop), Obedience(inbox, clock, stop, said.append)
+        vehicle = MavlinkVehicle(link, robot.vehicle, robot.home)
+        watch.begin(link, vehicle)
+        obedience.begin(vehicle)
+        pilot = Pilot(robot, vehicle, desk, watch, obedience)
+        crew = Crew(robot, vehicle, link, watch, obedience, desk, pilot, on_stop)
+        made = Manned(crew, inbox, stop, simulated, said, log, desk.box)
+        watch.track = lambda: pilot.track
+        watch.decide = lambda event, why, response: made.decided.append((event, response))
+
+        def guard() -> None:
+            watch.check()
+            if not watch.looking:
+                obedience.check()
+
+        link.guard = guard
+        until(lambda: simulated.autopilot.ready)
+        yield made
+
+
+def in_background(work: Callable[[], object]) -> Future:
+    """Return what some work will come to, begun in a thread of its own, as robots are."""
+    found: Future = Future()
+
+    def run() -> None:
+        try:
+            found.set_result(work())
+        except BaseException as error:
+            found.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return found

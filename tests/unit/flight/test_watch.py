@@ -1,0 +1,214 @@
+"""What ends a robot's program: seen by the watch on a real link to a simulated vehicle."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from flight_crew import SPEEDUP, manned, robot_of, until
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault, Stopped
+from mmrs_core.flight.program import Policy
+from mmrs_core.flight.steps.watch import Watch
+
+
+@pytest.fixture
+def flying(tmp_path):
+    """Return a function that gives a robot with policies, ten metres above its home."""
+    open_ones = []
+
+    def fly(*policies, **settings):
+        context = manned(tmp_path, robot_of(*policies), **settings)
+        made = context.__enter__()
+        open_ones.append(context)
+        made.fly_up()
+        return made
+
+    yield fly
+    for context in open_ones:
+        context.__exit__(None, None, None)
+
+
+def test_only_a_stop_ends_what_has_no_vehicle_yet():
+    stop = threading.Event()
+    watch = Watch(robot_of(), Clock(), stop)
+    watch.check()
+    stop.set()
+    with pytest.raises(Stopped):
+        watch.check()
+
+
+def test_a_log_that_cannot_be_kept_ends_what_has_no_vehicle_too():
+    watch = Watch(robot_of(), Clock(), threading.Event())
+    watch.unkept = lambda: "its slots cannot be kept"
+    with pytest.raises(Fault, match="its slots cannot be kept") as fault:
+        watch.check()
+    assert fault.value.event == "LOG_FAILED"
+
+
+def test_a_robot_that_is_well_is_let_alone(flying):
+    flying().quiet(10.0)
+
+
+def test_a_stop_is_noticed_until_the_robot_answers_something(flying):
+    made = flying()
+    made.stop.set()
+    with pytest.raises(Stopped):
+        made.crew.watch.check()
+    made.crew.watch.relax({"STOPPED"}, "HOLD")
+    made.crew.watch.check()
+
+
+def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(flying):
+    made = flying(Policy("LINK_LOST", "RETURN", 50.0))
+    made.simulated.mute()
+    cut = made.crew.desk.clock.now()
+    fault = made.caught()
+    assert fault.event == "LINK_LOST"
+    assert made.crew.desk.clock.now() - cut > 45.0
+
+
+def test_a_silent_link_is_borne_by_who_carries_on_and_while_the_battery_is_changed(flying):
+    made = flying(Policy("LINK_LOST", "CONTINUE"))
+    made.simulated.mute()
+    until(lambda: made.crew.link.silent_for() > 60.0)
+    made.crew.watch.check()
+    bound = Policy("LINK_LOST", "LAND", 1.0)
+    made.crew.watch.current = lambda: (bound,)
+    made.crew.watch.silence = True
+    made.crew.watch.check()
+    made.crew.watch.silence = False
+    assert made.caught().event == "LINK_LOST"
+
+
+def test_a_pilot_who_takes_the_stick_has_the_vehicle(flying):
+    made = flying(Policy("POSITION_LOST", "CONTINUE"))
+    made.simulated.faults.take_stick("loiter")
+    assert made.caught().event == "TAKEN_OVER"
+    assert made.crew.watch.taken
+    made.crew.watch.let_go()
+    made.quiet(5.0)
+
+
+def test_a_pilot_goes_before_what_he_took_over_for(flying):
+    made = flying(Policy("POSITION_LOST", "LAND"))
+    made.simulated.faults.lose_position()
+    made.simulated.faults.take_stick("stabilize")
+    assert made.caught().event == "TAKEN_OVER"
+
+
+def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(flying):
+    made = flying(Policy("POSITION_LOST", "LAND", 1000.0))
+    made.simulated.faults.lose_position()
+    until(lambda: made.mode == "land")
+    assert made.caught().event == "POSITION_LOST"
+    assert not made.crew.watch.taken
+
+
+def test_a_position_that_comes_back_in_time_was_not_lost(flying):
+    made = flying(Policy("POSITION_LOST", "LAND", 1000.0))
+    made.crew.vehicle.hold()
+    with made.simulated.lock:
+        made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
+    made.simulated.faults.lose_position()
+    until(lambda: made.crew.vehicle.telemetry.position_trouble())
+    made.quiet(5.0)
+    made.simulated.faults.find_position()
+    until(lambda: not made.crew.vehicle.telemetry.position_trouble())
+    made.quiet(5.0)
+
+
+def test_what_a_policy_bears_is_told_once(flying):
+    made = flying(Policy("OBSTACLE", "CONTINUE"))
+    made.simulated.faults.meet_obstacle(3.0)
+    until(lambda: made.crew.vehicle.telemetry.obstacle())
+    made.quiet(5.0)
+    assert made.decided == [("OBSTACLE", "CONTINUE")]
+
+
+def test_the_policies_of_a_wait_go_before_those_of_the_robot(flying):
+    made = flying(Policy("OBSTACLE", "CONTINUE"))
+    made.crew.watch.current = lambda: (Policy("OBSTACLE", "HOLD"),)
+    made.simulated.faults.meet_obstacle(3.0)
+    assert made.caught().event == "OBSTACLE"
+
+
+def test_a_battery_under_the_reserve_is_low(flying):
+    made = flying()
+    made.simulated.faults.set_battery(0.09)
+    fault = made.caught()
+    assert fault.event == "BATTERY_LOW"
+    assert "less than 10%" in str(fault)
+
+
+@pytest.mark.parametrize(
+    ("handled", "response", "heeded"),
+    [
+        ({"DEVICE_SILENT"}, "HOLD", True),
+        ({"DEVICE_SILENT"}, "RETURN", False),
+        ({"BATTERY_LOW"}, "HOLD", False),
+    ],
+)
+def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down(
+    flying, handled, response, heeded
+):
+    made = flying()
+    made.crew.watch.relax(handled, response)
+    made.simulated.faults.set_battery(0.05)
+    until(lambda: (made.crew.vehicle.state().energy or 1.0) < 0.06)
+    if heeded:
+        assert made.caught().event == "BATTERY_LOW"
+    else:
+        made.quiet(5.0)
+
+
+def test_a_robot_that_goes_on_heeds_everything_again(flying):
+    made = flying(Policy("OBSTACLE", "HOLD"))
+    made.crew.watch.relax()
+    made.simulated.faults.meet_obstacle(3.0)
+    until(lambda: made.crew.vehicle.telemetry.obstacle())
+    made.quiet(2.0)
+    made.crew.watch.tighten()
+    assert made.caught().event == "OBSTACLE"
+
+
+def test_motors_that_stop_in_the_air_are_a_crash(flying):
+    made = flying()
+    made.quiet(2.0)
+    with made.simulated.lock:
+        made.simulated.autopilot.disarm()
+    assert made.caught().event == "MOTORS_OFF"
+
+
+def test_motors_that_stop_after_a_landing_are_not(flying):
+    made = flying()
+    made.quiet(2.0)
+    made.crew.vehicle.land()
+    assert not made.simulated.autopilot.armed
+    made.quiet(5.0)
+
+
+def grow_old(made):
+    """Wait until what the vehicle tells of its age after a restart cannot have been late on its way."""
+    until(lambda: made.simulated.autopilot.time > 1.5 * SPEEDUP)
+
+
+def test_a_restart_in_the_air_is_a_fault(flying):
+    made = flying(falls=False)
+    grow_old(made)
+    made.simulated.faults.restart(armed=True)
+    assert made.caught().event == "VEHICLE_RESTARTED"
+
+
+def test_a_restart_on_the_ground_is_kept_for_later(flying):
+    made = flying()
+    made.crew.vehicle.land()
+    made.crew.watch.moving = False
+    made.crew.watch.silence = True
+    grow_old(made)
+    made.simulated.faults.restart()
+    until(lambda: made.crew.watch.restarted)
+    made.quiet(5.0)
+    made.crew.watch.renew()
+    assert not made.crew.watch.restarted
