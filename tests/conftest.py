@@ -4,8 +4,25 @@ from __future__ import annotations
 
 import os
 import shutil
+from pathlib import Path
 
 import pytest
+
+IN_REAL_TIME = tuple(
+    str(Path(__file__).parent / folder)
+    for folder in (
+        "conformance/bus",
+        "end_to_end/bus",
+        "end_to_end/controllers",
+        "end_to_end/faults",
+        "end_to_end/run",
+        "end_to_end/vehicles",
+        "unit/flight",
+        "unit/runtime",
+        "unit/sitl",
+    )
+)
+"""Tests that keep to the wall clock: they mostly wait, and would disturb each other's times."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -15,8 +32,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give tests with full counts as long as a loaded machine may need."""
+    """Give tests with full counts time enough, and those in real time one worker."""
     for item in items:
+        if str(item.path).startswith(IN_REAL_TIME):
+            item.add_marker(pytest.mark.xdist_group("real time"))
         if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
 
