@@ -27,8 +27,8 @@ Observer = Callable[[Message, bool], None]
 TRIES = 5
 ANSWER_SECONDS = 1.5
 ITEM_SECONDS = 0.25
-FORSAKEN_SECONDS = 120.0
-"""Silence after which nobody waits for a vehicle any more, whatever policies bear."""
+FORSAKEN_SECONDS = 600.0
+"""Silence after which nobody waits for a vehicle any more, where no policy has said so before."""
 
 LEAST_SECONDS = 0.5
 """Real seconds for an answer at least, unless less was asked for."""
@@ -222,23 +222,53 @@ class Link:
 
     def unheard(self) -> bool:
         """Return whether the vehicle is silent while a guard watches, which says when it is lost."""
-        return self.guard is not nobody and self.patience <= self.silent_for() < FORSAKEN_SECONDS
+        return self._watched() and self.silent_for() >= self.patience
 
-    def wait(self, test: Callable[[], Found | None], seconds: float) -> Found | None:
+    def silent_since(self, begun: float) -> bool:
+        """Return whether the vehicle has said nothing since then, while a guard watches the link."""
+        return self._watched() and (self._heard is not None and self._heard < begun)
+
+    def attempts(self, most: int | None = None) -> Iterator[int]:
+        """Yield how often something has been sent, as long as it may be sent again.
+
+        A try counts where the vehicle was heard since it was made. One that says nothing at all is not
+        one that does not answer: whoever watches the link says when it is lost, by the policy's seconds.
+
+        Args:
+            most: tries that count; None: as the link says.
+        """
+        most = self.retries.tries if most is None else most
+        sent = counted = 0
+        while counted < most:
+            begun = self.clock.now()
+            yield sent
+            sent, counted = sent + 1, counted + (not self.silent_since(begun))
+
+    def wait(self, test: Callable[[], Found | None], seconds: float, *, heard: bool = False) -> Found | None:
         """Return what the test finds as soon as it finds something; None if time runs out.
 
         Time that the guard takes, as for an order to hold, does not count.
 
+        Args:
+            test: asked again whenever something has come.
+            seconds: of the run.
+            heard: whether time in which the vehicle is silent does not count either, since a guard
+                says when it is lost.
+
         Raises:
             Fault: the port has ended, so that nothing will come any more; or what the guard raises.
         """
-        until = self.clock.now() + seconds
+        before = self.clock.now()
+        until = before + seconds
         while True:
             if self._ended:
                 raise Fault(LINK_LOST, self._ended)
             asked = self.clock.now()
+            if heard and self.unheard():
+                until += asked - before
             self.guard()
-            until += self.clock.now() - asked
+            before = self.clock.now()
+            until += before - asked
             with self._changed:
                 found = test()
                 left = until - self.clock.now()
@@ -250,6 +280,10 @@ class Link:
         """Have a wait ask its guard and its test again at once."""
         with self._changed:
             self._changed.notify_all()
+
+    def _watched(self) -> bool:
+        """Return whether somebody else says when the link is lost."""
+        return self.guard is not nobody and self.silent_for() < FORSAKEN_SECONDS
 
     @contextmanager
     def inbox(self, *kinds: str, component: int | None = None) -> Iterator[deque[Message]]:

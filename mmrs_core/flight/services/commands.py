@@ -45,8 +45,8 @@ def command(
     """Have the vehicle carry out a command, and return when it says that it does.
 
     Sends again, with the confirmation counted up, when no answer comes or the vehicle asks for
-    patience, and does not count what is sent while the link is silent and somebody watches it; waits
-    on while it reports progress, and has it cancel what it has begun when the wait is broken off.
+    patience; waits on while it reports progress, and has it cancel what it has begun when the wait is
+    broken off.
 
     Args:
         link: to the vehicle.
@@ -73,14 +73,12 @@ def name_of(number: int) -> str:
 def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, component: int) -> Message:
     padded = [*params, *[0.0] * (7 - len(params))]
     answer: Message | None = None
-    sent = counted = 0
     with link.inbox("COMMAND_ACK", component=component) as inbox:
-        while counted < tries:
+        for sent in link.attempts(tries):
             confirmation = min(sent, LAST_CONFIRMATION)
             link.send(
                 mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
             )
-            sent, counted = sent + 1, counted + (not link.unheard())
             heard = link.wait(lambda: _answer(inbox, number), link.patience)
             answer = heard or answer
             if heard is not None and heard.result == _BEGUN:
@@ -100,7 +98,7 @@ def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Mess
         Unanswered: nothing was heard of it for too long.
     """
     try:
-        while (answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS)) is not None:
+        while (answer := link.wait(lambda: _answer(inbox, number), PROGRESS_SECONDS, heard=True)) is not None:
             if answer.result != _BEGUN:
                 return answer
     except BaseException:

@@ -113,15 +113,14 @@ def _transfer(link: Link, items: Sequence[Item], kind: int, transfer: _Transfer)
     kinds = ("MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK")
     with link.inbox(*kinds) as inbox:
         last: Message = count
-        tries = 0
-        while tries < link.retries.tries:
+        attempts = link.attempts()
+        while (tries := next(attempts, None)) is not None:
             link.send(last)
             message = link.wait(lambda: _first(inbox, lambda m: _of(m, kind)), link.patience)
             while message is not None and tries and _repeated(message):
                 # The vehicle had the item already and was only waiting for the next.
                 message = link.wait(lambda: _first(inbox, lambda m: _of(m, kind)), link.patience)
             if message is None:
-                tries += 1
                 continue
             if message.get_type() == "MISSION_ACK":
                 transfer.mark = mark_of(message, 4)
@@ -129,7 +128,7 @@ def _transfer(link: Link, items: Sequence[Item], kind: int, transfer: _Transfer)
             if not 0 <= message.seq < len(items):
                 return int(mavlink.MAV_MISSION_INVALID_SEQUENCE)
             transfer.begun = True
-            last, tries = _message(link, message.seq, items[message.seq], kind), 0
+            last, attempts = _message(link, message.seq, items[message.seq], kind), link.attempts()
     return None
 
 
@@ -178,7 +177,7 @@ def _fetch(link: Link, inbox: deque[Message], seq: int, kind: int) -> Item:
 def _asked(
     link: Link, ask: Message, inbox: deque[Message], fits: Callable[[Message], bool], seconds: float
 ) -> Message:
-    for _ in range(link.retries.tries):
+    for _ in link.attempts():
         link.send(ask)
         answer = link.wait(lambda: _first(inbox, fits), link.clock.patience(seconds, seconds))
         if answer is not None:

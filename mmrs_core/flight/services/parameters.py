@@ -37,7 +37,8 @@ def read(link: Link, names: Iterable[str]) -> dict[str, float]:
     """
     wanted, found = list(names), dict[str, float]()
     with link.inbox("PARAM_VALUE") as inbox:
-        for number in range(ROUNDS):
+        for number in link.attempts(ROUNDS):
+            asked = link.clock.now()
             for name in (name for name in wanted if name not in found):
                 _ask(link, name)
             _ask(link, "", number)
@@ -51,7 +52,8 @@ def read(link: Link, names: Iterable[str]) -> dict[str, float]:
                 return behind or all(name in found for name in wanted)
 
             link.wait(answered, link.patience)
-            if not found or all(name in found for name in wanted):
+            complete = all(name in found for name in wanted)
+            if complete or not (found or link.silent_since(asked)):
                 break
     return {name: found[name] for name in wanted if name in found}
 
@@ -71,7 +73,7 @@ def write(link: Link, name: str, value: float, kind: int = REAL) -> bool:
         kind: its MAV_PARAM_TYPE, which PX4 insists on.
     """
     with link.inbox("PARAM_VALUE") as inbox:
-        for _ in range(link.retries.tries):
+        for _ in link.attempts():
             link.send(
                 mavlink.MAVLink_param_set_message(
                     link.system, link.component, name.encode(), _coded(link, value, kind), kind

@@ -187,7 +187,8 @@ class MavlinkVehicle:
         self._helm.arm()
         self._check_mission()
         self._helm.habits.select(self._helm.habits.number(first))
-        if not self._link.wait(lambda: self._item() == first, self._link.clock.patience(MODE_SECONDS)):
+        patience = self._link.clock.patience(MODE_SECONDS)
+        if not self._link.wait(lambda: self._item() == first, patience, heard=True):
             raise Refused(f"the vehicle does not go to item {first} of its mission")
         self._helm.enter(modes.AUTO)
         following = Following(self._telemetry, self._places(first, last), self._item, first)
@@ -223,6 +224,7 @@ class MavlinkVehicle:
             if confirmed and not self._link.wait(
                 lambda: any(_taken(message) for message in tuple(inbox)),
                 self._link.clock.patience(IMAGE_SECONDS),
+                heard=True,
             ):
                 raise Unanswered(f"{name_of(number)}: no image was told within {IMAGE_SECONDS:.0f} s")
 
@@ -236,6 +238,7 @@ class MavlinkVehicle:
             found = self._link.wait(
                 lambda: next((m for m in inbox if m.name == value), None),
                 self._link.clock.patience(VALUE_SECONDS),
+                heard=True,
             )
         if found is None:
             raise Refused(f"{value}: no such value comes from the vehicle")
@@ -256,7 +259,7 @@ class MavlinkVehicle:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
             return False
         self._helm.enter(modes.HOLD)
-        if not self._link.wait(lambda: self._telemetry.speed() <= STILL, PATIENCE_SECONDS):
+        if not self._link.wait(lambda: self._telemetry.speed() <= STILL, PATIENCE_SECONDS, heard=True):
             raise Refused("the vehicle does not come to a halt")
         return True
 
@@ -335,7 +338,7 @@ class MavlinkVehicle:
             now = following.look()
             return now if now > seq else None
 
-        found = self._link.wait(behind, 10 * PATIENCE_SECONDS)
+        found = self._link.wait(behind, 10 * PATIENCE_SECONDS, heard=True)
         self._helm.check()
         if found is None:
             raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")

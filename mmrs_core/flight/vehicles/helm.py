@@ -82,6 +82,7 @@ class Helm:
                     or self._telemetry.mode() not in {before, *accepted}
                 ),
                 self._link.clock.patience(MODE_SECONDS),
+                heard=True,
             )
             if (number := self._telemetry.mode()) not in {before, wanted.number, *accepted}:
                 raise self._left(number, modes.word_of(self._link, self._kind, before))
@@ -119,12 +120,12 @@ class Helm:
         )
 
     def until(self, test: Callable[[], bool], seconds: float, doing: str) -> None:
-        """Wait until a test holds.
+        """Wait until a test holds; time in which the vehicle is silent does not count.
 
         Raises:
             Fault: it does not in that time; `doing` says what takes too long.
         """
-        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0)):
+        if not self._link.wait(test, self._link.clock.patience(seconds, 2.0), heard=True):
             raise Fault(NO_PROGRESS, f"the vehicle takes too long {doing}")
 
     def arm(self) -> None:
@@ -164,7 +165,7 @@ class Helm:
                 return
             except Refused:
                 # It refuses also when it has left the ground already, and its first answer was lost.
-                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS):
+                if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, heard=True):
                     self._follow_climb()
                     return
                 if attempt + 1 == TAKE_OFF_TRIES:

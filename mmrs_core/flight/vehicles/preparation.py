@@ -104,7 +104,7 @@ def await_position(link: Link, telemetry: Telemetry) -> None:
     Raises:
         Refused: it does not tell.
     """
-    if not link.wait(telemetry.placed, READY_SECONDS):
+    if not link.wait(telemetry.placed, READY_SECONDS, heard=True):
         raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 
@@ -114,7 +114,7 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
     Raises:
         Refused: it does not get ready.
     """
-    if not link.wait(telemetry.ready, READY_SECONDS):
+    if not link.wait(telemetry.ready, READY_SECONDS, heard=True):
         raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 

@@ -163,7 +163,7 @@ class Px4:
 
     def select(self, seq: int) -> None:
         """Send MISSION_SET_CURRENT, which every PX4 knows; MISSION_CURRENT shows whether it came."""
-        for _ in range(self._link.retries.tries):
+        for _ in self._link.attempts():
             self._link.send(
                 mavlink.MAVLink_mission_set_current_message(self._link.system, self._link.component, seq)
             )

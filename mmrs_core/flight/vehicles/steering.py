@@ -55,6 +55,7 @@ class Steering:
             if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
                 break
             self._helm.check()
+            limit += RESEND_SECONDS if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
                 raise Fault(
                     NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
@@ -79,6 +80,7 @@ class Steering:
                 raise Fault(NO_PROGRESS, "the vehicle takes too long to turn")
             self._send_target(here, wanted)
             self._link.wait(lambda: self._faces(wanted), RESEND_SECONDS)
+            until += RESEND_SECONDS if self._link.unheard() else 0.0
             self._helm.check()
 
     def stay(self, place: Place | None = None) -> None:
