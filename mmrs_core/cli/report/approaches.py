@@ -44,7 +44,7 @@ def approaches_of(
         middle = ((begins[index] + ends[index]) / 2).tolist()
         required = None if own is None else area.safety_distance + own
         where = place_of((middle[0], middle[1], middle[2]))
-        yield Approach(robot, area.name, area.use.value, kept, required, where, float(times[index]), error)
+        yield Approach(kept, required, error, where, float(times[index]), robot, area.name, area.use.value)
 
 
 def _segments(track: Track) -> tuple[Floats, Floats, Floats]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from mmrs_core.cli.figures import clock, quantity
 from mmrs_core.cli.preview.markup import element, text
 from mmrs_core.cli.report.tables import Markup, badge, folded, section, table
-from mmrs_core.cli.report.values import Approach, Report, Separation
+from mmrs_core.cli.report.values import Nearness, Report
 from mmrs_core.cli.report.words import UNKNOWN, level, metres, percent, place, seconds
 
 _PAIRS = 20
@@ -95,7 +95,7 @@ def separations(report: Report) -> str:
     return section("Distances between robots", table(head, rows[:_PAIRS]) if rows else "", rest, note=note)
 
 
-def _kept(approach: Approach | Separation) -> Markup:
+def _kept(approach: Nearness) -> Markup:
     if approach.required is None:
         return badge(UNKNOWN, "none")
     if approach.too_near:

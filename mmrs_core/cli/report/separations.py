@@ -38,7 +38,7 @@ def separations_of(
         if found is not None:
             kept, time, (east, north, up) = found
             where = place_of((east, north, up))
-            yield Separation(one[0].robot, other[0].robot, kept, required, where, time, error)
+            yield Separation(kept, required, error, where, time, one[0].robot, other[0].robot)
 
 
 def under_way(flown: Flown, legs: Sequence[PlannedLeg]) -> tuple[Stretch, ...]:

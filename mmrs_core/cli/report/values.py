@@ -11,6 +11,9 @@ from enum import Enum
 
 from mmrs_core.cli.flights.places import Place
 
+MILLIMETRE = 1e-3
+"""Metres that figures may be wrong by."""
+
 
 class Status(Enum):
     """How far a task came."""
@@ -116,62 +119,47 @@ class EnergyReport:
 
 
 @dataclass(frozen=True, slots=True)
-class Approach:
-    """How near a robot came to an area as drawn, and how near it might have.
+class Nearness:
+    """How near a robot came to something, and how near it might have.
 
     Attributes:
-        kept: metres; 0: inside. required: None where the robot's size is not known.
+        kept: metres. required: None where nothing was asked for, or nobody knows.
         error: the part of `required` that allows for position errors, metres.
+        where, time: of the robot when it was nearest.
     """
 
-    robot: str
-    area: str
-    use: str
     kept: float
     required: float | None
+    error: float
     where: Place
     time: float
-
-    error: float = 0.0
 
     @property
     def too_near(self) -> bool:
         """Return whether it was nearer than it might have been even with the position error used up."""
-        return self.required is not None and self.kept < self.required - self.error - 1e-3
+        return self.required is not None and self.kept < self.required - self.error - MILLIMETRE
 
     @property
     def within_error(self) -> bool:
         """Return whether it used some of the position error, and no more."""
-        return self.required is not None and not self.too_near and self.kept < self.required - 1e-3
+        return self.required is not None and not self.too_near and self.kept < self.required - MILLIMETRE
 
 
 @dataclass(frozen=True, slots=True)
-class Separation:
-    """How near two robots came to each other, and where the first was then.
+class Approach(Nearness):
+    """How near a robot came to an area as drawn; 0: inside."""
 
-    Attributes:
-        kept: metres. required: None where nothing was asked for.
-        error: the part of `required` that allows for position errors, metres.
-    """
+    robot: str
+    area: str
+    use: str
+
+
+@dataclass(frozen=True, slots=True)
+class Separation(Nearness):
+    """How near two robots came to each other; `where` is the first one's place."""
 
     robot: str
     other: str
-    kept: float
-    required: float | None
-    where: Place
-    time: float
-
-    error: float = 0.0
-
-    @property
-    def too_near(self) -> bool:
-        """Return whether they were nearer than they might have been even with the position errors used up."""
-        return self.required is not None and self.kept < self.required - self.error - 1e-3
-
-    @property
-    def within_error(self) -> bool:
-        """Return whether they used some of the position errors, and no more."""
-        return self.required is not None and not self.too_near and self.kept < self.required - 1e-3
 
 
 @dataclass(frozen=True, slots=True)
