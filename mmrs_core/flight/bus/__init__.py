@@ -2,9 +2,10 @@
 
 A slot belongs to its robot. A notify is a command to the owner in two steps, so that the logs, merged
 by logical time, tell what happened: ``owner.py`` and ``errands.py`` say how, ``words.py`` with what
-messages. ``node.py`` is one process's end; ``carrier.py`` says what carries messages, and
-``over_zenoh.py`` is one that reaches other processes and machines. ``gateway.py`` lets programs without
-Zenoh take part.
+messages, ``slot.py`` what a slot is to its owner, and ``remembered.py`` what survives. ``node.py`` is one
+process's end: what it has still to tell is in ``outbox.py``, what it answers in ``answering.py``.
+``carrier.py`` says what carries messages, and ``over_zenoh.py`` is one that reaches other processes and
+machines. ``gateway.py`` lets programs without Zenoh take part.
 """
 
 from .carrier import Carrier, Hub

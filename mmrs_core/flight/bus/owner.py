@@ -15,17 +15,34 @@ answered and changes nothing.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 from .journal import Journal
-from .reading import Unreadable, flag_in, names_in, number_in, recorded_in, text_in
+from .latest import Latest
+from .reading import Unreadable
+from .remembered import (
+    Line,
+    begun_in,
+    begun_line,
+    freed_in,
+    freed_line,
+    kept_in,
+    kept_line,
+    left_in,
+    left_line,
+    set_in,
+    set_line,
+    started_in,
+    started_line,
+    tells_of_more_than_starts,
+    used_line,
+)
+from .slot import Kept, Slot
 from .words import REACH, Answer, Begin, CommandId, Commit, Prepare, SlotState, Withdraw
 
 KEPT_SECONDS = 10.0
 """How long a slot is kept for a sender from which nothing is heard; senders repeat themselves sooner."""
 
-Stamp = tuple[int, str]
 Lost = Callable[[str, float], bool]
 
 
@@ -41,27 +58,6 @@ class Owned:
     slots: tuple[str, ...]
     setters: Mapping[str, tuple[str, ...]]
     resetters: Mapping[str, tuple[str, ...]]
-
-
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """For whom a slot is kept; `most` is the latest logical time that its notify may have."""
-
-    id: CommandId
-    round: int
-    active: bool
-    most: int
-    heard: float
-
-
-@dataclass(slots=True)
-class _Slot:
-    """A slot; `stamp` is that of the last command applied, `doubts` those that may have been recorded."""
-
-    state: SlotState
-    stamp: Stamp = (0, "")
-    kept: _Kept | None = None
-    doubts: dict[CommandId, int] = field(default_factory=dict)
 
 
 class Owner:
@@ -102,9 +98,9 @@ class Owner:
         self.used = False
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
         self._lost = lost or (lambda sender, now: False)
-        self._slots = {name: _Slot(SlotState(lamport=floor)) for name in owned.slots}
+        self._slots = {name: Slot(SlotState(lamport=floor)) for name in owned.slots}
         self._applied: set[CommandId] = set()
-        self._latest: dict[str, tuple[str, int, int, bool]] = {}
+        self._latest = Latest()
         self._begun: dict[str, str] = {}
         self._left: set[str] = set()
         for number, line in enumerate(journal.lines(), start=1):
@@ -113,7 +109,7 @@ class Owner:
             except Unreadable as error:
                 raise ValueError(f"{journal}:{number}: damaged: {error}") from error
         for slot in self._slots.values():
-            slot.state = replace(slot.state, lamport=max(slot.state.lamport, floor))
+            slot.pass_time(floor)
 
     @property
     def left(self) -> frozenset[str]:
@@ -123,12 +119,12 @@ class Owner:
     def started(self, number: int) -> None:
         """Keep that this owner was started again."""
         self.start = number
-        self._journal.keep({"started": number, "robot": self.robot, "run": self._run})
+        self._journal.keep(started_line(number, self.robot, self._run))
 
     def use(self) -> None:
         """Keep that the robot itself takes part."""
         if not self.used:
-            self._journal.keep({"used": self.robot})
+            self._journal.keep(used_line(self.robot))
             self.used = True
 
     def prepare(self, asked: Prepare, now: float, *, here: bool = False) -> Answer:
@@ -141,14 +137,12 @@ class Owner:
         """
         if why := self._fault(asked.id, asked.slots, asked.active):
             return Answer("refused", why=why)
-        place = (asked.id.incarnation, asked.id.sequence, asked.round)
-        latest = self._latest.get(asked.id.sender)
-        if latest is not None and (place < latest[:3] or (place == latest[:3] and not latest[3])):
+        if self._latest.is_stale(asked.id, asked.round):
             return Answer("stale")
         slots = [self._slots[name] for name in asked.slots]
         for slot in slots:
             self._end_if_lost(slot, now)
-        if any(slot.kept is not None and not _follows(asked.id, slot.kept.id) for slot in slots):
+        if not all(slot.may_be_kept_for(asked.id) for slot in slots):
             return Answer("busy")
         return self._keep_for(asked, slots, float("inf") if here else now)
 
@@ -157,19 +151,15 @@ class Owner:
         if why := self._fault(sent.id, sent.slots, sent.active):
             return Answer("refused", why=why)
         if sent.id not in self._applied:
-            id = sent.id
-            line = {"set": list(sent.slots), "active": sent.active, "lamport": sent.lamport, **_shown(id)}
-            self._journal.keep(line)
+            self._journal.keep(set_line(sent))
             self._apply(sent)
         return Answer("applied")
 
     def withdraw(self, given_up: Withdraw) -> Answer:
         """Free what was kept for a command."""
-        id = given_up.id
-        resets = any(_is_reset(slot, id) for slot in self._slots.values())
-        if resets:
-            self._journal.keep({"freed": given_up.round, **_shown(id)})
-        self._free(id, given_up.round)
+        if any(slot.may_be_reset_by(given_up.id) for slot in self._slots.values()):
+            self._journal.keep(freed_line(given_up))
+        self._free(given_up)
         return Answer("done")
 
     def begin(self, begun: Begin) -> Answer:
@@ -178,22 +168,21 @@ class Owner:
             if why := self._fault(begun.id, (name,), active):
                 return Answer("refused", why=why)
         if self._begun.get(begun.id.sender, "") < begun.id.incarnation:
-            recorded = [list(each) for each in begun.recorded]
-            self._journal.keep({"begun": recorded, **_shown(begun.id)})
+            self._journal.keep(begun_line(begun))
             self._apply_recorded(begun)
         return Answer("done")
 
     def leave(self, sender: str, lamport: int) -> Answer:
         """Note that a robot has ended at that logical time."""
         if sender not in self._left:
-            self._journal.keep({"left": sender, "lamport": lamport})
+            self._journal.keep(left_line(sender, lamport))
             self._see_off(sender, lamport)
         return Answer("done")
 
     def repeat(self, sent: Commit) -> None:
         """Set slots as a log says they were."""
         for name in sent.slots:
-            _set(self._slots[name], sent.active, (sent.lamport, sent.id.sender))
+            self._slots[name].set(sent.active, (sent.lamport, sent.id.sender))
 
     def restore(self, active: Iterable[str], lamport: int) -> None:
         """Begin with these slots active, and with all that happens later than that logical time."""
@@ -207,18 +196,18 @@ class Owner:
         slots = [self._slots[name] for name in names]
         for slot in slots:
             self._end_if_lost(slot, now)
-        return all(_is_active(slot) and slot.kept is None and slot.state.lamport < lamport for slot in slots)
+        return all(slot.is_active and slot.kept is None and slot.state.lamport < lamport for slot in slots)
 
     def passed(self, names: Iterable[str], lamport: int) -> None:
         """Keep the logical time at which a wait for slots was passed."""
         for slot in map(self._slots.__getitem__, names):
-            slot.state = replace(slot.state, lamport=max(slot.state.lamport, lamport))
+            slot.pass_time(lamport)
 
     def state(self, name: str, now: float) -> SlotState:
         """Return the state of a slot; one in doubt is not active."""
         slot = self._slots[name]
         self._end_if_lost(slot, now)
-        return replace(slot.state, active=_is_active(slot))
+        return replace(slot.state, active=slot.is_active)
 
     def shown(self, now: float) -> dict[str, object]:
         """Return the state of all slots by name, as others see it."""
@@ -258,151 +247,71 @@ class Owner:
                 return f"{id.sender!a} never {'sets' if active else 'resets'} slot {name!a} of {self.robot!a}"
         return ""
 
-    def _keep_for(self, asked: Prepare, slots: Sequence[_Slot], heard: float) -> Answer:
+    def _keep_for(self, asked: Prepare, slots: Sequence[Slot], heard: float) -> Answer:
         least = max(asked.lamport, *(slot.state.lamport + 1 for slot in slots))
-        place = (asked.id.incarnation, asked.id.sequence, asked.round)
+        kept = Kept(asked.id, asked.round, asked.active, least + REACH, heard)
         if not asked.active:
-            line = {"kept": list(asked.slots), "round": asked.round, "most": least + REACH}
-            self._journal.keep({**line, **_shown(asked.id)})
+            self._journal.keep(kept_line(asked, kept.most))
         for slot in slots:
-            if slot.kept is not None and slot.kept.id != asked.id:
-                _end(slot)
-            slot.kept = _Kept(asked.id, asked.round, asked.active, least + REACH, heard)
-        self._latest[asked.id.sender] = (*place, True)
+            slot.keep(kept)
+        self._latest.open(asked.id, asked.round)
         return Answer("granted", least)
 
     def _apply(self, sent: Commit) -> None:
         self._applied.add(sent.id)
-        self._close(sent.id, 0)
+        self._settle(sent.id)
         for name in sent.slots:
             slot = self._slots[name]
-            if slot.kept is not None and slot.kept.id == sent.id:
-                slot.kept = None
-            slot.doubts.pop(sent.id, None)
-            _set(slot, sent.active, (sent.lamport, sent.id.sender))
+            slot.free(sent.id)
+            slot.set(sent.active, (sent.lamport, sent.id.sender))
 
     def _apply_recorded(self, begun: Begin) -> None:
         sender, incarnation = begun.id.sender, begun.id.incarnation
         self._begun[sender] = incarnation
         self._left.discard(sender)
         for name, active, lamport in begun.recorded:
-            _set(self._slots[name], active, (lamport, sender))
+            self._slots[name].set(active, (lamport, sender))
         for slot in self._slots.values():
-            if slot.kept is not None and _is_older(slot.kept.id, begun.id):
-                slot.kept = None
-            slot.doubts = {id: most for id, most in slot.doubts.items() if not _is_older(id, begun.id)}
-        self._close(CommandId(begun.id.run, sender, incarnation, 0), 0)
+            slot.free_older(begun.id)
+        self._settle(CommandId(begun.id.run, sender, incarnation, 0))
 
-    def _free(self, id: CommandId, round: int) -> None:
+    def _free(self, given_up: Withdraw) -> None:
         for slot in self._slots.values():
-            if slot.kept is not None and slot.kept.id == id and slot.kept.round <= round:
-                slot.kept = None
-            slot.doubts.pop(id, None)
-        self._close(id, round)
+            slot.free(given_up.id, given_up.round)
+        self._settle(given_up.id, given_up.round)
 
-    def _close(self, id: CommandId, round: int) -> None:
-        """Have a late request for what has been settled found stale."""
-        place = (id.incarnation, id.sequence, round)
-        latest = self._latest.get(id.sender)
-        if latest is None or place >= latest[:3]:
-            self._latest[id.sender] = (*place, False)
-        elif latest[:2] == place[:2] and id in self._applied:
-            self._latest[id.sender] = (*latest[:3], False)
+    def _settle(self, id: CommandId, round: int = 0) -> None:
+        self._latest.settle(id, round, for_good=id in self._applied)
 
     def _see_off(self, sender: str, lamport: int) -> None:
         self._left.add(sender)
         self.lamport = max(self.lamport, lamport)
 
-    def _end_if_lost(self, slot: _Slot, now: float) -> None:
+    def _end_if_lost(self, slot: Slot, now: float) -> None:
         kept = slot.kept
         if kept is not None and (now - kept.heard > KEPT_SECONDS or self._lost(kept.id.sender, now)):
-            _end(slot)
+            slot.lose_sender()
 
-    def _take_up(self, line: Mapping[str, Any]) -> None:
+    def _take_up(self, line: Line) -> None:
         """Go through a line of the journal as through what it tells of."""
         if line.get("run", self._run) != self._run:
             raise ValueError(f"{self.robot!a}: slots were kept in run {line['run']!a}, not {self._run!a}")
-        self.used = self.used or not {"started", "again"} & set(line)
+        self.used = self.used or tells_of_more_than_starts(line)
         if "started" in line:
-            self.start = number_in(line, "started")
-            self._expect(
-                text_in(line, "robot") == self.robot, f"of robot {line['robot']!a}, not {self.robot!a}"
-            )
+            self.start = started_in(line, self.robot)
         elif "left" in line:
-            self._see_off(text_in(line, "left"), number_in(line, "lamport"))
+            self._see_off(*left_in(line))
         elif "set" in line:
-            slots, active = self._slots_in(line, "set"), flag_in(line, "active")
-            self._apply(Commit(_id(line), slots, active, number_in(line, "lamport")))
+            self._apply(set_in(line, self._slots))
         elif "freed" in line:
-            self._free(_id(line), number_in(line, "freed"))
+            self._free(freed_in(line))
         elif "begun" in line:
-            recorded = recorded_in(line, "begun")
-            self._expect(all(slot in self._slots for slot, _, _ in recorded), "begun: a slot that is none")
-            self._apply_recorded(Begin(_id(line), recorded))
+            self._apply_recorded(begun_in(line, self._slots))
         elif "kept" in line:
-            self._keep_again(_id(line), line)
+            self._keep_again(*kept_in(line, self._slots))
 
-    def _slots_in(self, line: Mapping[str, Any], name: str) -> tuple[str, ...]:
-        slots = names_in(line, name)
-        self._expect(all(slot in self._slots for slot in slots), f"{name}: a slot that is none")
-        return slots
-
-    def _expect(self, holds: bool, why: str) -> None:
-        if not holds:
-            raise Unreadable(why)
-
-    def _keep_again(self, id: CommandId, line: Mapping[str, Any]) -> None:
+    def _keep_again(self, asked: Prepare, most: int) -> None:
         """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
-        round, most = number_in(line, "round"), number_in(line, "most")
-        for name in self._slots_in(line, "kept"):
-            self._slots[name].kept = _Kept(id, round, False, most, float("-inf"))
-        self._latest[id.sender] = (id.incarnation, id.sequence, round, True)
-
-
-def _follows(id: CommandId, before: CommandId) -> bool:
-    """Return whether a command may take over what is kept for another: it is the same, or its heir."""
-    return id == before or _is_older(before, id)
-
-
-def _is_older(id: CommandId, than: CommandId) -> bool:
-    """Return whether a command is of the same sender before it was started again."""
-    return id.sender == than.sender and id.incarnation < than.incarnation
-
-
-def _is_active(slot: _Slot) -> bool:
-    return slot.state.active and not slot.doubts
-
-
-def _is_reset(slot: _Slot, id: CommandId) -> bool:
-    return id in slot.doubts or (slot.kept is not None and slot.kept.id == id and not slot.kept.active)
-
-
-def _end(slot: _Slot) -> None:
-    """Stop keeping a slot for a sender of which nobody knows what it has recorded."""
-    kept = slot.kept
-    if kept is None:
-        return
-    slot.kept = None
-    slot.state = replace(slot.state, lamport=max(slot.state.lamport, kept.most))
-    if not kept.active:
-        slot.doubts[kept.id] = kept.most
-
-
-def _set(slot: _Slot, active: bool, stamp: Stamp) -> None:
-    """Set a slot unless a later command has."""
-    lamport = max(slot.state.lamport, stamp[0])
-    if stamp <= slot.stamp:
-        slot.state = replace(slot.state, lamport=lamport)
-        return
-    slot.stamp = stamp
-    slot.state = SlotState(active, slot.state.version + 1, lamport, stamp[1])
-    slot.doubts = {id: most for id, most in slot.doubts.items() if most >= stamp[0]}
-
-
-def _shown(id: CommandId) -> dict[str, object]:
-    return {"run": id.run, "sender": id.sender, "incarnation": id.incarnation, "sequence": id.sequence}
-
-
-def _id(line: Mapping[str, Any]) -> CommandId:
-    run, sender = text_in(line, "run"), text_in(line, "sender")
-    return CommandId(run, sender, text_in(line, "incarnation"), number_in(line, "sequence"))
+        for name in asked.slots:
+            self._slots[name].kept = Kept(asked.id, asked.round, asked.active, most, float("-inf"))
+        self._latest.open(asked.id, asked.round)
