@@ -51,12 +51,14 @@ class Berths:
     """What all vehicles have in common.
 
     Attributes:
+        ground: where a ground station listens beside them; empty: there is none.
         energy, recharge: for all of them; None: as each berth says.
     """
 
     port: int
     step: int
     host: str
+    ground: str
     speedup: float
     loss: float
     delay: float
@@ -113,9 +115,17 @@ class Berths:
                 loss=self.loss,
                 delay=self.delay,
                 seed=self.seed,
+                ground=_address(self.ground) if self.ground else None,
             )
         except ValueError as error:
             raise typer.BadParameter(str(error)) from error
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not port.isdecimal() or not 1 <= int(port) <= LAST_PORT:
+        raise ValueError(f"--ground {text}: is not [HOST:]PORT")
+    return host or "127.0.0.1", int(port)
 
 
 def _refuse_unknown(settings: Settings) -> None:

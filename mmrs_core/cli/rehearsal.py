@@ -73,7 +73,7 @@ class Rehearsal:
             for number, handler in before.items():
                 signal.signal(number, handler)
             for _, vehicle in self._vehicles:
-                vehicle.radio.close()
+                vehicle.close()
         for name, vehicle in self._vehicles if not quiet else ():
             say(f"'{name}': {summary(deeds_of(vehicle))}")
         return 0 if ended else INTERRUPTED
@@ -151,7 +151,8 @@ def _try_out(fault: Planned, vehicle: SimulatedVehicle) -> None:
         ValueError: it does not take its values.
     """
     like = Autopilot(vehicle.autopilot.settings)
-    Faults(like, nullcontext()).begin(fault.name, *fault.values)
+    watched = len(vehicle.radios) > 1
+    Faults(like, nullcontext(), watched=watched).begin(fault.name, *fault.values)
 
 
 def _typed_lines() -> queue.SimpleQueue[str]:

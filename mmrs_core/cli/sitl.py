@@ -40,6 +40,14 @@ def sitl(
         int, typer.Option("--port-step", min=0, help="To the port of the next; 0: all share one.")
     ] = PORT_STEP,
     host: Annotated[str, typer.Option("--host", help="Where the controllers listen.")] = "127.0.0.1",
+    ground: Annotated[
+        str,
+        typer.Option(
+            "--ground",
+            metavar="[HOST:]PORT",
+            help="Where a ground station listens, too; controllers hear it as an autopilot hands it on.",
+        ),
+    ] = "",
     speedup: Annotated[
         float, typer.Option("--speedup", min=0.1, max=100.0, help="Seconds of theirs in a second.")
     ] = 1.0,
@@ -101,6 +109,7 @@ def sitl(
         port=port,
         step=step,
         host=host,
+        ground=ground,
         speedup=speedup,
         loss=loss,
         delay=delay,

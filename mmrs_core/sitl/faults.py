@@ -14,13 +14,22 @@ class Faults:
     """Makes things go wrong; each method may be called from any thread and has done so on return.
 
     Attributes:
-        link_down: whether nothing comes through, either way.
+        link_down: whether nothing comes through, either way. ground_down: the same, to a ground station.
         answer_delay: seconds by which every answer to an upload is late.
     """
 
-    def __init__(self, autopilot: Autopilot, lock: AbstractContextManager[object]) -> None:
-        """Work on an autopilot whose simulation holds `lock` while it goes on."""
-        self.link_down = False
+    def __init__(
+        self, autopilot: Autopilot, lock: AbstractContextManager[object], *, watched: bool = False
+    ) -> None:
+        """Work on an autopilot whose simulation holds `lock` while it goes on.
+
+        Args:
+            autopilot: of the vehicle.
+            lock: held for every change.
+            watched: whether the vehicle has a radio of its own to a ground station.
+        """
+        self.link_down = self.ground_down = False
+        self._watched = watched
         self.answer_delay = 0.0
         self._autopilot = autopilot
         self._lock = lock
@@ -93,6 +102,20 @@ class Faults:
         """Let everything through again."""
         self.link_down = False
 
+    def cut_ground(self) -> None:
+        """Let nothing through to and from the ground station that looks on.
+
+        Raises:
+            ValueError: there is none.
+        """
+        if not self._watched:
+            raise ValueError("the vehicle has no radio to a ground station")
+        self.ground_down = True
+
+    def mend_ground(self) -> None:
+        """Let everything through to and from that ground station again."""
+        self.ground_down = False
+
     def jump_clock(self, seconds: float) -> None:
         """Have its time of day jump; the time since it booted goes on as it did."""
         with self._lock:
@@ -153,6 +176,7 @@ FAULTS: Mapping[str, Act] = {
     "battery": lambda faults, level: faults.set_battery(float(level)),
     "silent": lambda faults, *commands: faults.silence(*map(int, commands)),
     "link-down": Faults.cut_link,
+    "ground-down": Faults.cut_ground,
     "clock-jump": lambda faults, seconds="3600": faults.jump_clock(float(seconds)),
     "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
     "slow-upload": lambda faults, seconds="3": faults.slow_uploads(float(seconds)),
@@ -167,6 +191,7 @@ ENDS: Mapping[str, Act] = {
     "breach": Faults.mend_fence,
     "silent": Faults.silence,
     "link-down": Faults.mend_link,
+    "ground-down": Faults.mend_ground,
     "refuse-arming": lambda faults: faults.refuse_arming(""),
     "slow-upload": lambda faults: faults.slow_uploads(0.0),
     "camera-dead": Faults.mend_camera,
@@ -181,7 +206,7 @@ def _do(acts: Mapping[str, Act], faults: Faults, name: str, values: tuple[str, .
     try:
         acts[name](faults, *values)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} {' '.join(values)}: {error}") from error
+        raise ValueError(f"{' '.join((name, *values))}: {error}") from error
 
 
 def _unknown(name: str) -> str:

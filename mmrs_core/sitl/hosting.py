@@ -28,7 +28,7 @@ class Hosted(Protocol):
     speedup: float
 
     @property
-    def radio(self) -> Socket:
+    def radios(self) -> Sequence[Socket]:
         """Return where something may come."""
         ...
 
@@ -64,7 +64,8 @@ class Host:
     def _run(self) -> None:
         with selectors.DefaultSelector() as selector:
             for vehicle in self._vehicles:
-                selector.register(vehicle.radio, selectors.EVENT_READ, vehicle.hear)
+                for radio in vehicle.radios:
+                    selector.register(radio, selectors.EVENT_READ, vehicle.hear)
             last = time.monotonic()
             while not self._stopping.is_set():
                 self._answer(selector, last + self._tick)

@@ -74,6 +74,10 @@ class Radio:
         """Send a message, unless it is lost."""
         data = message.pack(self._mav)
         self._mav.seq = (self._mav.seq + 1) % 256
+        self.relay(data)
+
+    def relay(self, data: bytes) -> None:
+        """Send a frame of somebody else's as it is, unless it is lost."""
         if self._loses():
             return
         if self._delay:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import degrees, isnan
 from types import TracebackType
 from typing import Any
@@ -18,6 +18,7 @@ from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.items import MISSION, RALLY, Item
 from mmrs_core.sitl.parameter_service import ParameterService
 from mmrs_core.sitl.radio import COMPONENT, Radio
+from mmrs_core.sitl.routing import Router
 from mmrs_core.sitl.settings import PX4, Settings
 from mmrs_core.sitl.simulation import advance
 from mmrs_core.sitl.streams import Streams
@@ -32,12 +33,13 @@ REAL_PATIENCE = 2.0
 
 
 class SimulatedVehicle:
-    """A vehicle that sends to one UDP address, and listens for the answers.
+    """A vehicle that sends to a UDP address, or to two, and listens for the answers.
 
     Attributes:
         autopilot: what it does; read it freely, its numbers may be a tick old.
         faults: makes things go wrong with it.
-        radio: how it speaks. streams: what it tells by itself. values: its parameters, for the ground.
+        radio: how it speaks to who steers it.
+        streams: what it tells by itself. values: its parameters, for the ground.
         received: (seconds, name) of every message that has come for it, but heartbeats.
         speedup: seconds of simulation in a second.
     """
@@ -52,17 +54,19 @@ class SimulatedVehicle:
         loss: float = 0.0,
         delay: float = 0.0,
         seed: int = 0,
+        ground: tuple[str, int] | None = None,
     ) -> None:
         """Prepare a vehicle; it speaks from `start` on.
 
         Args:
-            port: UDP port of the ground station.
+            port: UDP port of who steers it: a controller, or a ground station.
             settings: how it is.
-            host: of the ground station.
+            host: of that.
             speedup: seconds of simulation in a second.
             loss: part of all datagrams that are lost, either way.
             delay: real seconds that a datagram takes, either way.
             seed: of the losses.
+            ground: host and UDP port of a ground station that looks on by a radio of its own.
         """
         given = settings or Settings()
         self.autopilot = Autopilot(given)
@@ -71,16 +75,17 @@ class SimulatedVehicle:
         self.radio = Radio((host, port), given.system, key=given.key, loss=loss, delay=delay, seed=seed)
         self.received: list[tuple[float, str]] = []
         self.lock = threading.RLock()
-        self.faults = Faults(self.autopilot, self.lock)
+        self.faults = Faults(self.autopilot, self.lock, watched=ground is not None)
         self.radio.down = lambda: self.faults.link_down or self.autopilot.booting
+        self._router = Router(given.system, self.radio, *self._second(ground, given))
         self._missions = MissionProtocol(
             self.autopilot.stores, self._answer, given.firmware, self.autopilot.say
         )
         self._missions.finished = self._count_items
         self._missions.home = None if given.firmware == PX4 else self._home
         self._late: list[tuple[float, Message]] = []
-        self.values = ParameterService(self.autopilot, self.radio.send)
-        self.streams = Streams(self.autopilot, self.radio.send)
+        self.values = ParameterService(self.autopilot, self._router.send)
+        self.streams = Streams(self.autopilot, self._router.send)
         self._host: Host | None = None
         self._begin()
 
@@ -93,7 +98,16 @@ class SimulatedVehicle:
         """Switch it off."""
         if self._host is not None:
             self._host.stop()
-        self.radio.close()
+        self.close()
+
+    def close(self) -> None:
+        """Fall silent."""
+        self._router.close()
+
+    @property
+    def radios(self) -> Sequence[Radio]:
+        """Return all by which something may come."""
+        return self._router.radios
 
     def mute(self) -> None:
         """Cut the link both ways; the vehicle goes on."""
@@ -117,7 +131,7 @@ class SimulatedVehicle:
     def hear(self) -> None:
         """Answer what has come."""
         with self.lock:
-            for message in self.radio.receive():
+            for message in self._router.receive():
                 if self._is_for_it(message):
                     self._take(message)
 
@@ -134,13 +148,20 @@ class SimulatedVehicle:
             self._tell_late()
             self.streams.go_on()
             self.values.go_on()
-            self.radio.flush()
-            if self.radio.late:
+            self._router.flush()
+            if self._router.late:
                 self.hear()
+
+    def _second(self, ground: tuple[str, int] | None, given: Settings) -> list[Radio]:
+        if ground is None:
+            return []
+        radio = Radio(ground, given.system, key=given.key)
+        radio.down = lambda: self.faults.ground_down or self.autopilot.booting
+        return [radio]
 
     def _tell_late(self) -> None:
         while self._late and self._late[0][0] <= self.autopilot.time:
-            self.radio.send(self._late.pop(0)[1])
+            self._router.send(self._late.pop(0)[1])
 
     def _begin(self) -> None:
         """Begin anew after a boot: what was asked for is forgotten."""
@@ -188,7 +209,7 @@ class SimulatedVehicle:
             result = _ASKING[number](self, params)
         else:
             result = obey(self.autopilot, number, params)
-        self.radio.send(
+        self._router.send(
             mavlink.MAVLink_command_ack_message(
                 number,
                 result,
@@ -228,13 +249,13 @@ class SimulatedVehicle:
     def _synchronise(self, message: Message) -> None:
         if message.tc1 == 0:
             now = telemetry.milliseconds(self.autopilot) * 1_000_000
-            self.radio.send(mavlink.MAVLink_timesync_message(now, message.ts1))
+            self._router.send(mavlink.MAVLink_timesync_message(now, message.ts1))
 
     def _answer(self, message: Message) -> None:
         if self.faults.answer_delay:
             self._late.append((self.autopilot.time + self.faults.answer_delay, message))
         else:
-            self.radio.send(message)
+            self._router.send(message)
 
     def _home(self) -> Item:
         latitude, longitude, above = self.autopilot.home

@@ -6,7 +6,6 @@ It stands in for the binary in a test of what starts that, and proves nothing ab
 from __future__ import annotations
 
 import argparse
-import socket
 import threading
 from pathlib import Path
 
@@ -24,15 +23,8 @@ def main() -> None:
     latitude, longitude, altitude, _ = map(float, given.home.split(","))
     settings = Settings("copter", latitude, longitude, int(given.sysid), altitude=altitude)
     host, port = address(given.serial0)
-    vehicle = SimulatedVehicle(port, settings, host=host, speedup=float(given.speedup))
-    send, second = vehicle.radio._transmit, socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-
-    def send_to_both(data: bytes) -> None:
-        send(data)
-        second.sendto(data, address(given.serial1))
-
-    vehicle.radio._transmit = send_to_both
-    with vehicle:
+    speedup, ground = float(given.speedup), address(given.serial1)
+    with SimulatedVehicle(port, settings, host=host, speedup=speedup, ground=ground):
         threading.Event().wait()
 
 

@@ -26,7 +26,8 @@ def ground():
 @pytest.fixture
 def vehicle(ground):
     port = ground.socket.getsockname()[1]
-    with SimulatedVehicle(port, Settings(boot=0.5, ready=0.5), speedup=SPEEDUP) as vehicle:
+    settings, watched = Settings(boot=0.5, ready=0.5), ("127.0.0.1", 9)
+    with SimulatedVehicle(port, settings, speedup=SPEEDUP, ground=watched) as vehicle:
         assert ground.hear(
             lambda m: m.get_type() == "SYS_STATUS" and m.onboard_control_sensors_health & PREARM
         )

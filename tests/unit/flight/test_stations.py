@@ -1,0 +1,233 @@
+"""Ground stations of people: who hears them, and when they count as lost."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from flight_crew import robot_of
+from mavlink_peer import HERE, QUICK, Wire, eventually, heartbeat
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM, Radio
+from mmrs_core.flight.program import Policy
+from mmrs_core.flight.steps.ground import SAME_SYSTEM, Ground
+from mmrs_core.flight.steps.watch import Watch
+from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+
+THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
+STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
+FIVE = Policy("GROUND_LOST", "RETURN", 5.0)
+
+
+class HandClock(Clock):
+    """A clock that a test sets."""
+
+    seconds = 0.0
+
+    def now(self) -> float:
+        return self.seconds
+
+
+@pytest.fixture
+def ears():
+    """Return a wire with the links of two vehicles, at different addresses, and their clock."""
+    wire, clock = Wire(), HandClock()
+    radio = Radio(wire, clock)
+    links = [Link(radio, clock, system, retries=QUICK) for system in (1, 2)]
+    wire.beat(system=1, sender=HERE)
+    wire.beat(system=2, sender=THERE)
+    for link in links:
+        eventually(lambda link=link: link.component)
+    yield SimpleNamespace(wire=wire, clock=clock, first=links[0], second=links[1], number=100)
+    for link in links:
+        link.close()
+
+
+def beat(ears, system: int = 254, component: int = 190, sender=HERE) -> None:
+    """Have a station's heartbeat come, and wait until it was dealt with."""
+    ears.wire.say(STATION, system=system, component=component, sender=sender)
+    alive(ears)
+
+
+def alive(ears) -> None:
+    """Have both vehicles be heard now, after all that has come before."""
+    ears.number += 1
+    for link, sender in ((ears.first, HERE), (ears.second, THERE)):
+        ears.wire.beat(system=link.system, sender=sender, mode=ears.number)
+        eventually(lambda link=link: link.latest("HEARTBEAT").custom_mode == ears.number)
+
+
+def pass_seconds(ears, seconds: int) -> None:
+    """Let time pass in which the vehicles are heard."""
+    for _ in range(seconds):
+        ears.clock.seconds += 1.0
+        alive(ears)
+
+
+def test_a_station_is_heard_by_the_vehicle_that_has_handed_it_on(ears):
+    beat(ears, sender=THERE)
+    assert (ears.first.stations.systems, ears.second.stations.systems) == ((), (254,))
+
+
+def test_a_station_that_speaks_for_itself_is_heard_by_all(ears):
+    beat(ears, sender=ELSEWHERE)
+    assert (ears.first.stations.systems, ears.second.stations.systems) == ((254,), (254,))
+
+
+@pytest.mark.parametrize(
+    ("system", "component"), [(GROUND_SYSTEM, GROUND_COMPONENT), (1, 191), (2, 190)], ids=str
+)
+def test_our_own_programs_and_what_is_on_board_are_no_stations(ears, system, component):
+    beat(ears, system, component, ELSEWHERE)
+    assert ears.first.stations.systems == ears.second.stations.systems == ()
+
+
+def test_a_ground_station_with_the_usual_ids_is_none_of_our_programs(ears):
+    beat(ears, 255, 190)
+    assert ears.first.stations.systems == (255,)
+
+
+def test_nothing_is_lost_that_was_never_there(ears):
+    ground = Ground(ears.first)
+    pass_seconds(ears, 60)
+    assert ground.silence(FIVE) == ""
+
+
+def test_a_station_counts_as_lost_after_the_seconds_of_the_policy(ears):
+    ground = Ground(ears.first)
+    beat(ears)
+    pass_seconds(ears, 5)
+    assert ground.silence(FIVE) == ""
+    pass_seconds(ears, 1)
+    assert ground.silence(FIVE) == "nothing heard of ground station 254 for 6 s"
+
+
+def test_a_policy_without_seconds_bears_ten(ears):
+    ground, policy = Ground(ears.first), Policy("GROUND_LOST", "RETURN")
+    beat(ears)
+    pass_seconds(ears, 10)
+    assert ground.silence(policy) == ""
+    pass_seconds(ears, 1)
+    assert ground.silence(policy)
+
+
+def test_a_station_that_comes_back_in_time_is_not_lost(ears):
+    ground = Ground(ears.first)
+    beat(ears)
+    pass_seconds(ears, 4)
+    beat(ears)
+    pass_seconds(ears, 4)
+    assert ground.silence(FIVE) == ""
+
+
+def test_of_several_stations_the_last_counts(ears):
+    ground = Ground(ears.first)
+    beat(ears, 253)
+    pass_seconds(ears, 4)
+    beat(ears, 254)
+    pass_seconds(ears, 4)
+    assert ground.silence(FIVE) == ""
+    pass_seconds(ears, 4)
+    assert ground.silence(FIVE) == "nothing heard of ground stations 253 and 254 for 8 s"
+
+
+def test_seconds_in_which_the_vehicle_itself_is_silent_do_not_count(ears):
+    ground = Ground(ears.first)
+    beat(ears)
+    pass_seconds(ears, 2)
+    ears.clock.seconds += 30.0
+    assert ground.silence(FIVE) == ""
+    alive(ears)
+    assert ground.silence(FIVE) == ""
+    pass_seconds(ears, 4)
+    assert ground.silence(FIVE) == "nothing heard of ground station 254 for 6 s"
+
+
+def test_what_is_cut_for_a_rehearsal_is_not_heard(ears):
+    ground = Ground(ears.first)
+    beat(ears)
+    ears.first.stations.deaf = True
+    for _ in range(6):
+        pass_seconds(ears, 1)
+        beat(ears)
+    assert ground.silence(FIVE)
+    ears.first.stations.deaf = False
+    beat(ears)
+    assert ground.silence(FIVE) == ""
+
+
+def test_every_station_is_news_once(ears):
+    ground = Ground(ears.first)
+    assert ground.news() == ""
+    beat(ears, 254)
+    assert [ground.news(), ground.news()] == ["ground station 254 heard", ""]
+    beat(ears, 253)
+    assert ground.news() == "ground stations 253 and 254 heard"
+
+
+@pytest.mark.parametrize(
+    ("policy", "heard", "said"),
+    [
+        (FIVE, (), ["hears no ground station yet: policy GROUND_LOST (RETURN) waits for the first"]),
+        (FIVE, (254,), []),
+        (FIVE, (255,), [SAME_SYSTEM]),
+        (Policy("GROUND_LOST", "CONTINUE"), (), []),
+    ],
+)
+def test_people_are_told_at_the_start_what_their_policy_waits_for(ears, policy, heard, said):
+    for system in heard:
+        beat(ears, system)
+    assert Ground(ears.first).words(robot_of(policy)) == said
+
+
+def watching(ears, *policies):
+    robot = robot_of(*policies)
+    watch, decided = Watch(robot, ears.clock, threading.Event()), []
+    watch.begin(ears.first, MavlinkVehicle(ears.first, "copter", robot.home))
+    watch.decide = lambda *decision: decided.append(decision)
+    return watch, decided
+
+
+HEARD = ("GROUND_LOST", "ground station 254 heard", "watched from now on")
+
+
+def test_a_watch_ends_the_program_when_the_last_station_is_lost(ears):
+    watch, decided = watching(ears, FIVE)
+    beat(ears)
+    watch.check()
+    pass_seconds(ears, 6)
+    with pytest.raises(Fault, match="nothing heard of ground station 254 for 6 s") as fault:
+        watch.check()
+    assert (fault.value.event, decided) == ("GROUND_LOST", [HEARD])
+
+
+@pytest.mark.parametrize("policies", [(), (Policy("GROUND_LOST", "CONTINUE", 5.0),)])
+def test_a_robot_that_carries_on_alone_has_that_recorded_each_time(ears, policies):
+    watch, decided = watching(ears, *policies)
+    beat(ears)
+    for _ in range(2):
+        pass_seconds(ears, 12)
+        watch.check()
+        watch.check()
+        beat(ears)
+        watch.check()
+    borne = ("GROUND_LOST", "nothing heard of ground station 254 for 12 s", "CONTINUE")
+    assert decided == [HEARD, borne, borne]
+
+
+@pytest.mark.parametrize(("response", "heeded"), [("HOLD", True), ("RETURN", False), ("LAND", False)])
+def test_a_robot_that_holds_for_another_reason_still_heeds_it(ears, response, heeded):
+    watch, _ = watching(ears, FIVE)
+    beat(ears)
+    watch.relax({"OBSTACLE"}, response)
+    pass_seconds(ears, 6)
+    if not heeded:
+        watch.check()
+        return
+    with pytest.raises(Fault, match="ground station 254"):
+        watch.check()
