@@ -31,7 +31,7 @@ import zenoh
 from mmrs_core.behaviour.log import LogWriter, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.flight.bus import begin_together
 from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier, configuration
 from mmrs_core.flight.program import Local, Notify, Robot, Start, Step

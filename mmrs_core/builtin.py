@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import BackendFactory
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind
 from mmrs_core.contributions.symbols import CORE_SYMBOLS, MapSymbol

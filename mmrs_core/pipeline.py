@@ -16,8 +16,9 @@ from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedErro
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.behaviour.steps import StepRecord
+    from mmrs_core.contributions.backends import BackendInput
     from mmrs_core.contributions.checks import Verdict
-    from mmrs_core.contributions.execution import BackendInput, Condition
+    from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.registry import Contributions
     from mmrs_core.contributions.targets import GeneratedFile
     from mmrs_core.generation.capabilities.judging import Capability

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
 
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol

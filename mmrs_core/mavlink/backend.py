@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from mmrs_core.contributions.execution import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.backend_options import link_options
 

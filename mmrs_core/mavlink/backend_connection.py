@@ -10,7 +10,7 @@ from typing import cast
 
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.execution import BackendInput, Live
+from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Clock as RunClock
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import LinkLostError, UnsupportedError

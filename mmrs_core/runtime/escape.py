@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from math import dist
 
-from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.errors import UnreachableError
 from mmrs_core.geometry.clearance import shrink
 from mmrs_core.planning.paths import Space

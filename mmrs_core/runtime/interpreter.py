@@ -16,7 +16,9 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.behaviour.semantics import Phase, Step, Waiting
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import Backend, Bus, Clock, CommandId, Condition, Fault
+from mmrs_core.contributions.backends import Backend
+from mmrs_core.contributions.buses import Bus, CommandId
+from mmrs_core.contributions.execution import Clock, Condition, Fault
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.obedience import Obedience

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mmrs_core.behaviour.as_scene import scene_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action
 from mmrs_core.behaviour.semantics import NOTIFY
-from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.rules import MoveKind, most_specific, robot_kind_of
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Kinematics

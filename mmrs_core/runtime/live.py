@@ -10,17 +10,10 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import (
-    Backend,
-    BackendFactory,
-    BackendInput,
-    Bus,
-    Closing,
-    Condition,
-    Live,
-    Noting,
-    Preparing,
-)
+from mmrs_core.contributions.abilities import Closing, Noting, Preparing
+from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
+from mmrs_core.contributions.buses import Bus
+from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock

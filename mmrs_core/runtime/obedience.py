@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.execution import Clock, Doubting, Fault, Noting, Pausable, Watched
+from mmrs_core.contributions.abilities import Doubting, Noting, Pausable, Watched
+from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders

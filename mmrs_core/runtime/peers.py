@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from mmrs_core.behaviour.program import Program, SlotId
-from mmrs_core.contributions.execution import Bus
+from mmrs_core.contributions.buses import Bus
 
 
 class Peers:

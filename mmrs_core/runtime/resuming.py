@@ -8,7 +8,7 @@ from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import Action, Program, RobotProgram
 from mmrs_core.behaviour.semantics import Point, Step, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import CommandId
+from mmrs_core.contributions.buses import CommandId
 from mmrs_core.runtime.slots import InProcessBus
 
 RESTORED = "restored"

@@ -9,7 +9,10 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import Backend, Bus, Condition, Delivery, Fault, Noting, Recovering
+from mmrs_core.contributions.abilities import Noting, Recovering
+from mmrs_core.contributions.backends import Backend
+from mmrs_core.contributions.buses import Bus, Delivery
+from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
 from mmrs_core.runtime.peers import Peers

@@ -8,14 +8,9 @@ from dataclasses import dataclass, field
 from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import (
-    BackendFactory,
-    BackendInput,
-    Condition,
-    Recorder,
-    RobotState,
-    Sample,
-)
+from mmrs_core.contributions.abilities import Recorder
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.execution import Condition, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError

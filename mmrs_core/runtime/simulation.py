@@ -15,7 +15,8 @@ from math import hypot, inf
 from mmrs_core.behaviour.as_scene import robot_of
 from mmrs_core.behaviour.policies import in_precedence
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
-from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState, Sample
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.battery import SLACK, Battery

@@ -8,7 +8,7 @@ from pathlib import Path
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import CommandId, SlotState
+from mmrs_core.contributions.buses import CommandId, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.flight.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 from mmrs_core.flight.slots import SETTLING_SECONDS

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from mmrs_core.contributions.execution import Clock, Fault, Noting, Watched
+from mmrs_core.contributions.abilities import Noting, Watched
+from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
 from mmrs_core.runtime.obedience import Obedience

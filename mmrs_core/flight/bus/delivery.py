@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """A notify on its way; see `mmrs_core.contributions.execution.Delivery`."""
+    """A notify on its way; see `mmrs_core.contributions.buses.Delivery`."""
 
     node: Node
     errand: Errand

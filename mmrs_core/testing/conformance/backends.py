@@ -10,7 +10,7 @@ from typing import ClassVar
 import pytest
 
 from mmrs_core.behaviour.program import Program
-from mmrs_core.contributions.execution import Backend, BackendFactory, BackendInput
+from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type

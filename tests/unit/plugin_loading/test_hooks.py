@@ -8,10 +8,11 @@ import pytest
 
 from mmrs_core import hookspecs, plugins
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
-from mmrs_core.contributions.execution import BackendFactory, Condition
+from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import pytest
 
 from mmrs_core import pipeline
-from mmrs_core.contributions.execution import BackendFactory, RobotState
+from mmrs_core.contributions.backends import BackendFactory
+from mmrs_core.contributions.execution import RobotState
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins

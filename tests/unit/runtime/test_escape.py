@@ -6,7 +6,7 @@ import pytest
 import shapely
 
 from mmrs_core.behaviour.program import Program, RobotProgram
-from mmrs_core.contributions.execution import BackendInput
+from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.scene import Area, AreaUse, Capability, Frame, Kinematics, Part, RobotType
 

@@ -8,7 +8,8 @@ import pytest
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.execution import BackendInput, Condition, Fault, RobotState
+from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.runtime.clock import RealClock, SimulatedClock
 from mmrs_core.runtime.interpreter import interpret

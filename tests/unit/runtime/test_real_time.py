@@ -10,7 +10,8 @@ from math import inf
 import pytest
 
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.execution import BackendFactory, BackendInput, Fault, RobotState
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.flight.bus import CommandId, Hub, Node, NoJournal
 from mmrs_core.runtime.clock import RealClock

@@ -8,7 +8,8 @@ import pytest
 
 from mmrs_core.behaviour.program import Action, Heading, Move, Target
 from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.contributions.execution import BackendInput, Fault
+from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.legs import CLIMBING
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot

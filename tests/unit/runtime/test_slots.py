@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.contributions.execution import CommandId, SlotState
+from mmrs_core.contributions.buses import CommandId, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.testing.small_programs import program, robot

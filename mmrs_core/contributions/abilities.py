@@ -1,0 +1,109 @@
+"""What a backend may have beside the rest; whoever runs behaviours asks by `isinstance`.
+
+Times are seconds of the run's clock throughout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, runtime_checkable
+
+from mmrs_core.contributions.execution import Sample
+
+
+@runtime_checkable
+class Preparing(Protocol):
+    """A backend of robots that take time to get ready.
+
+    A run in real time begins when all its robots are ready, or not at all.
+    """
+
+    def prepare(self, now: float) -> None:
+        """Begin to get the robot ready; `finished` says when it is, `fault` why it cannot be."""
+        ...
+
+
+@runtime_checkable
+class Recovering(Protocol):
+    """A backend whose robot can go on where its program was broken off."""
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Begin to bring the robot back to where it was; `finished` says when it is there.
+
+        Args:
+            passed: the moves that it has ended, in order.
+            begun: the move that it is to begin once more; empty where it has ended its last one.
+            now: the time.
+        """
+        ...
+
+
+@runtime_checkable
+class Watched(Protocol):
+    """A backend that says how far a robot is that was told to stop."""
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the robot has confirmed that it now does what it was told by `stop`."""
+        ...
+
+    def watched(self, now: float) -> bool:
+        """Return whether the robot has stopped, and would do something else if nobody watched it."""
+        ...
+
+
+@runtime_checkable
+class Doubting(Protocol):
+    """A backend whose robot somebody else may have taken."""
+
+    def in_doubt(self, now: float) -> bool:
+        """Return whether that is being found out; orders wait for it, and it takes seconds at most."""
+        ...
+
+
+@runtime_checkable
+class Pausable(Protocol):
+    """A backend whose robot can halt in the middle of anything."""
+
+    def pause(self, now: float) -> None:
+        """Begin to halt; idempotent."""
+        ...
+
+    def resume(self, now: float) -> None:
+        """Go on with what was begun before; idempotent."""
+        ...
+
+    def paused(self, now: float) -> bool:
+        """Return whether the robot has confirmed that it halts, and not yet that it goes on."""
+        ...
+
+
+@runtime_checkable
+class Noting(Protocol):
+    """A backend that keeps a black box of its robot."""
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something that the interpreter decided, was ordered, or waited for; raises nothing."""
+        ...
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """A backend with links and threads that end with the run."""
+
+    def close(self) -> None:
+        """Release what it holds; the robot keeps whatever state it is in."""
+        ...
+
+
+@runtime_checkable
+class Recorder(Protocol):
+    """A backend that remembers the way of its robot, for pictures and people."""
+
+    @property
+    def notes(self) -> Sequence[str]:
+        """Return what was taken for granted, each line without the robot's name."""
+        ...
+
+    def track(self) -> tuple[Sample, ...]:
+        """Return the way that the robot has come."""
+        ...

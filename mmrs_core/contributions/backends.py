@@ -1,0 +1,137 @@
+"""What moves robots: backends, what they are made from, and what makes them.
+
+Times are seconds of the run's clock throughout. `abilities` says what a backend may have beside the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram
+from mmrs_core.contributions.execution import Clock, Fault, RobotState
+from mmrs_core.contributions.rules import MoveKind, RobotKind
+from mmrs_core.contributions.wiring import Wirings
+from mmrs_core.scene import Area, Name, Policy, RobotType
+
+
+class Backend(Protocol):
+    """Moves one robot. Calls return at once; any may raise LinkLostError.
+
+    The interpreter begins one movement or action at a time and asks until it has finished.
+    """
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement, Start and Stop included; `through`: it need not stop at the end."""
+        ...
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin a device or feedback action."""
+        ...
+
+    def finished(self, now: float) -> bool:
+        """Return whether what was begun last has finished."""
+        ...
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong up to now, if anything; asked before `finished`."""
+        ...
+
+    def next_event(self, now: float) -> float | None:
+        """Return when it will be worth asking again, inf: never; None: at the clock's own pace."""
+        ...
+
+    def wait(self, now: float) -> None:
+        """Hold the pose until the next begin."""
+        ...
+
+    def state(self, now: float) -> RobotState:
+        """Return what is known of the robot."""
+        ...
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Bring the robot to a safe halt, from any state; idempotent.
+
+        Args:
+            now: time at which it begins.
+            response: a literal of PolicyResponse: how; ``NOTHING``: hands off, somebody else has the robot.
+
+        In real time `finished` then says when the robot has obeyed, and `fault` why it cannot.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """What backends of a run in real time may use beside the rest.
+
+    Attributes:
+        clock: of the run.
+        wake: has the interpreter look at this robot at once; to be called, from any thread, whenever
+            the robot's answers may have changed.
+        say: tells people something about this robot, from any thread.
+        run: identifier of the run.
+        folder: of the logs; None where none are kept.
+        resumed: whether the run was broken off before, so that robots may be anywhere on their ways.
+        passed: moves that this robot ended before, in order.
+        begun: the move that it had begun then; empty where it had ended its last one.
+        links: how robots are reached, as in ``--connect``, by robot of this process.
+        shared: what backends of the same run share, by names of their own; empty at first.
+    """
+
+    clock: Clock
+    wake: Callable[[], None]
+    say: Callable[[str], None]
+    run: str
+    folder: Path | None = None
+    resumed: bool = False
+    passed: tuple[str, ...] = ()
+    begun: str = ""
+    links: Mapping[str, str] = field(default_factory=dict)
+    shared: dict[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class BackendInput:
+    """All that a backend may use.
+
+    Attributes:
+        options: as in ``--backend-option``.
+        policies: of the robot, in the order in which they go: the first for an event counts.
+        areas: of the context as drawn; empty where none was given.
+        live: of a run in real time; None in simulated time.
+        device_actions: how devices are wired, by property.
+    """
+
+    program: Program
+    robot: RobotProgram
+    type: RobotType
+    robot_kinds: Mapping[Name, RobotKind]
+    move_kinds: Mapping[Name, MoveKind]
+    environment: Mapping[str, float]
+    options: Mapping[str, str]
+    policies: tuple[Policy, ...] = ()
+    areas: tuple[Area, ...] = ()
+    live: Live | None = None
+    device_actions: Wirings = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class BackendFactory:
+    """What makes backends of one sort.
+
+    Attributes:
+        name: as in ``--backend``.
+        description: one line for people.
+        connect: a backend for one robot. Raises LinkLostError where the robot does not answer,
+            UnsupportedError for an option that it does not know and for what it cannot do.
+        simulated: whether its time is simulated, so that a run jumps from event to event;
+            ``mmrs simulate`` takes no other.
+    """
+
+    name: str
+    description: str
+    connect: Callable[[BackendInput], Backend]
+    simulated: bool = False
