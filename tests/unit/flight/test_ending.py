@@ -1,0 +1,207 @@
+"""What a robot does when its program ends early, with a simulated vehicle that has to do it."""
+
+from __future__ import annotations
+
+import pytest
+from flight_crew import HOME, NORTH, in_background, manned, robot_of, until
+
+from mmrs_core.flight.faults import Fault, Stopped, Strange
+from mmrs_core.flight.orders.obedience import Ordered
+from mmrs_core.flight.orders.orders import Order, Receipt
+from mmrs_core.flight.places import distance
+from mmrs_core.flight.program import Policy
+
+
+@pytest.fixture
+def robot(tmp_path):
+    """Return a function that gives a robot with policies, 22 metres north of its home and ten above it."""
+    open_ones = []
+
+    def fly(*policies, on_stop="hold", **settings):
+        context = manned(tmp_path, robot_of(*policies), on_stop=on_stop, **settings)
+        made = context.__enter__()
+        open_ones.append(context)
+        made.fly_out()
+        return made
+
+    yield fly
+    for context in open_ones:
+        context.__exit__(None, None, None)
+
+
+def away(made, place) -> float:
+    """Return how far the vehicle is from a place, metres."""
+    return distance(made.crew.vehicle.state().place, place)
+
+
+def ordered(made, name: str) -> tuple[Ordered, Receipt]:
+    receipt = made.inbox.give(Order(name))
+    assert made.inbox.take() is receipt
+    return Ordered(receipt), receipt
+
+
+def test_a_robot_returns_by_the_way_it_came_and_says_so_in_its_log(robot):
+    made = robot(Policy("DEVICE_SILENT", "RETURN"))
+    assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 1
+    assert not made.simulated.autopilot.armed
+    assert away(made, HOME) < 1.5
+    assert made.events() == ["DEVICE_SILENT"]
+    assert made.left == 1
+    assert made.said[0] == "'alpha': DEVICE_SILENT: no answer; response: RETURN"
+
+
+def test_a_robot_that_lands_comes_down_where_it_is(robot):
+    made = robot(Policy("PEER_LOST", "LAND"))
+    assert made.ending().end(Fault("PEER_LOST", "nobody there")) == 1
+    assert not made.simulated.autopilot.armed
+    assert away(made, NORTH) < 12.0
+    assert away(made, HOME) > 15.0
+
+
+def test_what_brings_a_robot_down_for_its_battery_is_no_fault_and_nobody_is_told_that_it_ended(robot):
+    made = robot()
+    ending = made.ending()
+    assert ending.end(Fault("BATTERY_LOW", "too little is left")) == 1
+    assert (ending.suspended, ending.down, ending.where) == (True, True, "home")
+    assert made.events() == []
+    assert made.left == 0
+
+
+def test_a_battery_that_is_answered_in_the_air_is_a_fault(robot):
+    made = robot(Policy("BATTERY_LOW", "HOLD"))
+    ending = made.ending()
+    code = in_background(lambda: ending.end(Fault("BATTERY_LOW", "too little is left")))
+    until(lambda: made.mode == "brake")
+    made.stop.set()
+    assert code.result(20.0) == 1
+    assert not ending.suspended
+    assert made.events() == ["BATTERY_LOW"]
+
+
+def test_a_fault_on_the_way_home_for_the_battery_ends_the_program_after_all(robot):
+    made = robot(Policy("POSITION_LOST", "LAND"))
+    ending = made.ending()
+    code = in_background(lambda: ending.end(Fault("BATTERY_LOW", "too little is left")))
+    until(lambda: made.said)
+    made.simulated.faults.lose_position()
+    assert code.result(20.0) == 1
+    assert not ending.suspended
+    assert made.events() == ["POSITION_LOST"]
+    assert made.left == 1
+
+
+def test_a_robot_that_holds_is_watched_until_somebody_stops_it(robot):
+    made = robot(Policy("DEVICE_SILENT", "HOLD"))
+    code = in_background(lambda: made.ending().end(Fault("DEVICE_SILENT", "no answer")))
+    until(lambda: "'alpha': holds; interrupt to end" in made.said)
+    assert made.mode == "brake"
+    assert not code.done()
+    made.stop.set()
+    assert code.result(20.0) == 1
+    assert away(made, NORTH) < 3.0
+
+
+def test_a_low_battery_brings_down_who_holds(robot):
+    made = robot(Policy("DEVICE_SILENT", "HOLD"), Policy("BATTERY_LOW", "LAND"))
+    code = in_background(lambda: made.ending().end(Fault("DEVICE_SILENT", "no answer")))
+    until(lambda: "'alpha': holds; interrupt to end" in made.said)
+    made.simulated.faults.set_battery(0.05)
+    assert code.result(20.0) == 1
+    assert not made.simulated.autopilot.armed
+
+
+@pytest.mark.parametrize(("on_stop", "down"), [("hold", False), ("land", True), ("return", True)])
+def test_a_stop_ends_as_the_robot_was_started(robot, on_stop, down):
+    made = robot(on_stop=on_stop)
+    assert made.ending().end(Stopped()) == 130
+    assert made.simulated.autopilot.armed is not down
+    assert made.said[-1] == "'alpha': stopped"
+    assert made.events() == ["STOPPED"]
+    if not down:
+        assert made.mode == "brake"
+        assert made.simulated.autopilot.parameters["FS_GCS_ENABLE"] == 7.0
+
+
+def test_an_order_is_confirmed_once_the_vehicle_is_seen_to_come_nearer(robot):
+    made = robot()
+    fault, receipt = ordered(made, "return")
+    before = away(made, HOME)
+    code = in_background(lambda: made.ending().end(fault))
+    until(lambda: receipt.confirmed is not None)
+    assert receipt.confirmed
+    assert away(made, HOME) < before
+    assert not code.done()
+    assert code.result(20.0) == 130
+    assert made.events() == ["ORDERED"]
+
+
+def test_another_order_on_the_way_takes_the_place_of_the_first(robot):
+    made = robot()
+    fault, receipt = ordered(made, "return")
+    code = in_background(lambda: made.ending().end(fault))
+    until(lambda: receipt.confirmed)
+    later = made.inbox.give(Order("land"))
+    assert code.result(20.0) == 130
+    assert later.confirmed
+    assert away(made, HOME) > 5.0
+
+
+def test_a_robot_with_a_lost_link_is_left_to_what_its_vehicle_does(robot):
+    made = robot()
+    made.simulated.mute()
+    assert made.ending().end(Fault("LINK_LOST", "silent")) == 5
+    assert made.events() == ["LINK_LOST"]
+    assert made.simulated.autopilot.armed
+
+
+def test_a_link_that_is_lost_on_the_way_back_is_told_with_what_was_not_done(robot):
+    made = robot(Policy("DEVICE_SILENT", "RETURN"), Policy("LINK_LOST", "RETURN", 5.0))
+    made.simulated.mute()
+    assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 5
+    assert any("cannot carry out RETURN: the vehicle has been silent" in line for line in made.said)
+
+
+def test_nothing_is_sent_to_a_vehicle_that_a_pilot_has_until_its_motors_are_off(robot):
+    made = robot()
+    made.simulated.faults.take_stick("loiter")
+    fault = made.caught()
+    heard = len(made.simulated.received)
+    code = in_background(lambda: made.ending().end(fault))
+    until(lambda: any("hands off until its motors are off" in line for line in made.said))
+    order = made.inbox.give(Order("land"))
+    until(lambda: order.confirmed is not None)
+    assert (order.confirmed, order.why) == (False, "somebody else has the vehicle")
+    assert not code.done()
+    with made.simulated.lock:
+        made.simulated.autopilot.disarm()
+    assert code.result(20.0) == 1
+    assert made.simulated.received[heard:] == []
+    assert made.events() == ["TAKEN_OVER"]
+
+
+def test_a_pilot_who_takes_over_on_the_way_back_is_left_alone(robot):
+    made = robot(Policy("DEVICE_SILENT", "RETURN"))
+    code = in_background(lambda: made.ending().end(Fault("DEVICE_SILENT", "no answer")))
+    until(lambda: made.said)
+    made.simulated.faults.take_stick("loiter")
+    until(lambda: any("hands off" in line for line in made.said))
+    made.crew.desk.stop.set()
+    until(lambda: any("interrupted again, they end" in line for line in made.said))
+    assert not code.done()
+    made.crew.desk.abandon.set()
+    assert code.result(20.0) == 1
+    assert made.mode == "loiter"
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_vehicle_that_is_not_the_robots_is_told_nothing_and_a_log_that_was_begun_is_left(robot, begun):
+    made = robot()
+    if begun:
+        made.crew.pilot.journal.write("begin")
+    heard = len(made.simulated.received)
+    ending = made.ending()
+    assert ending.refuse(Strange("somebody else has it")) == 1
+    assert ending.suspended is begun
+    assert made.events() == ([] if begun else ["REFUSED"])
+    assert made.simulated.received[heard:] == []
+    assert made.simulated.autopilot.armed

@@ -1,0 +1,153 @@
+"""Orders, obeyed by a robot in the middle of what it waits for, with a simulated vehicle."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from flight_crew import NORTH, in_background, manned, until
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Stopped
+from mmrs_core.flight.orders.obedience import Obedience, Ordered
+from mmrs_core.flight.orders.orders import Inbox, Order
+from mmrs_core.flight.places import distance
+
+
+@pytest.fixture
+def robot(tmp_path):
+    """Return a robot ten metres above its home."""
+    with manned(tmp_path) as made:
+        made.fly_up()
+        yield made
+
+
+def go_north(made):
+    """Have the robot fly north in a thread of its own, as its program does."""
+    vehicle = made.crew.vehicle
+    return in_background(lambda: made.crew.obedience.repeat(lambda: vehicle.go_to(NORTH, 5.0, None, False)))
+
+
+def under_way(made):
+    return lambda: made.simulated.autopilot.body.position[0] > 5.0
+
+
+def test_a_held_robot_halts_and_then_comes_to_where_it_was_going(robot):
+    done = go_north(robot)
+    until(under_way(robot))
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    assert robot.mode == "brake"
+    until(lambda: robot.said[-1:] == ["is held; waits for an order"])
+    place = robot.simulated.autopilot.body.position
+    again = robot.inbox.give(Order("hold"))
+    until(lambda: again.confirmed)
+    assert again.why == "it was held already"
+    assert robot.simulated.autopilot.body.position == pytest.approx(place, abs=0.3)
+    resumed = robot.inbox.give(Order("resume"))
+    done.result(20.0)
+    assert resumed.confirmed
+    assert distance(robot.crew.vehicle.state().place, NORTH) < 1.0
+
+
+@pytest.mark.parametrize("name", ["return", "land"])
+def test_an_order_that_ends_the_program_ends_a_hold_too(robot, name):
+    done = go_north(robot)
+    until(under_way(robot))
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    ending = robot.inbox.give(Order(name))
+    with pytest.raises(Ordered) as ordered:
+        done.result(20.0)
+    assert (ordered.value.event, ordered.value.response) == ("ORDERED", name.upper())
+    assert ending.confirmed is None, "only who carries it out knows that it is obeyed"
+
+
+def test_a_stop_ends_a_hold(robot):
+    done = go_north(robot)
+    until(under_way(robot))
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    robot.stop.set()
+    with pytest.raises(Stopped):
+        done.result(20.0)
+
+
+def test_a_robot_that_was_not_held_has_nothing_to_resume_but_is_no_worse_for_it(robot):
+    resumed = robot.inbox.give(Order("resume"))
+    robot.crew.vehicle.rest(1.0)
+    assert (resumed.confirmed, resumed.why) == (True, "it was not held")
+
+
+def test_a_hold_in_a_wait_needs_no_movement_again(robot):
+    rested = in_background(lambda: robot.crew.vehicle.rest(10.0))
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    resumed = robot.inbox.give(Order("resume"))
+    rested.result(20.0)
+    assert resumed.confirmed
+    assert robot.mode == "guided"
+
+
+def test_a_robot_whose_program_has_ended_holds_and_cannot_go_on(robot):
+    robot.crew.obedience.ended = True
+    held = robot.inbox.give(Order("hold"))
+    resumed = robot.inbox.give(Order("resume"))
+    robot.crew.vehicle.rest(5.0)
+    assert held.confirmed
+    assert robot.mode == "brake"
+    assert (resumed.confirmed, resumed.why) == (False, "its program has ended")
+
+
+def test_nothing_is_obeyed_while_somebody_else_has_the_vehicle(robot):
+    robot.crew.obedience.hands_off = True
+    held = robot.inbox.give(Order("hold"))
+    robot.crew.vehicle.rest(5.0)
+    assert held.confirmed is None
+    robot.crew.obedience.refuse_all("a pilot has it")
+    assert (held.confirmed, held.why) == (False, "a pilot has it")
+
+
+def test_what_was_expected_and_never_seen_is_refused_with_the_reason(robot):
+    receipt = robot.inbox.give(Order("land"))
+    assert robot.inbox.take() is receipt
+    robot.crew.obedience.expect(receipt, lambda: False)
+    robot.crew.obedience.check()
+    assert receipt.confirmed is None
+    robot.crew.obedience.settle("the link is lost")
+    assert (receipt.confirmed, receipt.why) == (False, "the link is lost")
+
+
+@pytest.fixture
+def alone():
+    """Return the obedience of a robot without a vehicle, and its inbox."""
+    inbox = Inbox("alpha")
+    return Obedience(inbox, Clock(), threading.Event(), lambda line: None), inbox
+
+
+def test_a_hold_before_there_is_a_vehicle_is_nothing(alone):
+    obedience, inbox = alone
+    held = inbox.give(Order("hold"))
+    obedience.check()
+    assert (held.confirmed, held.why) == (True, "there is no vehicle yet")
+
+
+def test_a_robot_waits_for_its_battery_until_it_is_told_to_go_on(alone):
+    obedience, inbox = alone
+    assert not obedience.awaits_resume(lambda: "")
+    early, landed = inbox.give(Order("resume")), inbox.give(Order("land"))
+    assert not obedience.awaits_resume(lambda: "the battery is still at 10%")
+    assert (early.confirmed, early.why) == (False, "the battery is still at 10%")
+    assert not obedience.awaits_resume(lambda: "")
+    assert (landed.confirmed, landed.why) == (True, "it stands on the ground")
+    late = inbox.give(Order("resume"))
+    assert obedience.awaits_resume(lambda: "")
+    assert late.confirmed
+
+
+def test_a_robot_that_waits_for_its_battery_can_be_stopped(alone):
+    obedience, inbox = alone
+    inbox.give(Order("stop"))
+    with pytest.raises(Ordered) as ordered:
+        obedience.awaits_resume(lambda: "")
+    assert ordered.value.event == "STOPPED"

@@ -1,0 +1,190 @@
+"""One robot at work in this process, from the opening of its log to whatever end it comes to."""
+
+from __future__ import annotations
+
+import re
+import threading
+from dataclasses import replace
+
+import pytest
+from flight_crew import SPEEDUP, free_port, in_background, robot_of, until
+
+from mmrs_core.flight.crews import ENDED, SUSPENDED, WAITS, WORKS, Crews
+from mmrs_core.flight.injection import Rehearsal
+from mmrs_core.flight.judgement import Judgement
+from mmrs_core.flight.links.radios import Radios
+from mmrs_core.flight.options import options_of, parser_for
+from mmrs_core.flight.orders.orders import Order
+from mmrs_core.flight.program import Hold, Policy
+from mmrs_core.flight.records.log import read
+from mmrs_core.flight.session import Shared, run_robot
+from mmrs_core.flight.slots import LocalSlots
+from mmrs_core.sitl import Settings, SimulatedVehicle
+
+OTHER = robot_of(id="beta")
+STEPS = robot_of().steps
+
+
+@pytest.fixture
+def process(tmp_path):
+    """Return a function that gives what robots share, alpha's vehicle being at that port, or made up."""
+
+    def share(*robots, port: int = 0, words=()):
+        vehicle = ["--connect", f"alpha=udpin:127.0.0.1:{port}@1", "--speedup", str(SPEEDUP)]
+        arguments = [*(vehicle if port else ["--dry-run"]), "--log", str(tmp_path), *words]
+        options = options_of(parser_for(robots), robots, arguments)
+        judgement = Judgement({}, {})
+        return Shared(
+            options=options,
+            slots=LocalSlots(robots),
+            judgement=judgement,
+            decides=judgement.decides(robots),
+            rehearsal=Rehearsal(options.inject, options.clock, print),
+            radios=Radios(options.clock, retries=options.reach.retries),
+            crews=Crews([robot.id for robot in robots]),
+            stop=threading.Event(),
+            abandon=threading.Event(),
+        )
+
+    return share
+
+
+@pytest.fixture
+def vehicle():
+    """Return a simulated vehicle at alpha's home, and its port."""
+    port = free_port()
+    with SimulatedVehicle(port, Settings(), speedup=SPEEDUP) as simulated:
+        yield simulated, port
+
+
+def phase(shared, robot="alpha"):
+    return shared.crews.status(robot)["phase"]
+
+
+def labels(folder):
+    return [line["label"] for line in read(folder / "alpha.jsonl")]
+
+
+def test_a_program_is_carried_out_and_the_others_are_told_that_it_has_ended(process, tmp_path, capsys):
+    shared = process(robot_of())
+    assert phase(shared) == WAITS
+    assert run_robot(robot_of(), shared) == 0
+    assert phase(shared) == ENDED
+    assert shared.slots.lost(["alpha"]) == "alpha"
+    assert labels(tmp_path).count("end") == len(STEPS)
+    assert "'alpha': done" in capsys.readouterr().err
+
+
+def test_a_robot_flies_and_tells_where_it_is_and_what_it_does(process, vehicle, tmp_path):
+    simulated, port = vehicle
+    shared = process(robot_of(), port=port)
+    code = in_background(lambda: run_robot(robot_of(), shared))
+    until(lambda: shared.crews.status("alpha").get("move") == "stay")
+    told = shared.crews.status("alpha")
+    assert (told["phase"], told["mode"], told["armed"]) == (WORKS, "guided", True)
+    assert told["place"]["height"] == pytest.approx(10.0, abs=1.0)
+    assert code.result(30.0) == 0
+    assert not simulated.autopilot.armed
+    assert "fault" not in labels(tmp_path)
+
+
+def test_an_order_before_there_is_a_vehicle_ends_the_program_and_is_confirmed(process):
+    shared = process(robot_of(), port=free_port())
+    code = in_background(lambda: run_robot(robot_of(), shared))
+    receipt = shared.crews.inboxes["alpha"].give(Order("land"))
+    assert code.result(20.0) == 130
+    assert (receipt.confirmed, receipt.why) == (True, "there was no vehicle yet")
+    assert shared.slots.lost(["alpha"]) == "alpha"
+
+
+def test_a_vehicle_that_never_speaks_is_a_lost_link(process, capsys):
+    shared = process(robot_of(), port=free_port(), words=["--patience", "0.3"])
+    assert run_robot(robot_of(), shared) == 5
+    assert "'alpha': no vehicle at udpin" in capsys.readouterr().err
+    assert shared.slots.lost(["alpha"]) == "alpha"
+
+
+def test_what_has_ended_obeys_no_more(process):
+    shared = process(robot_of())
+    run_robot(robot_of(), shared)
+    receipt = shared.crews.inboxes["alpha"].give(Order("hold"))
+    assert (receipt.confirmed, receipt.why) == (False, "its program has ended")
+
+
+def test_a_program_that_fails_itself_leaves_a_fault_in_the_log(process, tmp_path, capsys):
+    unsound = (replace(step, movement=Hold("long")) if step.move == "stay" else step for step in STEPS)
+    broken = replace(robot_of(), steps=tuple(unsound))
+    assert run_robot(broken, process(broken)) == 1
+    assert [line["detail"] for line in read(tmp_path / "alpha.jsonl") if line["label"] == "fault"] == [
+        "CRASHED"
+    ]
+    assert "TypeError: " in capsys.readouterr().err
+
+
+def test_a_finished_program_is_not_flown_again(process, tmp_path, capsys):
+    run_robot(robot_of(), process(robot_of()))
+    before = labels(tmp_path)
+    again = process(robot_of(), port=free_port(), words=["--resume"])
+    assert run_robot(robot_of(), again) == 0
+    assert labels(tmp_path) == before
+    assert "it has come to its end" in capsys.readouterr().err
+
+
+def test_a_program_that_ended_by_a_fault_does_not_go_on(process, tmp_path, capsys):
+    shared = process(robot_of())
+    shared.stop.set()
+    assert run_robot(robot_of(), shared) == 130
+    again = process(robot_of(), port=free_port(), words=["--resume"])
+    assert run_robot(robot_of(), again) == 1
+    assert "cannot go on: it has ended by STOPPED" in capsys.readouterr().err
+    assert again.slots.lost(["alpha"]) == "alpha"
+
+
+def empty(shared, simulated):
+    """Have the battery of a robot that stays be low, and it come home for another."""
+    code = in_background(lambda: run_robot(robot_of(Policy("BATTERY_LOW", "RETURN")), shared))
+    until(lambda: shared.crews.status("alpha").get("move") == "stay")
+    simulated.faults.set_battery(0.05)
+    return code
+
+
+def test_a_robot_that_came_home_for_its_battery_is_not_told_to_have_ended(process, vehicle, tmp_path):
+    simulated, port = vehicle
+    shared = process(robot_of(), port=port)
+    assert empty(shared, simulated).result(30.0) == 1
+    assert not simulated.autopilot.armed
+    assert shared.slots.lost(["alpha"]) is None
+    assert "fault" not in labels(tmp_path)
+
+
+def test_another_battery_lets_it_go_on_while_others_work(process, vehicle, tmp_path):
+    simulated, port = vehicle
+    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
+    code = empty(shared, simulated)
+    until(lambda: phase(shared) == SUSPENDED)
+    early = shared.crews.inboxes["alpha"].give(Order("resume"))
+    until(lambda: early.confirmed is not None)
+    assert not early.confirmed
+    assert re.fullmatch(r"the battery is still at [345]%", early.why)
+    simulated.faults.set_battery(1.0)
+    until(lambda: shared.crews.inboxes["alpha"].give(Order("resume")).confirmed or phase(shared) == WORKS)
+    assert code.result(30.0) == 0
+    assert labels(tmp_path).count("end") == len(STEPS)
+
+
+@pytest.mark.parametrize("by", ["order", "signal", "others"])
+def test_who_waits_for_a_battery_ends_when_somebody_says_so_or_nobody_works_any_more(process, vehicle, by):
+    simulated, port = vehicle
+    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
+    code = empty(shared, simulated)
+    until(lambda: phase(shared) == SUSPENDED)
+    receipt = None
+    if by == "order":
+        receipt = shared.crews.inboxes["alpha"].give(Order("stop"))
+    elif by == "signal":
+        shared.stop.set()
+    else:
+        shared.crews.dismiss("beta")
+    assert code.result(20.0) == 1
+    assert shared.slots.lost(["alpha"]) is None
+    assert receipt is None or receipt.confirmed
