@@ -19,6 +19,9 @@ INJECTED_AT = 40
 """Second of the run at which faults are made on purpose: by then, robots are at their places."""
 
 STAY = 60.0
+STATION_SILENCE = 4.0
+"""Real seconds that a robot bears silence of ground stations at least, with one in which they were heard."""
+
 FROZEN_SECONDS = 30.0
 """Longer than a vehicle bears silence before it acts by itself, seconds of the run."""
 
@@ -33,6 +36,7 @@ class Drill:
         until: when, after all robots are at their places; None: at once.
         arguments: of the process, by execution.
         speedup: seconds of the run in a second.
+        watched: whether somebody looks on by a ground station of their own.
     """
 
     name: str
@@ -42,6 +46,7 @@ class Drill:
     arguments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     fast: bool = False
     speedup: float = 10.0
+    watched: bool = False
 
     def fly(self, execution: str, folder: Path) -> list[Outcome]:
         """Let it happen; return what became of its robots."""
@@ -53,6 +58,7 @@ class Drill:
             until=self.until,
             blow=self.blow,
             arguments=self.arguments.get(execution, ()),
+            watched=self.watched,
         )
 
 
@@ -71,6 +77,11 @@ def _freeze(fleet: Fleet, process: Process) -> None:
 
 def _interrupt(fleet: Fleet, process: Process) -> None:
     process.signal(signal.SIGINT)
+
+
+def _kill_station(fleet: Fleet, process: Process) -> None:
+    assert fleet.station is not None
+    fleet.station.signal(signal.SIGKILL)
 
 
 def _nothing(fleet: Fleet, process: Process) -> None:
@@ -109,6 +120,27 @@ def _link_lost(
     )
 
 
+def _ground_lost(
+    fault: str, cases: Sequence[tuple[str, str]], after: float, within: float | None = None
+) -> tuple[Row, ...]:
+    """Return rows about people's own ground station: who carries on needs not answer, but has it recorded."""
+    return tuple(
+        Row(
+            fault,
+            AT,
+            ("GROUND_LOST", response, after),
+            leave_alone,
+            "" if ends == "done" else "GROUND_LOST",
+            ends,
+            within=None if ends == "done" else within,
+            least=STATION_SILENCE,
+            stay=STAY,
+            responds="CONTINUE" if response == "CONTINUE" else "",
+        )
+        for response, ends in cases
+    )
+
+
 def _full_disk() -> tuple[Row, ...]:
     cases = (("RETURN", "home"), ("EMERGENCY_AREA", "meadow"), ("LAND", "here"))
     return tuple(
@@ -141,6 +173,7 @@ def _interruption(how: str, ends: str) -> Drill:
 
 BY_ITSELF = [("RETURN", "home"), ("LAND", "here"), ("HOLD", "holds"), ("EMERGENCY_AREA", "meadow")]
 UNHARMED = [("RETURN", "done"), ("LAND", "done")]
+WATCHED = [("RETURN", "home"), ("LAND", "here"), ("EMERGENCY_AREA", "meadow"), ("CONTINUE", "done")]
 POOR = f"loss=0.1,delay=0.3~0.3,duplicate=0.1,corrupt=0.05,seed=7,cut@{INJECTED_AT}+2"
 
 DRILLS: tuple[Drill, ...] = (
@@ -154,6 +187,29 @@ DRILLS: tuple[Drill, ...] = (
         "ground station frozen",
         _link_lost("ground station frozen for 30 s", BY_ITSELF[:2], 5.0, "LINK_LOST|TAKEN_OVER", 10.0),
         _freeze,
+    ),
+    Drill(
+        "ground station of the operators killed",
+        _ground_lost("ground station of the operators killed", WATCHED, 10.0, 15.0),
+        _kill_station,
+        watched=True,
+        fast=True,
+    ),
+    Drill(
+        "ground station of the operators not heard",
+        _ground_lost("ground station of the operators not heard (--inject)", WATCHED, 10.0, 15.0),
+        _nothing,
+        _injected,
+        _both("--inject", f"ground-cut@{INJECTED_AT}"),
+        watched=True,
+    ),
+    Drill(
+        "ground station of the operators not heard for a moment",
+        _ground_lost("ground station of the operators not heard for 20 s (--inject)", UNHARMED, 60.0),
+        _nothing,
+        _injected,
+        _both("--inject", f"ground-cut@{INJECTED_AT}+20"),
+        watched=True,
     ),
     _injection("disk full", _full_disk(), f"disk-full@{INJECTED_AT}"),
     _injection(

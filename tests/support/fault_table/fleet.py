@@ -21,6 +21,7 @@ from mmrs_core.plugins import load_plugins
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 EXECUTIONS = ("generated", "interpreted")
+GROUND_STATION = Path(__file__).parents[2] / "peers" / "ground_station.py"
 
 
 class Fleet:
@@ -30,6 +31,7 @@ class Fleet:
         vehicles: by robot.
         logs: folder of the logs.
         process: the one that was started last.
+        station: of people who look on at all vehicles; None: nobody does.
     """
 
     def __init__(
@@ -40,6 +42,7 @@ class Fleet:
         *,
         speedup: float = 10.0,
         settings: Mapping[str, Mapping[str, object]] | None = None,
+        watched: bool = False,
     ) -> None:
         """Write a project, and make what flies it.
 
@@ -49,6 +52,7 @@ class Fleet:
             execution: one of `EXECUTIONS`.
             speedup: seconds of the run in a second.
             settings: of the vehicles, by robot.
+            watched: whether somebody looks on, by a ground station of pymavlink's.
         """
         self.folder, self.execution, self.speedup = folder, execution, speedup
         self.logs = folder / "logs"
@@ -56,10 +60,12 @@ class Fleet:
         self.vehicles: dict[str, SimulatedVehicle] = {}
         self._links: dict[str, str] = {}
         self._processes: list[Process] = []
+        self.station: Process | None = None
+        self._ground = ("127.0.0.1", free_port()) if watched else None
         for index, pad in enumerate(pads):
             port = free_port()
             given = Settings("copter", *home_of(index), **(settings or {}).get(pad.robot, {}))
-            self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup)
+            self.vehicles[pad.robot] = SimulatedVehicle(port, given, speedup=speedup, ground=self._ground)
             self._links[pad.robot] = f"{pad.robot}=udpin:127.0.0.1:{port}"
         if execution == "generated":
             mmrs("generate", str(self.behaviour), "--target", "mavlink-python", "-o", str(folder / "made"))
@@ -67,11 +73,14 @@ class Fleet:
     def __enter__(self) -> Fleet:
         for vehicle in self.vehicles.values():
             vehicle.start()
+        if self._ground is not None:
+            self.station = Process([str(GROUND_STATION), str(self._ground[1])], self.folder)
         return self
 
     def __exit__(self, *error: object) -> None:
-        for process in self._processes:
-            process.close()
+        for process in (*self._processes, self.station):
+            if process is not None:
+                process.close()
         for vehicle in self.vehicles.values():
             vehicle.stop()
 

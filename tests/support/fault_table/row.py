@@ -84,7 +84,7 @@ class Row:
     @property
     def response(self) -> str:
         """Return what the black box must have as the response; empty where it need not have any."""
-        if self.order or not (self.event or self.suspends):
+        if self.order or not (self.event or self.suspends or self.responds):
             return ""
         declared = self.policy[1] if self.policy is not None else ""
         return self.responds or ("NOTHING" if self.hands_off else declared)

@@ -32,6 +32,7 @@ def fly(
     until: Blow | None = None,
     blow: Blow | None = None,
     arguments: Sequence[str] = (),
+    watched: bool = False,
 ) -> list[Outcome]:
     """Fly all rows at once, each with a robot of its own in one process; return what became of them.
 
@@ -43,10 +44,11 @@ def fly(
         until: waits, once all robots are where their rows want them.
         blow: happens to the process then; None: things happen to the vehicles, one by one.
         arguments: of the process.
+        watched: whether somebody looks on by a ground station.
     """
     pads, names = _pads(rows)
     settings = {name: row.settings for row, name in zip(rows, names, strict=True)}
-    with Fleet(folder, pads, execution, speedup=speedup, settings=settings) as fleet:
+    with Fleet(folder, pads, execution, speedup=speedup, settings=settings, watched=watched) as fleet:
         process = fleet.start(*arguments)
         watches = [Watch(row, name, fleet) for row, name in zip(rows, names, strict=True)]
         if blow is not None and wait_for(lambda: all(watch.ready() for watch in watches), REAL_SECONDS):
