@@ -340,10 +340,11 @@ def conditions_for(
         assume: fixed answers, by condition identifier.
         asks: whether there is an operator who answers questions.
     """
-    from mmrs_core.runtime.conditions import asked_by, question_of, standard_conditions
+    from mmrs_core.flight.conditions import question_of
+    from mmrs_core.runtime.conditions import asked_by, standard_conditions
     from mmrs_core.runtime.run import assumed
 
-    asked = (each for each in asked_by(program) if asks or question_of(each) is None)
+    asked = (each for each in asked_by(program) if asks or not question_of(each))
     standard = standard_conditions(asked)
     return {**standard, **contributions.conditions, **assumed(assume)}
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import isfinite
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from .vehicles.vehicle import State
@@ -18,10 +18,37 @@ if TYPE_CHECKING:
 Condition: TypeAlias = "Callable[[State], bool | None]"
 """Whether a condition holds, by what a robot knows; None while that cannot be said yet."""
 
+
+class Known(Protocol):
+    """What standard conditions go by, in whichever execution; None where nobody knows."""
+
+    @property
+    def charge(self) -> float | None:
+        """Return the part of the battery that is left, 0 to 1."""
+        ...
+
+    @property
+    def wind(self) -> float | None:
+        """Return metres per second."""
+        ...
+
+    @property
+    def detected(self) -> frozenset[str]:
+        """Return the names of what the robot has detected so far."""
+        ...
+
+    @property
+    def answers(self) -> Mapping[str, bool]:
+        """Return what the operator has answered so far, by question."""
+        ...
+
+
+Standard: TypeAlias = Callable[[Known], bool | None]
+
 BATTERY, WIND, DETECTED, ANSWER = "battery-below", "wind-above", "detected", "answer"
 
 
-def standard(identifier: str) -> Condition:
+def standard(identifier: str) -> Standard:
     """Return the standard condition that an identifier asks for.
 
     Raises:
@@ -49,20 +76,20 @@ def question_of(identifier: str) -> str:
     return rest if word == ANSWER else ""
 
 
-def _battery(limit: str) -> Condition:
-    return lambda state: None if state.energy is None else state.energy < float(limit)
+def _battery(limit: str) -> Standard:
+    return lambda known: None if known.charge is None else known.charge < float(limit)
 
 
-def _wind(limit: str) -> Condition:
-    return lambda state: None if state.wind is None else state.wind > float(limit)
+def _wind(limit: str) -> Standard:
+    return lambda known: None if known.wind is None else known.wind > float(limit)
 
 
-def _detected(name: str) -> Condition:
-    return lambda state: name in state.detected
+def _detected(name: str) -> Standard:
+    return lambda known: name in known.detected
 
 
-def _answer(question: str) -> Condition:
-    return lambda state: state.answers.get(question)
+def _answer(question: str) -> Standard:
+    return lambda known: known.answers.get(question)
 
 
 def _is_number(text: str) -> bool:
@@ -72,7 +99,7 @@ def _is_number(text: str) -> bool:
         return False
 
 
-_MAKE: Mapping[str, Callable[[str], Condition]] = {
+_MAKE: Mapping[str, Callable[[str], Standard]] = {
     BATTERY: _battery,
     WIND: _wind,
     DETECTED: _detected,

@@ -185,12 +185,12 @@ class _Run:
         """Give a robot the logical time of a step; False: it cannot be made yet."""
         least = 0
         if step.sets:
-            if robot.delivery is None:
+            if robot.notify.delivery is None:
                 id = CommandId(self._terms.run, robot.id, self._terms.incarnation, robot.number)
-                robot.delivery = self._bus.prepare(id, step.sets, step.active)
-            if robot.delivery.lamport is None:
+                robot.notify.delivery = self._bus.prepare(id, step.sets, step.active)
+            if robot.notify.delivery.lamport is None:
                 return False
-            least = robot.delivery.lamport
+            least = robot.notify.delivery.lamport
         waits = robot.awaited() if step.label in ("take", "choose") else ()
         clocks = (self._bus.state(slot).lamport for slot in waits)
         lamport = max((robot.lamport + 1, least, *(clock + 1 for clock in clocks)))
@@ -257,7 +257,7 @@ class _Run:
         event = robot.next_event(robot.looked)
         if event is None or event <= robot.looked:
             event = now + PACE
-        unsure = robot.delivery is not None or robot.question or robot.held
+        unsure = robot.notify.delivery is not None or robot.wait.question or robot.held
         if unsure or (not self._whole and robot.point.phase is Phase.OUT):
             event = min(event, now + PACE)
         return event
@@ -287,7 +287,7 @@ class _Run:
 
     def _attend(self, called: frozenset[str]) -> None:
         for order, robot in enumerate(self._robots):
-            affected = robot.point.phase is Phase.OUT or robot.delivery or self._bus.trouble(robot.id)
+            affected = robot.point.phase is Phase.OUT or robot.notify.delivery or self._bus.trouble(robot.id)
             if robot.id in called or (BUS in called and affected):
                 heappush(self._ready, order)
 
@@ -314,7 +314,7 @@ class _Run:
 
     def _is_patient(self) -> bool:
         """Return whether a wait of some robot will end by itself."""
-        return any(robot.deadline < inf for robot in self._robots if robot.is_waiting)
+        return any(robot.wait.deadline < inf for robot in self._robots if robot.is_waiting)
 
     def _is_quiet(self) -> bool:
         """Return whether every robot is at its end or waits, so that no slot changes any more."""
@@ -323,9 +323,8 @@ class _Run:
         )
 
     def _waiting(self) -> tuple[Waiting, ...]:
-        return tuple(
-            Waiting(robot.id, robot.move.id, robot.lacking) for robot in self._robots if robot.lacking
-        )
+        waiting = (robot for robot in self._robots if robot.is_waiting)
+        return tuple(Waiting(robot.id, robot.move.id, robot.wait.lacking) for robot in waiting)
 
     def _halt(self) -> None:
         """Stop every robot that is still at work, and wait until each has confirmed it."""

@@ -11,12 +11,15 @@ from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry,
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Noting, Recovering
 from mmrs_core.contributions.backends import Backend
-from mmrs_core.contributions.buses import Bus, Delivery
+from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
+from mmrs_core.runtime.conditions import decided
+from mmrs_core.runtime.outgoing import Outgoing
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import step_of
+from mmrs_core.runtime.waiting import Wait
 from mmrs_core.scene import Policy
 
 
@@ -47,10 +50,9 @@ class RunningRobot:
         lamport: its logical time.
         looked: when it was looked at last; what happens after that has yet to be seen.
         wake: when it is worth looking at it again.
-        deadline: when its present wait ends by a fault; inf: never.
-        lacking: names of the slots that it waited for when last looked at.
+        wait: what keeps it from leaving its move.
         fault: what ended its mission; None as long as nothing did.
-        delivery: a notify that owners of slots have still to answer or to acknowledge; None: there is none.
+        notify: that owners of slots have still to answer or to acknowledge.
         number: of its next step.
         response: how it was told to stop.
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
@@ -60,7 +62,6 @@ class RunningRobot:
             be taken up again.
         stopping: whether it has still to confirm that it has stopped.
         recovering: whether it is on its way back to where its program was broken off.
-        question: identifier of the condition that it waits to be decided; empty: of none.
         answers: of the operator, by question.
     """
 
@@ -70,25 +71,19 @@ class RunningRobot:
         self.point = entry(program, program.start)
         self.lamport = 0
         self.looked = self.wake = 0.0
-        self.deadline = inf
-        self.lacking: tuple[str, ...] = ()
+        self.wait = Wait(program.id)
         self.fault: Fault | None = None
-        self.delivery: Delivery | None = None
+        self.notify = Outgoing()
         self.number = 0
         self.response = ""
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.recovering = False
-        self.question = ""
         self.answers: dict[str, bool] = {}
         self._program, self._bus, self._rules = program, bus, rules
         self._policies = (*program.policies, *rules.policies)
         self._passed: list[str] = []
         self._answered: set[str] = set()
         self._begun = False
-        self._waits_since: float | None = None
-        self._peer_lost_at: float | None = None
-        self._sent = False
-        self._silent_since: float | None = None
 
     @property
     def move(self) -> Move:
@@ -98,7 +93,7 @@ class RunningRobot:
     @property
     def is_waiting(self) -> bool:
         """Return whether it waits for slots."""
-        return bool(self.lacking)
+        return bool(self.wait.lacking)
 
     def take_number(self) -> int:
         """Return the number of its next step, and count on."""
@@ -115,8 +110,8 @@ class RunningRobot:
         """Go where a step leads."""
         if step.label == "end":
             self._passed.append(step.move)
-        if self._waits_since is not None and isinstance(self.backend, Noting):
-            waited = {"slots": [name for _, name in self.awaited()], "seconds": now - self._waits_since}
+        if self.wait.since is not None and isinstance(self.backend, Noting):
+            waited = {"slots": [name for _, name in self.awaited()], "seconds": now - self.wait.since}
             self.backend.note("wait", waited)
         self.point = step.leads_to
         self._forget()
@@ -176,20 +171,18 @@ class RunningRobot:
 
     def send(self) -> None:
         """Send the notify that was recorded last."""
-        if self.delivery is not None:
-            self._sent = True
-            self.delivery.send(self.lamport)
+        self.notify.send(self.lamport)
 
     def next_event(self, now: float) -> float | None:
         """Return when something may have changed; inf: only slots can wake it; None: unknown."""
         if self.point.is_final:
             return inf
         event = self.backend.next_event(now)
-        return min(event, self.deadline) if event is not None else None
+        return min(event, self.wait.deadline) if event is not None else None
 
     def _suspend(self, found: Fault, response: str) -> None:
         """Break the program off; its log ends where it can be taken up again."""
-        self._give_up()
+        self.notify.give_up()
         self.fault, self.response, self.suspended, self.recovering = found, response, True, False
         self._answered.add(found.which)
 
@@ -207,15 +200,14 @@ class RunningRobot:
         self.point = step.leads_to
 
     def _ended(self, found: Fault, response: str) -> Step:
-        self._give_up()
+        self.notify.give_up()
         self.fault, self.response = found, response
         self._answered.add(found.which)
         self.ordered, self.suspended, self.recovering, self.held = None, False, False, False
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:
-        self._begun, self._waits_since, self._peer_lost_at = False, None, None
-        self.lacking, self.deadline, self.question = (), inf, ""
+        self._begun, self.wait = False, Wait(self.id)
 
     def _unkept(self) -> Fault | None:
         """Return the fault that is left where what others tell this robot cannot be kept."""
@@ -225,29 +217,21 @@ class RunningRobot:
 
     def _unanswered(self, now: float) -> Fault | None:
         """Return the fault that ends waiting for owners of slots; None: they have answered, or still may."""
-        if self.delivery is None or not self.delivery.waiting:
-            self._silent_since = None
-            if self._sent:
-                self.delivery, self._sent = None, False
+        silence = self.notify.silence(now)
+        if silence is None:
             return None
-        if self._silent_since is None:
-            self._silent_since = now
-        found = self.backend.fault(now)
-        if found is not None and not self._answers().bears(found):
+        if (found := self._unborne(now)) is not None:
             return found
-        why = f"no answer from {', '.join(self.delivery.waiting)}"
-        if unseen := self._bus.unseen(self.delivery.waiting):
-            why += f"; {', '.join(unseen)} never came while this robot was there, or had ended before"
-        found = Fault("PEER_LOST", why)
-        return found if now - self._silent_since >= self._answers().patience(found) else None
+        found = Fault("PEER_LOST", self.notify.why(self._bus))
+        return found if silence >= self._answers().patience(found) else None
 
-    def _give_up(self) -> None:
-        if self.delivery is not None:
-            self.delivery.withdraw()
-        self.delivery, self._sent, self._silent_since = None, False, None
+    def _unborne(self, now: float) -> Fault | None:
+        """Return what the backend says went wrong, unless the robot goes on as if nothing were."""
+        found = self.backend.fault(now)
+        return None if found is None or self._answers().bears(found) else found
 
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
-        if self.delivery is not None and self.delivery.waiting:
+        if self.notify.is_waiting:
             return None
         if self.held or self.recovering:
             found = self._detained(now)
@@ -265,8 +249,7 @@ class RunningRobot:
 
     def _detained(self, now: float) -> Fault | None:
         """Return what goes wrong while nothing else may be begun."""
-        found = self.backend.fault(now)
-        if found is not None and not self._answers().bears(found):
+        if (found := self._unborne(now)) is not None:
             return found
         if self.recovering and self.backend.finished(now):
             self.recovering = False
@@ -284,16 +267,10 @@ class RunningRobot:
             else:
                 self.backend.begin(self.move, now, through=self._may_pass())
         found = self.backend.fault(now)
-        if (
-            action is not None
-            and found is not None
-            and found.which == "DEVICE_SILENT"
-            and self._answers().bears(found)
-        ):
-            return self._next()
         if found is not None and not self._answers().bears(found):
             return found
-        return self._next() if self.backend.finished(now) else None
+        skipped = action is not None and found is not None and found.which == "DEVICE_SILENT"
+        return self._next() if skipped or self.backend.finished(now) else None
 
     def _way_on(self, now: float, peers: Peers) -> Step | Fault | None:
         active = {slot for slot in self.awaited() if self._bus.state(slot).active}
@@ -310,47 +287,20 @@ class RunningRobot:
         return possible[0] if holds else possible[1]
 
     def _wait(self, now: float, active: set[SlotId], peers: Peers) -> Fault | None:
-        self.lacking = tuple(name for owner, name in self.awaited() if (owner, name) not in active)
-        if self._waits_since is None:
-            self._waits_since = now
+        self.wait.lacking = tuple(name for owner, name in self.awaited() if (owner, name) not in active)
+        if self.wait.begin(now):
             self.backend.wait(now)
-        found = self.backend.fault(now)
-        if found is not None and not self._answers().bears(found):
-            return found
-        ends = (self._too_long(), self._peer_lost(now, peers))
-        self.deadline = min(end for end, _ in ends)
-        return next((reason for end, reason in ends if end <= now), None)
-
-    def _too_long(self) -> tuple[float, Fault]:
-        found = Fault("WAIT_TOO_LONG", f"waits for {', '.join(self.lacking) or self.question}")
-        return (self._waits_since or 0.0) + self._answers().patience(found), found
-
-    def _peer_lost(self, now: float, peers: Peers) -> tuple[float, Fault]:
-        lost = sorted({robot for name in self.lacking for robot in peers.lost((self.id, name))})
-        found = Fault("PEER_LOST", f"waits for {', '.join(self.lacking)} of {', '.join(lost)}")
-        if not lost:
-            self._peer_lost_at = None
-            return inf, found
-        if self._peer_lost_at is None:
-            self._peer_lost_at = now
-        return self._peer_lost_at + self._answers().patience(found), found
+        return self._unborne(now) or self.wait.overdue(now, self._answers(), peers)
 
     def _decision(self, now: float) -> bool | Fault | None:
         """Return what the condition says; None as long as nobody can know."""
         identifier = self._program.transitions[self.point.move].condition or ""
-        condition = self._rules.conditions[identifier]
-        try:
-            state = replace(self.backend.state(now), answers=dict(self.answers))
-            if not condition.known(state):
-                self.question = identifier
-                return None
-            holds = condition.holds(state)
-        except LinkLostError:
-            raise
-        except Exception as error:  # a condition is foreign code: whatever it raises is the robot's fault
-            return Fault("CONDITION", f"'{identifier}' raised {type(error).__name__}: {error}")
-        if not isinstance(holds, bool):
-            return Fault("CONDITION", f"'{identifier}' returned {holds!r}, neither True nor False")
+        holds = decided(
+            self._rules.conditions[identifier],
+            lambda: replace(self.backend.state(now), answers=dict(self.answers)),
+        )
+        if holds is None:
+            self.wait.question = identifier
         return holds
 
     def _may_pass(self) -> bool:

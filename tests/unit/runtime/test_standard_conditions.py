@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from mmrs_core.contributions.execution import RobotState
-from mmrs_core.runtime.conditions import question_of, standard_conditions
+from mmrs_core.runtime.conditions import standard_conditions
 
 
 def state(**known):
@@ -41,8 +41,3 @@ def test_a_question_waits_for_its_answer(answer):
 )
 def test_other_identifiers_are_nobodys(identifier):
     assert standard_conditions([identifier]) == {}
-
-
-def test_a_question_is_what_stands_behind_the_word():
-    assert question_of("answer:land: yes?") == "land: yes?"
-    assert question_of("wind-above:8") is None
