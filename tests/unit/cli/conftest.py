@@ -1,13 +1,15 @@
-"""A small scene with its plan: two drones, one field, one road, a tower and a no-fly area."""
+"""A small scene with its plan: two drones, one field, one road, a tower and a no-fly area; and a browser."""
 
 from __future__ import annotations
 
+import subprocess
 from dataclasses import replace
 
 import pytest
 
 from mmrs_core.cli.preview.from_plan import picture_of_plan
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.pipeline import Place, simulate
 from mmrs_core.scene import (
     ActionAt,
     Area,
@@ -33,12 +35,26 @@ from mmrs_core.scene import (
     Transit,
     Work,
 )
+from mmrs_core.testing.programs import MULTICOPTER, areas, quad, two_drones
 
 SHELL = ((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (100.0, 60.0, 0.0), (0.0, 60.0, 0.0))
 SWATH = Stroke(((10.0, 5.0, 20.0), (10.0, 55.0, 20.0)), (ActionAt(0.0, "Sample"), ActionAt(25.0, "Sample")))
 ROAD = Stroke(((120.0, 0.0, 15.0), (160.0, 60.0, 15.0)))
 GRID = MapSymbol(("urn:mmrs:survey:1.0", "PhotoGridTask"), "photo grid", "#c2571a", "G", ("altitude",))
 SYMBOLS = {GRID.metaclass: GRID}
+BROWSER_OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--enable-logging=stderr",
+    "--virtual-time-budget=3000",
+    "--dump-dom",
+)
 HOMES = {"Alba": (-20.0, 0.0, 0.0), "Brezza": (-20.0, 10.0, 0.0)}
 
 
@@ -146,3 +162,43 @@ def plan_named(names: dict[str, str]) -> Plan:
 @pytest.fixture
 def without_robots(picture):
     return replace(picture, robots=(), handovers=(), tasks=(), zones=())
+
+
+@pytest.fixture
+def in_browser(need_program, tmp_path):
+    """Return a function: what a browser makes of a page, and what it complains of."""
+    browser = need_program("chromium", "it shows the page as a person sees it")
+
+    def show(markup):
+        file = tmp_path / "page.html"
+        file.write_text(markup, encoding="utf-8")
+        command = [browser, *BROWSER_OPTIONS, f"--user-data-dir={tmp_path / 'profile'}", file.as_uri()]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+
+    return show
+
+
+@pytest.fixture(scope="session")
+def types():
+    """Return the type of the drones that fly in tests, by its name."""
+    attributes = {"maxAltitude": 120.0}
+    return {"Quad": replace(quad(), part=Part(((MULTICOPTER, "Drone"),), attributes))}
+
+
+@pytest.fixture(scope="session")
+def place(types):
+    """Return where two drones fly."""
+    return Place(types, areas(), {})
+
+
+@pytest.fixture(scope="session")
+def behaviour():
+    """Return what two drones do."""
+    return two_drones()
+
+
+@pytest.fixture(scope="session")
+def run(behaviour, place, contributions):
+    """Return what two drones did when that was simulated."""
+    return simulate(behaviour, place, contributions)

@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-import socket
 import time
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from simulated.ground import Ground
 
 from mmrs_core.sitl import FAULTS, Settings, SimulatedVehicle
 
 SPEEDUP = 10.0
 PREARM = 0x1000_0000
-
-
-@pytest.fixture
-def ground():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
-        connection.bind(("127.0.0.1", 0))
-        connection.settimeout(0.1)
-        yield Ground(connection)
 
 
 @pytest.fixture

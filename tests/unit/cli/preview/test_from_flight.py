@@ -4,57 +4,26 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
+from flights_by_hand import flight_as, track_of
 
 from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.planned import Planned
-from mmrs_core.cli.flights.values import Flight, Flown, Track
 from mmrs_core.cli.preview.from_flight import picture_of_flight
 from mmrs_core.cli.preview.from_run import Surroundings
 from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.page import page
-from mmrs_core.pipeline import Place, simulate
-from mmrs_core.scene import Part
-from mmrs_core.testing.programs import MULTICOPTER, quad, two_drones
-
-TYPES = {"Quad": replace(quad(), part=Part(((MULTICOPTER, "Drone"),), {"maxAltitude": 120.0}))}
-
-
-@pytest.fixture(scope="module")
-def behaviour():
-    return two_drones()
-
-
-@pytest.fixture(scope="module")
-def run(behaviour, contributions):
-    return simulate(behaviour, Place(TYPES, (), {}), contributions)
-
-
-def track_of(points, broken=()):
-    rows = np.array(points, dtype=float).reshape(-1, 4)
-    flags = np.zeros(len(rows), dtype=bool)
-    flags[list(broken)] = True
-    return Track(rows[:, 0], rows[:, 1:], np.full(len(rows), np.nan), flags)
 
 
 @pytest.fixture
-def shown(behaviour, run, contributions):
+def shown(behaviour, run, types, contributions):
     """Return a function: the picture of a flight that went as planned, but for what is given by robot."""
 
     def picture(**changed):
-        robots = {
-            robot.id: Flown(
-                robot.id,
-                tuple(record for record in run.records if record.robot == robot.id),
-                track_of([(s.time, *s.position) for s in run.tracks[robot.id]]),
-            )
-            for robot in behaviour.robots
-        }
-        flown = {id: replace(each, **changed.get(id, {})) for id, each in robots.items()}
-        around = Surroundings(types=TYPES)
-        return picture_of_flight(behaviour, Flight("r", flown), Planned(run), contributions, around)
+        flight = flight_as(run, behaviour, **changed)
+        around = Surroundings(types=types)
+        return picture_of_flight(behaviour, flight, Planned(run), contributions, around)
 
     return picture
 

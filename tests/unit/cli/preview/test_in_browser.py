@@ -1,61 +1,32 @@
 """A real browser shows the page: its script runs, and nothing is fetched."""
 
 import re
-import subprocess
 
 import pytest
 
 from mmrs_core.cli.preview.page import page
 
-OPTIONS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--enable-logging=stderr",
-    "--virtual-time-budget=3000",
-)
-
 pytestmark = pytest.mark.peer
 
 
-@pytest.fixture
-def shown(need_program, tmp_path):
-    """Return a function: what the browser makes of a page, and what it complains of."""
-    browser = need_program("chromium", "it shows the preview as a person sees it")
-
-    def show(markup):
-        file = tmp_path / "page.html"
-        file.write_text(markup, encoding="utf-8")
-        command = [browser, *OPTIONS, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", file.as_uri()]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-        return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-
-    return show
-
-
-def test_the_player_puts_every_robot_at_its_home(shown, picture):
+def test_the_player_puts_every_robot_at_its_home(in_browser, picture):
     from mmrs_core.cli.preview.projection import projection_of
 
-    dom, complaints = shown(page(picture))
+    dom, complaints = in_browser(page(picture))
     dots = re.findall(r'<circle class="dot"[^>]* cx="([\d.]+)" cy="([\d.]+)"', dom)
     expected = [projection_of(picture).place(robot.home) for robot in picture.robots]
     assert [tuple(map(float, dot)) for dot in dots] == [pytest.approx(place) for place in expected]
     assert complaints == []
 
 
-def test_hostile_names_run_nothing(shown, picture_named):
+def test_hostile_names_run_nothing(in_browser, picture_named):
     bait = "<img src=x onerror=document.body.dataset.caught=1><script>document.body.dataset.caught=1</script>"
-    dom, complaints = shown(page(picture_named(Alba=bait, field=bait, mission=f"</script>{bait}")))
+    dom, complaints = in_browser(page(picture_named(Alba=bait, field=bait, mission=f"</script>{bait}")))
     assert "data-caught" not in dom
     assert complaints == []
 
 
-def test_the_map_zooms_and_layers_go_off_and_time_moves(shown, picture):
+def test_the_map_zooms_and_layers_go_off_and_time_moves(in_browser, picture):
     user = """<script>
       const map = document.querySelector("svg.map");
       map.dispatchEvent(new WheelEvent("wheel", {deltaY: -400, clientX: 300, clientY: 300}));
@@ -69,7 +40,7 @@ def test_the_map_zooms_and_layers_go_off_and_time_moves(shown, picture):
       slider.value = 31;
       slider.dispatchEvent(new Event("input"));
     </script></body>"""
-    dom, complaints = shown(page(picture).replace("</body>", user))
+    dom, complaints = in_browser(page(picture).replace("</body>", user))
     assert complaints == []
     view = [float(part) for part in re.search(r'class="map"[^>]*viewBox="([^"]+)"', dom).group(1).split()]
     assert 0 < view[2] < 1000

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import pytest
 
 from mmrs_core.cli.flights.planned import Planned
@@ -11,19 +9,6 @@ from mmrs_core.cli.preview.from_flight import picture_of_flight
 from mmrs_core.cli.preview.from_run import Surroundings
 from mmrs_core.cli.report.making import Given, report_of
 from mmrs_core.cli.report.page import page
-
-OPTIONS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--enable-logging=stderr",
-    "--virtual-time-budget=3000",
-)
 
 pytestmark = pytest.mark.peer
 
@@ -43,28 +28,13 @@ def markup(behaviour, place, run, contributions, as_run, make):
     return made
 
 
-@pytest.fixture
-def shown(need_program, tmp_path):
-    """Return a function: what the browser makes of a page, and what it complains of."""
-    browser = need_program("chromium", "it shows the report as a person sees it")
-
-    def show(text, *more):
-        file = tmp_path / "page.html"
-        file.write_text(text, encoding="utf-8")
-        command = [browser, *OPTIONS, f"--user-data-dir={tmp_path / 'profile'}", *more, "--dump-dom"]
-        done = subprocess.run([*command, file.as_uri()], capture_output=True, text=True, timeout=120)
-        return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-
-    return show
-
-
-def test_the_browser_has_nothing_to_complain_of(shown, markup):
-    dom, complaints = shown(markup())
+def test_the_browser_has_nothing_to_complain_of(in_browser, markup):
+    dom, complaints = in_browser(markup())
     assert complaints == []
     assert dom.count("<svg") >= 5
 
 
-def test_what_vehicles_say_runs_nothing(shown, markup, make):
+def test_what_vehicles_say_runs_nothing(in_browser, markup, make):
     bait = "<img src=x onerror=document.title='caught'><script>document.title='caught'</script>"
     entries = (
         make.entry(1.0, "text", severity="ERROR", text=bait),
@@ -72,7 +42,7 @@ def test_what_vehicles_say_runs_nothing(shown, markup, make):
         make.entry(3.0, "decision", what=bait, why=bait, response=bait),
         make.entry(4.0, "start", vehicle=bait, firmware=bait, link=bait),
     )
-    dom, complaints = shown(markup(*entries))
+    dom, complaints = in_browser(markup(*entries))
     assert "<title>caught</title>" not in dom
     assert "<img" not in dom
     assert complaints == []
