@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, inf
+from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -18,18 +18,18 @@ from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.objects import Locator
-from mmrs_core.flight.places import offset
 from mmrs_core.flight.program import Action as VehicleAction
-from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
+from mmrs_core.flight.program import Land, Place, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.services.uploads import fence_of, mission_of, places_in, rally_of
 from mmrs_core.flight.steps.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
+from mmrs_core.flight.steps.turning import turns_to
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.steps.ways import way_back
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
 from mmrs_core.flight.vehicles.recognition import recognise
-from mmrs_core.flight.vehicles.steering import STILL
+from mmrs_core.flight.vehicles.vehicle import State
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
@@ -41,19 +41,13 @@ FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
 _MODES = {
-    "RETURN": (modes.GUIDED,),
-    "EMERGENCY_AREA": (modes.GUIDED,),
+    "RETURN": (modes.LAND, modes.SURFACE, modes.HOLD),
+    "EMERGENCY_AREA": (modes.LAND, modes.SURFACE, modes.HOLD),
     "LAND": (modes.LAND,),
     "HOLD": (modes.HOLD,),
     "SURFACE": (modes.SURFACE,),
 }
-"""Modes that show that a vehicle obeys."""
-
-_GOES = ("RETURN", "EMERGENCY_AREA")
-"""Responses in a mode that the vehicle may have been in before."""
-
-NEAR = 1.0
-"""Metres from the first place of the way back at which nobody can see whether a vehicle goes there."""
+"""Modes that show that a vehicle obeys, where it need not go anywhere for that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +109,9 @@ class MavlinkBackend:
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
         self._response, self._told = "", 0.0
+        self._before: State | None = None
+        self._goal: Place | None = None
+        self._halting: float | None = None
         self._holding = self._hands_off = False
         self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
@@ -187,7 +184,9 @@ class MavlinkBackend:
             return
         found = self._worker.fault
         self._response, self._holding, self._under_way = response, False, ()
-        self._told = now
+        self._told, self._before = now, self._with.vehicle.state()
+        way = way_back(self._robot, response, self._moves.track, self._before.place)
+        self._goal = next(way, None)
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, response)
         if found is not None and found.event == LINK_LOST:
@@ -210,9 +209,10 @@ class MavlinkBackend:
             return True
         if self._with.link.silent_for() >= now - self._told:
             return False
-        if self._with.vehicle.state().mode not in _MODES.get(self._response, ()):
-            return False
-        return self._response not in _GOES or self._heads_back()
+        state = self._with.vehicle.state()
+        if self._before is not None and self._goal is not None:
+            return turns_to(self._goal, self._before, state)
+        return state.mode in _MODES.get(self._response, ())
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
@@ -238,16 +238,21 @@ class MavlinkBackend:
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
+        self._halting = now
         self._worker.pause()
         self._with.link.wake()
 
     def resume(self, now: float) -> None:
         """Go on."""
+        self._halting = None
         self._worker.resume()
 
     def paused(self, now: float) -> bool:
-        """Return whether the vehicle stands, and has not gone on."""
-        return self._worker.halted
+        """Return whether the vehicle stands or was seen to brake since, and has not gone on."""
+        if self._worker.halted or self._halting is None:
+            return self._worker.halted
+        heard = self._with.link.silent_for() < now - self._halting
+        return heard and self._with.vehicle.state().mode == modes.HOLD
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""
@@ -385,15 +390,6 @@ class MavlinkBackend:
         vehicle, track = self._with.vehicle, self._moves.track
         self._holding = respond(response, self._robot, vehicle, track, lambda movement: movement())
         self._watch.moving = self._holding
-
-    def _heads_back(self) -> bool:
-        """Return whether the vehicle comes nearer to the first place of its way back."""
-        here, track = self._with.vehicle.state().place, self._moves.track
-        goal = next(way_back(self._robot, self._response, track, here), self._robot.home)
-        away = offset(here, goal)
-        velocity = self._with.vehicle.telemetry.velocity()
-        nearing = sum(pace * way for pace, way in zip(velocity, away, strict=True))
-        return hypot(*away) <= NEAR or (hypot(*velocity) > STILL and nearing > 0.0)
 
     def _stand_or_go(self, move: str) -> None:
         """Say whether the robot is under way, and where its sorties begin."""

@@ -75,7 +75,7 @@ class Worker:
         self._newest = 0
         self._running = 0
         self._done = True
-        self._holds = self._halted = self._closing = False
+        self._holds = self._halting = self._halted = self._closing = False
         self._thread = threading.Thread(target=self._live, name=name, daemon=True)
         self._thread.start()
 
@@ -83,7 +83,7 @@ class Worker:
         """Drop the present job, if any, and do this one; `afresh`: forget faults and pauses, too."""
         with self._news:
             if afresh:
-                self.fault, self._holds, self._halted = None, False, False
+                self.fault, self._holds, self._halting, self._halted = None, False, False, False
             self._job, self._done = job, False
             self._newest += 1
             self._news.notify_all()
@@ -153,7 +153,7 @@ class Worker:
             return lambda: None
         if self._holds:
             return self._idle if self._halted else self._come_to_a_halt
-        if self._halted:
+        if self._halting:
             return self._carry_on
         return self._idle if self._done or self._job is None else self._work
 
@@ -177,6 +177,7 @@ class Worker:
         self.changed()
 
     def _come_to_a_halt(self) -> None:
+        self._halting = True
         self._halt()
         with self._news:
             self._halted = True
@@ -185,7 +186,7 @@ class Worker:
     def _carry_on(self) -> None:
         self._go_on()
         with self._news:
-            self._halted = False
+            self._halting = self._halted = False
             self._newest += 1
         self.changed()
 

@@ -170,6 +170,7 @@ class _EarlyOrders:
     def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
         self._venture, self._robots = venture, robots
         self._later: list[Order] = []
+        self._held: set[str] = set()
         self._ended: set[str] = set()
 
     def look(self) -> None:
@@ -180,8 +181,7 @@ class _EarlyOrders:
         """
         for order in self._venture.orders.taken():
             if order.kind in (HOLD, RESUME):
-                for id in order.robots:
-                    order.refuse(id, "is not ready yet")
+                self._hold_or_not(order)
             else:
                 self._keep(order)
         if self._ended >= set(self._robots):
@@ -189,9 +189,22 @@ class _EarlyOrders:
             raise KeyboardInterrupt
 
     def pass_on(self) -> None:
-        """Have the interpreter end the programs that were ordered to end, and know the answers."""
+        """Have the interpreter obey what was ordered, and know the answers."""
+        if self._held:
+            self._venture.orders.give(HOLD, sorted(self._held))
         for order in self._later:
             self._venture.orders.give(order.kind, order.robots, question=order.question, answer=order.answer)
+
+    def _hold_or_not(self, order: Order) -> None:
+        """Have robots stay on the ground once they are ready, or no longer."""
+        for id in order.robots:
+            if id not in self._robots:
+                order.refuse(id, "no such robot here")
+            elif order.kind == RESUME and id not in self._held:
+                order.refuse(id, "has nothing to resume")
+            else:
+                (self._held.add if order.kind == HOLD else self._held.discard)(id)
+                order.confirm(id)
 
     def _keep(self, order: Order) -> None:
         self._later.append(order)

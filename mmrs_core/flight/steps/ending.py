@@ -23,14 +23,14 @@ from ..links.link import Link
 from ..orders.obedience import OBEYED_IN, Obedience, Ordered
 from ..orders.orders import HOLD as HOLD_ORDER
 from ..orders.orders import LAND as LAND_ORDER
-from ..places import distance
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .energy import COMES_DOWN
 from .pilot import Pilot
 from .responses import HOLD, NOTHING, RETURN, respond, response_to
+from .turning import turns_to
 from .watch import Watch
-from .ways import NEAR, way_back
+from .ways import way_back
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
@@ -38,9 +38,6 @@ KEPT_UP = (
     "is not ours: heartbeats go on until its motors are off; interrupted again, they end, and the vehicle"
     " does what it does about a lost link, whoever has it"
 )
-NEARER = 0.3
-"""Metres by which a vehicle must have come nearer to the first place of its way back to be seen to obey."""
-
 CODES = {STOPPED: INTERRUPTED, ORDERED: INTERRUPTED, LINK_LOST: LINK}
 OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST, STOPPED})
 """Events that are answered although the robot already responds to another."""
@@ -149,14 +146,12 @@ class Ending:
     def _obeys(self, response: str) -> Callable[[], bool]:
         """Return what tells whether the vehicle is seen to do what was ordered."""
         crew = self._crew
-        here = crew.vehicle.state().place
-        goal = next(way_back(crew.robot, response, crew.pilot.track, here), None)
+        before = crew.vehicle.state()
+        goal = next(way_back(crew.robot, response, crew.pilot.track, before.place), None)
         if goal is None:
             modes = OBEYED_IN[LAND_ORDER if response in COMES_DOWN else HOLD_ORDER]
             return lambda: crew.vehicle.state().mode in modes
-        # That it is steered is seen by where it goes, since it may have been in that mode before.
-        nearer = distance(here, goal) - NEARER
-        return lambda: distance(crew.vehicle.state().place, goal) <= max(nearer, NEAR)
+        return lambda: turns_to(goal, before, crew.vehicle.state())
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew

@@ -72,6 +72,7 @@ class Telemetry:
             wind=None if wind is None else wind[0],
             wind_from=None if wind is None else wind[1],
             detected=self._detections.names,
+            velocity=self.velocity(),
         )
 
     def lacks(self) -> tuple[str, ...]:

@@ -23,6 +23,7 @@ class State:
         answers: what the operator has answered so far, by question.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
+        velocity: north, east, up, metres per second; zeros where the vehicle does not say.
     """
 
     time: float
@@ -36,6 +37,7 @@ class State:
     wind_from: float | None = None
     detected: frozenset[str] = frozenset()
     answers: Mapping[str, bool] = field(default_factory=dict)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def charge(self) -> float | None:

@@ -258,10 +258,22 @@ def test_no_robot_begins_before_all_are_ready(live):
 TWO = program(robot("a", [do("walk")]), robot("b", [do("walk")]))
 
 
-def test_an_order_to_hold_before_anything_moves_is_refused_and_ends_nothing(live):
+def test_a_robot_that_is_held_before_anything_moves_stays_until_it_may_go_on(live):
     run = live(TWO, Script(ready=0.3))
     run.wait_for(lambda: len(run.script.robots) == 2)
-    assert run.order(HOLD, "a").refused == {"a": "is not ready yet"}
+    assert list(run.order(HOLD, "a").confirmed) == ["a"]
+    run.wait_for(lambda: "b end walk" in run.shown())
+    assert "a end walk" not in run.shown()
+    run.order(RESUME, "a")
+    assert run.end().outcome is Outcome.SUCCESS
+
+
+def test_a_hold_before_anything_moves_can_be_taken_back(live):
+    run = live(TWO, Script(ready=0.3))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    assert run.order(RESUME, "a").refused == {"a": "has nothing to resume"}
+    run.order(HOLD, "a")
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
     assert run.end().outcome is Outcome.SUCCESS
 
 
@@ -284,7 +296,6 @@ def test_orders_while_robots_of_other_processes_are_waited_for_end_nothing_else(
 
     run = live(TWO, Script(), meet=meet)
     run.wait_for(lambda: len(run.script.robots) == 2)
-    assert run.order(HOLD, "a").refused == {"a": "is not ready yet"}
     assert list(run.order(RETURN, "a").confirmed) == ["a"]
     assert run.records == []
     met.set()
