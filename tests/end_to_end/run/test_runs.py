@@ -107,6 +107,7 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
     assert all(reply["confirmed"] for reply in held.values()), held
     assert all(reply["seconds"] < 1.0 for reply in held.values()), held
     assert (vehicle.autopilot.mode, other.autopilot.mode) == (HOLDING, HOLDING)
+    assert wait_for(lambda: vehicle.autopilot.body.pace < 0.1, PATIENCE)
     place = vehicle.autopilot.body.position
     time.sleep(1.0)
     assert vehicle.autopilot.body.position == pytest.approx(place, abs=0.3)
