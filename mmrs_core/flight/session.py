@@ -208,6 +208,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch.track = lambda: pilot.track
     watch.unkept = lambda: shared.slots.trouble(robot.id)
     watch.decide = pilot.journal.decide
+    watch.say = lambda line: say(f"{robot.id!a} {line}")
     return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
 
 

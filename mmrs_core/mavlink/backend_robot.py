@@ -283,7 +283,7 @@ class MavlinkBackend:
         watch.begin(self._with.link, self._with.vehicle)
         watch.current = lambda: self._policies
         watch.track = lambda: self._moves.track
-        watch.decide = self._note_decision
+        watch.decide, watch.say = self._note_decision, self._with.say
         return watch
 
     def _note_decision(self, what: str, why: str, response: str) -> None:
@@ -326,8 +326,7 @@ class MavlinkBackend:
         self._ready = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
-        for line in self._watch.words_at_start():
-            self._with.say(line)
+        self._watch.tell_missing()
 
     def _tell_fence(self) -> None:
         """Tell the vehicle what to do by itself when it is outside its fence."""

@@ -6,6 +6,7 @@ from ..faults import GROUND_LOST
 from ..links.link import Link
 from ..links.radio import GROUND_SYSTEM
 from ..program import Policy, Robot
+from ..vehicles.modes import is_px4
 from .responses import CONTINUE, policy_for
 
 GROUND_SECONDS = 10.0
@@ -16,9 +17,10 @@ LEAST_GROUND_SECONDS = 3.0
 
 WATCHED = "watched from now on"
 SAME_SYSTEM = (
-    f"hears a ground station whose system id is {GROUND_SYSTEM}, as is that of this program: as long as its"
-    " vehicle hears the one, it does not notice that the other is silent; give the station another system id"
+    f"as long as its vehicle hears ground station {GROUND_SYSTEM}, it does not notice when this program falls"
+    " silent, which has the same system id: give the station another one"
 )
+ANY_STATION = "as long as its vehicle, a PX4, hears any ground station, it does not notice when this program falls silent"
 
 
 class Ground:
@@ -27,13 +29,17 @@ class Ground:
     def __init__(self, link: Link) -> None:
         """Listen to the stations of a link."""
         self._link = link
-        self._met = ""
+        self._met: tuple[int, ...] = ()
 
-    def news(self) -> str:
-        """Return which stations are heard, whenever another one has come; else empty."""
-        known = str(self._link.stations)
-        before, self._met = self._met, known
-        return f"{known} heard" if known != before else ""
+    def news(self) -> list[str]:
+        """Return what is to be said of the stations, whenever another one is heard; else nothing."""
+        stations = self._link.stations
+        before, self._met = self._met, stations.systems
+        if before == self._met:
+            return []
+        added = set(self._met) - set(before)
+        masked = [SAME_SYSTEM] if GROUND_SYSTEM in added else []
+        return [f"hears {stations}", *([ANY_STATION] if is_px4(self._link) and not before else masked)]
 
     def silence(self, policy: Policy) -> str:
         """Return why all stations count as lost, by the seconds of the policy; empty if they do not."""
@@ -44,11 +50,9 @@ class Ground:
             return ""
         return f"nothing heard of {self._link.stations} for {silent:.0f} s"
 
-    def words(self, robot: Robot) -> list[str]:
-        """Return what people should know about their stations before the robot moves."""
-        policy, stations = policy_for(GROUND_LOST, robot), self._link.stations
-        if policy.response != CONTINUE and not stations.systems:
-            return [
-                f"hears no ground station yet: policy {GROUND_LOST} ({policy.response}) waits for the first"
-            ]
-        return [SAME_SYSTEM] if GROUND_SYSTEM in stations.systems else []
+    def missing(self, robot: Robot) -> str:
+        """Return what people should know before the robot moves; empty if they need not."""
+        policy = policy_for(GROUND_LOST, robot)
+        if policy.response == CONTINUE or self._link.stations.systems:
+            return ""
+        return f"hears no ground station yet: policy {GROUND_LOST} ({policy.response}) waits for the first"

@@ -116,8 +116,7 @@ class Pilot:
             raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None and not self._desk.dry:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
-        for line in self._watch.words_at_start():
-            self._desk.say(f"{self._robot.id!a} {line}")
+        self._watch.tell_missing()
 
     def _tell_fence(self, fence: bool) -> None:
         """Tell the vehicle what to do by itself when it is outside its fence."""

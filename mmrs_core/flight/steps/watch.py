@@ -59,6 +59,7 @@ class Watch:
         track: the places that the robot has passed in this sortie.
         unkept: returns why what others tell the robot cannot be kept; empty where it can.
         decide: is told what was decided without ending the program: event, reason, response.
+        say: tells people what the robot hears.
         moving: whether the robot is under way; one that stands on the ground may start anew.
         looking: whether it looks for the cause of a change of mode, while nothing may be sent.
         taken: whether it has found that a pilot has taken over.
@@ -71,6 +72,7 @@ class Watch:
         self.track: Callable[[], Track] = lambda: ()
         self.unkept: Callable[[], str] = lambda: ""
         self.decide: Decide = lambda event, why, response: None
+        self.say: Callable[[str], None] = lambda line: None
         self.moving = True
         self.silence = False
         self._robot = robot
@@ -94,9 +96,10 @@ class Watch:
         self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
         self._ground = Ground(link)
 
-    def words_at_start(self) -> list[str]:
-        """Return what people should know about their ground stations before the robot moves."""
-        return [] if self._ground is None else self._ground.words(self._robot)
+    def tell_missing(self) -> None:
+        """Tell people before the robot moves that none of their ground stations is heard."""
+        if self._ground is not None and (missing := self._ground.missing(self._robot)):
+            self.say(missing)
 
     def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
         """Heed less from now on: the robot already responds to something.
@@ -161,8 +164,10 @@ class Watch:
             self._check_ground(self._ground)
 
     def _check_ground(self, ground: Ground) -> None:
-        if news := ground.news():
-            self.decide(GROUND_LOST, news, WATCHED)
+        for line in (news := ground.news()):
+            self.say(line)
+        if news:
+            self.decide(GROUND_LOST, news[0], WATCHED)
         policy = policy_for(GROUND_LOST, self._robot, self.current())
         why = ground.silence(policy)
         if not why:

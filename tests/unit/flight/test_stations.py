@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from flight_crew import robot_of
-from mavlink_peer import HERE, QUICK, Wire, eventually, heartbeat
+from mavlink_peer import HERE, PX4, QUICK, Wire, eventually, heartbeat, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
@@ -15,7 +15,7 @@ from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM, Radio
 from mmrs_core.flight.program import Policy
-from mmrs_core.flight.steps.ground import SAME_SYSTEM, Ground
+from mmrs_core.flight.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
 
@@ -163,26 +163,39 @@ def test_what_is_cut_for_a_rehearsal_is_not_heard(ears):
 
 def test_every_station_is_news_once(ears):
     ground = Ground(ears.first)
-    assert ground.news() == ""
+    assert ground.news() == []
     beat(ears, 254)
-    assert [ground.news(), ground.news()] == ["ground station 254 heard", ""]
+    assert [ground.news(), ground.news()] == [["hears ground station 254"], []]
     beat(ears, 253)
-    assert ground.news() == "ground stations 253 and 254 heard"
+    assert ground.news() == ["hears ground stations 253 and 254"]
+
+
+def test_a_station_with_our_system_id_is_told_to_hide_our_silence_from_the_vehicle(ears):
+    ground = Ground(ears.first)
+    beat(ears, 255)
+    assert ground.news() == ["hears ground station 255", SAME_SYSTEM]
+
+
+def test_any_station_hides_our_silence_from_a_px4():
+    with linked(autopilot=PX4) as (link, wire):
+        ground = Ground(link)
+        wire.say(STATION, system=254, component=190)
+        eventually(lambda: link.stations.systems)
+        assert ground.news() == ["hears ground station 254", ANY_STATION]
 
 
 @pytest.mark.parametrize(
     ("policy", "heard", "said"),
     [
-        (FIVE, (), ["hears no ground station yet: policy GROUND_LOST (RETURN) waits for the first"]),
-        (FIVE, (254,), []),
-        (FIVE, (255,), [SAME_SYSTEM]),
-        (Policy("GROUND_LOST", "CONTINUE"), (), []),
+        (FIVE, (), "hears no ground station yet: policy GROUND_LOST (RETURN) waits for the first"),
+        (FIVE, (254,), ""),
+        (Policy("GROUND_LOST", "CONTINUE"), (), ""),
     ],
 )
 def test_people_are_told_at_the_start_what_their_policy_waits_for(ears, policy, heard, said):
     for system in heard:
         beat(ears, system)
-    assert Ground(ears.first).words(robot_of(policy)) == said
+    assert Ground(ears.first).missing(robot_of(policy)) == said
 
 
 def watching(ears, *policies):
@@ -193,7 +206,7 @@ def watching(ears, *policies):
     return watch, decided
 
 
-HEARD = ("GROUND_LOST", "ground station 254 heard", "watched from now on")
+HEARD = ("GROUND_LOST", "hears ground station 254", "watched from now on")
 
 
 def test_a_watch_ends_the_program_when_the_last_station_is_lost(ears):
