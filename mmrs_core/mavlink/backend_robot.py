@@ -19,17 +19,14 @@ from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
-from mmrs_core.flight.program import Land, Place, Policy, Recharge, Robot, TakeOff
+from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.services.uploads import fence_of, mission_of, places_in, rally_of
+from mmrs_core.flight.steps.obeying import obeying
 from mmrs_core.flight.steps.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
-from mmrs_core.flight.steps.turning import turns_to
 from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.steps.ways import way_back
-from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
 from mmrs_core.flight.vehicles.recognition import recognise
-from mmrs_core.flight.vehicles.vehicle import State
 from mmrs_core.mavlink.backend_ground import Ground
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
@@ -39,15 +36,6 @@ from mmrs_core.mavlink.backend_worker import Job, Worker
 HANDS_OFF = "NOTHING"
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
-
-_MODES = {
-    "RETURN": (modes.LAND, modes.SURFACE, modes.HOLD),
-    "EMERGENCY_AREA": (modes.LAND, modes.SURFACE, modes.HOLD),
-    "LAND": (modes.LAND,),
-    "HOLD": (modes.HOLD,),
-    "SURFACE": (modes.SURFACE,),
-}
-"""Modes that show that a vehicle obeys, where it need not go anywhere for that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +96,9 @@ class MavlinkBackend:
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
-        self._response, self._told = "", 0.0
-        self._before: State | None = None
-        self._goal: Place | None = None
-        self._halting: float | None = None
+        self._response = ""
+        self._shown: Callable[[], bool] = lambda: False
+        self._brakes: Callable[[], bool] = lambda: False
         self._holding = self._hands_off = False
         self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
@@ -184,9 +171,7 @@ class MavlinkBackend:
             return
         found = self._worker.fault
         self._response, self._holding, self._under_way = response, False, ()
-        self._told, self._before = now, self._with.vehicle.state()
-        way = way_back(self._robot, response, self._moves.track, self._before.place)
-        self._goal = next(way, None)
+        self._shown = lambda: False
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, response)
         if found is not None and found.event == LINK_LOST:
@@ -198,6 +183,7 @@ class MavlinkBackend:
             self._worker.begin(Job(), afresh=True)
             return
         possible = self._possible(found, response)
+        self._shown = obeying(possible, self._robot, self._with.vehicle, self._moves.track)
         self._worker.begin(Job(lambda: self._respond(possible)), afresh=True)
         self._with.link.wake()
 
@@ -205,14 +191,7 @@ class MavlinkBackend:
         """Return whether the vehicle has carried out the response, or was seen to begin it since."""
         if self._worker.fault is not None or not self._worker.started:
             return False
-        if self._worker.done:
-            return True
-        if self._with.link.silent_for() >= now - self._told:
-            return False
-        state = self._with.vehicle.state()
-        if self._before is not None and self._goal is not None:
-            return turns_to(self._goal, self._before, state)
-        return state.mode in _MODES.get(self._response, ())
+        return self._worker.done or self._shown()
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
@@ -238,21 +217,18 @@ class MavlinkBackend:
 
     def pause(self, now: float) -> None:
         """Begin to halt."""
-        self._halting = now
+        self._brakes = obeying("HOLD", self._robot, self._with.vehicle, self._moves.track)
         self._worker.pause()
         self._with.link.wake()
 
     def resume(self, now: float) -> None:
         """Go on."""
-        self._halting = None
+        self._brakes = lambda: False
         self._worker.resume()
 
     def paused(self, now: float) -> bool:
         """Return whether the vehicle stands or was seen to brake since, and has not gone on."""
-        if self._worker.halted or self._halting is None:
-            return self._worker.halted
-        heard = self._with.link.silent_for() < now - self._halting
-        return heard and self._with.vehicle.state().mode == modes.HOLD
+        return self._worker.halted or self._brakes()
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""

@@ -25,6 +25,12 @@ TYPES = {
 }
 EKF_LOCATED, EKF_LOST = 0x33F, 0xA7
 ESTIMATOR_LOCATED = 0x33F
+STEERED = frozenset({"guided", "auto", "return", "smart_return"})
+"""Modes in which it tells the place that it steers to."""
+
+TARGET_MASK = 0xDF8
+"""Only the position counts."""
+
 SECTOR_FREE = 6_001
 UNKNOWN = 65_535
 
@@ -90,6 +96,34 @@ def local_position(pilot: Autopilot) -> Message | None:
     v_north, v_east, v_up = pilot.body.velocity
     now = milliseconds(pilot)
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
+
+
+def global_target(pilot: Autopilot) -> Message | None:
+    """Return the place on Earth that it steers to; None where it steers to none."""
+    target = pilot.body.target
+    if target is None or pilot.mode_name not in STEERED:
+        return None
+    latitude, longitude = pilot.degrees_at(target)
+    return mavlink.MAVLink_position_target_global_int_message(
+        milliseconds(pilot),
+        mavlink.MAV_FRAME_GLOBAL,
+        TARGET_MASK,
+        round(latitude * 1e7),
+        round(longitude * 1e7),
+        pilot.settings.altitude + target[2],
+        *[0.0] * 8,
+    )
+
+
+def local_target(pilot: Autopilot) -> Message | None:
+    """Return the place that it steers to, from where it was switched on; None where it steers to none."""
+    target = pilot.body.target
+    if target is None or pilot.mode_name not in STEERED:
+        return None
+    north, east, up = target
+    return mavlink.MAVLink_position_target_local_ned_message(
+        milliseconds(pilot), mavlink.MAV_FRAME_LOCAL_NED, TARGET_MASK, north, east, -up, *[0.0] * 8
+    )
 
 
 def attitude(pilot: Autopilot) -> Message:
@@ -313,9 +347,11 @@ TELLERS: Mapping[str, Teller] = {
     "OBSTACLE_DISTANCE": obstacle,
     "AUTOPILOT_VERSION": version,
     "HOME_POSITION": home_position,
+    "POSITION_TARGET_GLOBAL_INT": global_target,
+    "POSITION_TARGET_LOCAL_NED": local_target,
 }
 NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name for name in TELLERS}
-ON_REQUEST = frozenset({"AUTOPILOT_VERSION"})
+ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT", "POSITION_TARGET_LOCAL_NED"})
 SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
 FIRMWARE = {
     PX4: frozenset({"EKF_STATUS_REPORT", "WIND"}),

@@ -158,7 +158,8 @@ class Obedience:
             return
         self._held, moving = True, self._moving
         try:
-            self.expect(receipt, lambda: vehicle.state().mode in OBEYED_IN[HOLD])
+            evidence = vehicle.evidence()
+            self.expect(receipt, lambda: evidence.in_mode(OBEYED_IN[HOLD]))
             vehicle.hold()
             self.settle()
             if self._over:

@@ -20,17 +20,14 @@ from ..faults import (
     Strange,
 )
 from ..links.link import Link
-from ..orders.obedience import OBEYED_IN, Obedience, Ordered
-from ..orders.orders import HOLD as HOLD_ORDER
-from ..orders.orders import LAND as LAND_ORDER
+from ..orders.obedience import Obedience, Ordered
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .energy import COMES_DOWN
+from .obeying import obeying
 from .pilot import Pilot
 from .responses import HOLD, NOTHING, RETURN, respond, response_to
-from .turning import turns_to
 from .watch import Watch
-from .ways import way_back
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
@@ -134,7 +131,8 @@ class Ending:
             self._stand_back()
             return
         if isinstance(fault, Ordered):
-            crew.obedience.expect(fault.receipt, self._obeys(response))
+            seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
+            crew.obedience.expect(fault.receipt, seen)
         holds = respond(response, crew.robot, crew.vehicle, crew.pilot.track, crew.obedience.repeat)
         crew.obedience.settle()
         crew.watch.moving = holds
@@ -142,16 +140,6 @@ class Ending:
             self._leave_it_holding()
         elif holds:
             self._watch_over()
-
-    def _obeys(self, response: str) -> Callable[[], bool]:
-        """Return what tells whether the vehicle is seen to do what was ordered."""
-        crew = self._crew
-        before = crew.vehicle.state()
-        goal = next(way_back(crew.robot, response, crew.pilot.track, before.place), None)
-        if goal is None:
-            modes = OBEYED_IN[LAND_ORDER if response in COMES_DOWN else HOLD_ORDER]
-            return lambda: crew.vehicle.state().mode in modes
-        return lambda: turns_to(goal, before, crew.vehicle.state())
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew

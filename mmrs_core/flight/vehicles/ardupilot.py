@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -20,6 +21,7 @@ from ..services.commands import Unanswered, command, name_of
 from ..services.missions import Item, mark_of
 from . import modes, preparation, safeguards
 from .enclosure import enclose
+from .evidence import LinkEvidence
 from .following import Following
 from .helm import MODE_SECONDS, Helm
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
@@ -259,7 +261,9 @@ class MavlinkVehicle:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
             return False
         self._helm.enter(modes.HOLD)
-        if not self._link.wait(lambda: self._telemetry.speed() <= STILL, PATIENCE_SECONDS, heard=True):
+        begun = self._link.clock.now()
+        stands = partial(self._telemetry.still_since, begun, STILL)
+        if not self._link.wait(stands, PATIENCE_SECONDS, heard=True):
             raise Refused("the vehicle does not come to a halt")
         return True
 
@@ -296,6 +300,11 @@ class MavlinkVehicle:
         """Return whether the motors run and less than that part of the energy is left."""
         left = self._telemetry.energy()
         return left is not None and left < reserve and self._telemetry.armed()
+
+    def evidence(self) -> LinkEvidence:
+        """Return what shows, from now on, whether the vehicle obeys."""
+        geographic = isinstance(self._home, Geographic)
+        return LinkEvidence(self._link, self._telemetry, self._kind, geographic=geographic)
 
     def state(self) -> State:
         """Return what is known now."""

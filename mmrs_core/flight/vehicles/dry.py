@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from ..clock import Clock
 from ..places import at_height, bearing, distance
@@ -116,6 +116,18 @@ class DryVehicle:
 
     def finish(self) -> None:
         """Do nothing."""
+
+    def evidence(self) -> DryVehicle:
+        """Return itself: it does what it is told."""
+        return self
+
+    def in_mode(self, wanted: Collection[str]) -> bool:
+        """Return whether it is in one of these modes."""
+        return self._mode in wanted
+
+    def bound_for(self, place: Place, speed: float | None) -> bool:
+        """Return that it goes wherever it was told."""
+        return True
 
     def state(self) -> State:
         """Return where the vehicle would be, with a full battery."""

@@ -72,7 +72,6 @@ class Telemetry:
             wind=None if wind is None else wind[0],
             wind_from=None if wind is None else wind[1],
             detected=self._detections.names,
-            velocity=self.velocity(),
         )
 
     def lacks(self) -> tuple[str, ...]:
@@ -155,6 +154,25 @@ class Telemetry:
             return self._home
         if self._geographic:
             return Geographic(found.lat * 1e-7, found.lon * 1e-7, found.relative_alt * 1e-3)
+        return Local(found.x, found.y, -found.z)
+
+    def still_since(self, begun: float, pace: float) -> bool:
+        """Return whether a position that has come since tells of no more than a pace, metres a second."""
+        told = self._link.clock.now() - self._link.since(self._position)
+        return told > begun and self.speed() <= pace
+
+    def aim(self) -> Place | None:
+        """Return the place that the vehicle last said that it steers to; None where it has said none.
+
+        The height of a geographic one means nothing: firmwares count it from different levels.
+        """
+        found = self._link.latest(
+            "POSITION_TARGET_GLOBAL_INT" if self._geographic else "POSITION_TARGET_LOCAL_NED"
+        )
+        if found is None:
+            return None
+        if self._geographic:
+            return Geographic(found.lat_int * 1e-7, found.lon_int * 1e-7, found.alt)
         return Local(found.x, found.y, -found.z)
 
     def sea_level(self) -> float | None:

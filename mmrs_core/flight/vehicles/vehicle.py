@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -23,7 +23,6 @@ class State:
         answers: what the operator has answered so far, by question.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
-        velocity: north, east, up, metres per second; zeros where the vehicle does not say.
     """
 
     time: float
@@ -37,12 +36,23 @@ class State:
     wind_from: float | None = None
     detected: frozenset[str] = frozenset()
     answers: Mapping[str, bool] = field(default_factory=dict)
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def charge(self) -> float | None:
         """Return the part of the battery that is left, as the standard conditions call it."""
         return self.energy
+
+
+class Evidence(Protocol):
+    """Shows whether a vehicle obeys, by what it has told since an instant."""
+
+    def in_mode(self, wanted: Collection[str]) -> bool:
+        """Return whether it has shown one of these modes since, in the runtime's words."""
+        ...
+
+    def bound_for(self, place: Place, speed: float | None) -> bool:
+        """Return whether it is steered, and goes to a place that it was told, or is there."""
+        ...
 
 
 class Vehicle(Protocol):
@@ -128,6 +138,10 @@ class Vehicle(Protocol):
 
     def finish(self) -> None:
         """End the mission: nothing moves any more."""
+        ...
+
+    def evidence(self) -> Evidence:
+        """Return what shows, from now on, whether the vehicle obeys."""
         ...
 
     def state(self) -> State:

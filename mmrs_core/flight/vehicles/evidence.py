@@ -1,0 +1,112 @@
+"""What shows that a vehicle obeys: nothing that it was told, and nothing that wind or chance may do.
+
+A mode counts when a heartbeat has shown it since. Where a vehicle goes is what its autopilot itself
+tells as its target (POSITION_TARGET_GLOBAL_INT, POSITION_TARGET_LOCAL_NED), asked for while somebody
+waits. Only of vehicles that never tell it the motion decides: straight to the place, at a pace at which
+nothing drifts.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection
+from math import cos, hypot, radians
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..links.link import Link
+from ..places import distance, offset
+from ..program import Place
+from . import modes
+from .telemetry import Telemetry
+
+THERE = 1.0
+"""Metres from a place within which a vehicle is there, or a target is that place."""
+
+ADVANCE = 0.3
+"""Metres by which set-points must have come nearer to a place: a PX4's move there step by step."""
+
+BRISK, SLOWEST = 1.0, 0.3
+"""Metres a second from which on a vehicle does not drift; and for those that are slow anyway."""
+
+STRAIGHT = cos(radians(15.0))
+ASK_SECONDS = 0.2
+"""Real seconds between two questions."""
+
+HEARTBEAT, GLOBAL, LOCAL = "HEARTBEAT", "POSITION_TARGET_GLOBAL_INT", "POSITION_TARGET_LOCAL_NED"
+
+
+class LinkEvidence:
+    """Looks at what a vehicle has told since an instant; nothing here waits."""
+
+    def __init__(self, link: Link, telemetry: Telemetry, kind: str, *, geographic: bool) -> None:
+        """Let nothing count that was told up to now."""
+        self._link, self._telemetry, self._kind = link, telemetry, kind
+        self._target = GLOBAL if geographic else LOCAL
+        self._begun = link.clock.now()
+        self._asked: dict[str, float] = {}
+        self._first: float | None = None
+
+    def in_mode(self, wanted: Collection[str]) -> bool:
+        """Return whether a heartbeat has shown one of these modes since, in the runtime's words."""
+        if self._told_since(HEARTBEAT):
+            return modes.word_of(self._link, self._kind, self._telemetry.mode()) in wanted
+        self._ask(HEARTBEAT)
+        return False
+
+    def bound_for(self, place: Place, speed: float | None) -> bool:
+        """Return whether the vehicle is steered, and goes to a place, or is there.
+
+        Args:
+            place: that it was told.
+            speed: metres per second that it was told; None: as fast as it goes.
+        """
+        if modes.word_of(self._link, self._kind, self._telemetry.mode()) != modes.GUIDED:
+            return False
+        if self._link.clock.now() - self._link.silent_for() <= self._begun:
+            return False
+        if distance(self._telemetry.here(), place) <= THERE:
+            return True
+        self._ask(self._target)
+        if self._told_since(self._target):
+            return self._aims_at(place)
+        return self._hurries_to(place, speed)
+
+    def _aims_at(self, place: Place) -> bool:
+        aim = self._telemetry.aim()
+        if aim is None:
+            return False
+        away = hypot(*offset(aim, place)[:2])
+        if self._first is None:
+            self._first = away
+        steps = modes.is_px4(self._link) and away <= self._first - ADVANCE
+        return away <= THERE or steps
+
+    def _hurries_to(self, place: Place, speed: float | None) -> bool:
+        way, velocity = offset(self._telemetry.here(), place), self._telemetry.velocity()
+        pace = hypot(*velocity)
+        needed = BRISK if speed is None else max(SLOWEST, min(BRISK, speed / 2.0))
+        along = sum(p * q for p, q in zip(way, velocity, strict=True))
+        return pace >= needed and along >= STRAIGHT * pace * hypot(*way)
+
+    def _told_since(self, kind: str) -> bool:
+        return self._link.clock.now() - self._link.since(kind) > self._begun
+
+    def _ask(self, kind: str) -> None:
+        """Ask for a message, and not again right away; nobody waits for the acknowledgement."""
+        now = time.monotonic()
+        if now - self._asked.get(kind, 0.0) < ASK_SECONDS:
+            return
+        self._asked[kind] = now
+        number = getattr(mavlink, f"MAVLINK_MSG_ID_{kind}")
+        rest = (0.0,) * 6
+        self._link.send(
+            mavlink.MAVLink_command_long_message(
+                self._link.system,
+                self._link.component,
+                mavlink.MAV_CMD_REQUEST_MESSAGE,
+                0,
+                float(number),
+                *rest,
+            )
+        )
