@@ -20,7 +20,10 @@ SAME_SYSTEM = (
     f"as long as its vehicle hears ground station {GROUND_SYSTEM}, it does not notice when this program falls"
     " silent, which has the same system id: give the station another one"
 )
-ANY_STATION = "as long as its vehicle, a PX4, hears any ground station, it does not notice when this program falls silent"
+ANY_STATION = (
+    "as long as its vehicle, a PX4, hears any ground station, it does not notice when this program falls"
+    " silent"
+)
 
 
 class Ground:
