@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import FENCE_BREACHED, LINK_LOST, POSITION_LOST, TAKEN_OVER, Refused
+from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.radios import Radios
@@ -21,7 +21,8 @@ from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
 from mmrs_core.flight.records.blackbox import BlackBox
-from mmrs_core.flight.services.uploads import fence_of, mission_of, places_in, rally_of
+from mmrs_core.flight.services.uploads import uploads_of
+from mmrs_core.flight.steps.equipping import equip
 from mmrs_core.flight.steps.obeying import obeying
 from mmrs_core.flight.steps.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
 from mmrs_core.flight.steps.watch import Watch
@@ -90,8 +91,7 @@ class MavlinkBackend:
         equipment.link.guard = self._worker.guard
         self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
         self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
-        mission, self._flights = mission_of(robot)
-        self._mission = mission
+        self._uploads = uploads_of(robot, fenced=options.fence)
         self._steps = {step.move: step for step in robot.steps}
         self._move = ""
         self._passed: set[str] = set()
@@ -117,7 +117,7 @@ class MavlinkBackend:
         if move.id in self._under_way[1:]:
             return
         self._passed.clear()
-        flight = self._flights.get(move.id)
+        flight = self._uploads.flights.get(move.id)
         if flight is not None:
             self._under_way = flight.run.moves
             self._begin(self._moves.run(flight, self._pass))
@@ -294,22 +294,12 @@ class MavlinkBackend:
         if self._alone != policy_for(LINK_LOST, robot, self._policies):
             self._with.say(BLOCKED)
         vehicle.answer_lost_link(self._alone.response, self._alone.after)
-        fence = fence_of(robot) if self._options.fence else ()
-        vehicle.prepare(fence, rally_of(robot), self._mission, places_in(robot))
-        if fence:
-            self._tell_fence()
+        equip(robot, vehicle, self._uploads, self._with.say)
         self._note_start()
         self._ready = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
         self._watch.tell_missing()
-
-    def _tell_fence(self) -> None:
-        """Tell the vehicle what to do by itself when it is outside its fence."""
-        try:
-            self._with.vehicle.answer_breach(policy_for(FENCE_BREACHED, self._robot).response)
-        except Refused as error:
-            self._with.say(f"{error}")
 
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""

@@ -34,6 +34,7 @@ from mmrs_core.flight.program import (
 )
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.records.log import Log, read
+from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.flight.steps.ending import Crew, Ending
 from mmrs_core.flight.steps.pilot import Pilot
@@ -104,7 +105,7 @@ class Manned:
     def fly_up(self) -> None:
         """Have the vehicle climb to ten metres, as the robot's program begins."""
         crew = self.crew
-        crew.vehicle.prepare((), (), ())
+        crew.vehicle.prepare(Uploads())
         crew.watch.renew()
         crew.vehicle.take_off(10.0)
         crew.pilot.track.append(("up", crew.vehicle.state().place))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from math import ceil
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -26,6 +26,31 @@ class Flight:
     first: int
     last: int
     ends: dict[int, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Uploads:
+    """All of a program that its vehicle must know before it begins.
+
+    Attributes:
+        mission: of all runs; empty where there are none.
+        flights: by first move of a run, where it lies in the mission.
+        fence: polygons that the vehicle must stay out of. rally: where it may go in an emergency.
+        places: all that the program leads to, which the vehicle's own fences must leave free.
+    """
+
+    mission: tuple[Item, ...] = ()
+    flights: Mapping[str, Flight] = field(default_factory=dict)
+    fence: tuple[Item, ...] = ()
+    rally: tuple[Item, ...] = ()
+    places: tuple[Place, ...] = ()
+
+
+def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
+    """Return what a robot's vehicle must know; `fenced`: the areas to stay out of, too."""
+    mission, flights = mission_of(robot)
+    fence = fence_of(robot) if fenced else ()
+    return Uploads(mission, flights, fence, rally_of(robot), places_in(robot))
 
 
 def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:

@@ -7,19 +7,18 @@ from functools import partial
 
 from ..bus import Incomplete
 from ..desk import Desk, Meet
-from ..faults import BATTERY_LOW, FENCE_BREACHED, Alone, Fault, Refused, Strange
+from ..faults import BATTERY_LOW, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, distance, ends_of
 from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from ..records.journal import Journal
 from ..records.recording import fix
-from ..services.missions import Item
-from ..services.uploads import Flight, fence_of, mission_of, places_in, rally_of
+from ..services.uploads import Flight, uploads_of
 from ..vehicles.corners import goes_through
 from ..vehicles.vehicle import Vehicle
 from .doing import Doing
-from .responses import policy_for
+from .equipping import equip
 from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
 from .waits import Waits
 from .watch import Watch
@@ -61,9 +60,8 @@ class Pilot:
         self._desk = desk
         self._watch = watch
         self._obedience = obedience
-        self._fence = fence
+        self._uploads = uploads_of(robot, fenced=fence)
         self._steps = {step.move: step for step in robot.steps}
-        self._flights: dict[str, Flight] = {}
 
     def fly(self) -> None:
         """Carry out the program, from the beginning or from where its log ends.
@@ -103,13 +101,14 @@ class Pilot:
 
     def _prepare(self) -> None:
         """Set the vehicle up; again where it has started anew meanwhile."""
-        mission, self._flights = mission_of(self._robot)
-        polygons: tuple[Item, ...] = fence_of(self._robot) if self._fence else ()
+
+        def say(line: str) -> None:
+            self._desk.say(f"{self._robot.id!a}: {line}")
+
         for _ in range(STARTS):
             self._watch.renew()
             self.waits.tell_vehicle()
-            self._vehicle.prepare(polygons, rally_of(self._robot), mission, places_in(self._robot))
-            self._tell_fence(bool(polygons))
+            equip(self._robot, self._vehicle, self._uploads, say)
             if not self._watch.restarted:
                 break
         else:
@@ -117,15 +116,6 @@ class Pilot:
         if self._vehicle.state().energy is None and not self._desk.dry:
             self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
         self._watch.tell_missing()
-
-    def _tell_fence(self, fence: bool) -> None:
-        """Tell the vehicle what to do by itself when it is outside its fence."""
-        if not fence:
-            return
-        try:
-            self._vehicle.answer_breach(policy_for(FENCE_BREACHED, self._robot).response)
-        except Refused as error:
-            self._desk.say(f"{self._robot.id!a}: {error}")
 
     def _meet(self, meet: Meet) -> None:
         """Begin together with all other robots.
@@ -205,7 +195,7 @@ class Pilot:
         at = self.journal.progress
         for index in range(at.before, len(step.before)):
             self._doing.act(step.before[index], f"pre:{index}")
-        flight = self._flights.get(step.move) if not at.begun else None
+        flight = self._uploads.flights.get(step.move) if not at.begun else None
         if at.ended:
             pass
         elif flight is None:

@@ -19,6 +19,7 @@ from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import Unanswered, command, name_of
 from ..services.missions import Item, mark_of
+from ..services.uploads import Uploads
 from . import modes, preparation, safeguards
 from .enclosure import enclose
 from .evidence import LinkEvidence
@@ -75,17 +76,10 @@ class MavlinkVehicle:
         self._mission: Sequence[Item] = ()
         self._mark = 0
 
-    def prepare(
-        self,
-        fence: Sequence[Item],
-        rally: Sequence[Item],
-        mission: Sequence[Item],
-        places: Sequence[Place] = (),
-    ) -> None:
+    def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
 
-        A vehicle that is in the air already may be away from home. `places` are all that the program
-        leads to: the vehicle's own fences must leave them free.
+        A vehicle that is in the air already may be away from home.
 
         Raises:
             Refused: something is not accepted or read back differently, the vehicle is not where the
@@ -96,18 +90,19 @@ class MavlinkVehicle:
         preparation.await_position(self._link, self._telemetry)
         tolerance = inf if self._telemetry.airborne() else self._home_tolerance
         preparation.check_identity(self._link, self._telemetry, self._kind, self._home, tolerance)
-        for line in enclose(self._link, self._home, places, rally, polygons=bool(fence)):
+        fenced = bool(uploads.fence)
+        for line in enclose(self._link, self._home, uploads.places, uploads.rally, polygons=fenced):
             self._tell(line)
         if geographic:
-            self._mission = mission
-            mission = self._helm.habits.mission(mission)
-            self._mark = preparation.replace_all(self._link, mission, fence, rally)
+            self._mission = uploads.mission
+            mission = self._helm.habits.mission(uploads.mission)
+            self._mark = preparation.replace_all(self._link, mission, uploads.fence, uploads.rally)
         for line in safeguards.report(self._link, self._kind):
             self._tell(line)
         for line in set_up(self._link, self._kind, self._travel):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
-        if fence:
+        if fenced:
             self._helm.habits.enable_fence()
 
     def check(self) -> None:
@@ -295,11 +290,6 @@ class MavlinkVehicle:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""
         if self._telemetry.armed() and (self._kind != "copter" or self._telemetry.grounded()):
             self._helm.disarm()
-
-    def running_low(self, reserve: float) -> bool:
-        """Return whether the motors run and less than that part of the energy is left."""
-        left = self._telemetry.energy()
-        return left is not None and left < reserve and self._telemetry.armed()
 
     def evidence(self) -> LinkEvidence:
         """Return what shows, from now on, whether the vehicle obeys."""

@@ -9,6 +9,7 @@ from ..clock import Clock
 from ..places import at_height, bearing, distance
 from ..program import Geographic, Look, Place
 from ..services.missions import Item
+from ..services.uploads import Uploads
 from .modes import GUIDED, HOLD, LAND, SURFACE
 from .vehicle import State
 
@@ -35,15 +36,9 @@ class DryVehicle:
     def answer_breach(self, response: str) -> None:
         """Do nothing: there is no fence."""
 
-    def prepare(
-        self,
-        fence: Sequence[Item],
-        rally: Sequence[Item],
-        mission: Sequence[Item],
-        places: Sequence[Place] = (),
-    ) -> None:
+    def prepare(self, uploads: Uploads) -> None:
         """Keep the mission."""
-        self._items = mission
+        self._items = uploads.mission
 
     def take_off(self, height: float) -> None:
         """Climb to a height above home."""

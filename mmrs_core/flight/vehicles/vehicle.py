@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from ..program import Look, Place
-from ..services.missions import Item
+from ..services.uploads import Uploads
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +66,7 @@ class Vehicle(Protocol):
         """Have the vehicle respond so by itself when it is outside its fence."""
         ...
 
-    def prepare(
-        self,
-        fence: Sequence[Item],
-        rally: Sequence[Item],
-        mission: Sequence[Item],
-        places: Sequence[Place] = (),
-    ) -> None:
+    def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to go to all places."""
         ...
 
