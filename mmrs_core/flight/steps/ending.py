@@ -130,6 +130,7 @@ class Ending:
         if response == NOTHING:
             self._stand_back()
             return
+        crew.watch.check_hands()
         if isinstance(fault, Ordered):
             seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
             crew.obedience.expect(fault.receipt, seen)

@@ -245,6 +245,22 @@ class Watch:
             raise Fault(TAKEN_OVER, f"{left}")
         raise Fault(found[0], f"{found[1]}; {left}")
 
+    def check_hands(self) -> None:
+        """Make sure, right before the vehicle is told how to respond, that no pilot has just taken it.
+
+        Without waiting: modes into which vehicles also go by themselves may be what is responded to.
+
+        Raises:
+            Fault: one has.
+        """
+        if self._link is None or self._vehicle is None or self.restarted:
+            return
+        left, tells = _left(self._vehicle), self._vehicle.telemetry
+        by_themselves = modes.of_failsafes(self._link, self._robot.vehicle)
+        if left is not None and tells.armed() and tells.mode() not in by_themselves:
+            self.taken = True
+            raise Fault(TAKEN_OVER, f"{left}")
+
     def _find_cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
         """Wait for the cause of a change of mode as long as it may still be on its way."""
         tells = vehicle.telemetry

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
-from flight_crew import HOME, NORTH, in_background, manned, robot_of, until
+from flight_crew import HOME, NORTH, in_background, until
 
 from mmrs_core.flight.faults import Fault, Stopped, Strange
 from mmrs_core.flight.orders.obedience import Ordered
@@ -13,20 +15,9 @@ from mmrs_core.flight.program import Policy
 
 
 @pytest.fixture
-def robot(tmp_path):
+def robot(in_the_air):
     """Return a function that gives a robot with policies, 22 metres north of its home and ten above it."""
-    open_ones = []
-
-    def fly(*policies, on_stop="hold", **settings):
-        context = manned(tmp_path, robot_of(*policies), on_stop=on_stop, **settings)
-        made = context.__enter__()
-        open_ones.append(context)
-        made.fly_out()
-        return made
-
-    yield fly
-    for context in open_ones:
-        context.__exit__(None, None, None)
+    return partial(in_the_air, out=True)
 
 
 def away(made, place) -> float:
@@ -79,7 +70,7 @@ def test_a_battery_that_is_answered_in_the_air_is_a_fault(robot):
 
 
 def test_a_fault_on_the_way_home_for_the_battery_ends_the_program_after_all(robot):
-    made = robot(Policy("POSITION_LOST", "LAND"))
+    made = robot(Policy("POSITION_LOST", "LAND"), cruise=1.0)
     ending = made.ending()
     code = in_background(lambda: ending.end(Fault("BATTERY_LOW", "too little is left")))
     until(lambda: made.said)
@@ -122,14 +113,13 @@ def test_a_stop_ends_as_the_robot_was_started(robot, on_stop, down):
         assert made.simulated.autopilot.parameters["FS_GCS_ENABLE"] == 7.0
 
 
-def test_an_order_is_confirmed_once_the_vehicle_is_seen_to_come_nearer(robot):
+def test_an_order_to_return_is_confirmed_as_soon_as_the_vehicle_is_bound_for_home(robot):
     made = robot()
     fault, receipt = ordered(made, "return")
-    before = away(made, HOME)
     code = in_background(lambda: made.ending().end(fault))
     until(lambda: receipt.confirmed is not None)
     assert receipt.confirmed
-    assert away(made, HOME) < before
+    assert made.simulated.autopilot.body.target == pytest.approx((0.0, 0.0, 10.0), abs=1.0)
     assert not code.done()
     assert code.result(20.0) == 130
     assert made.events() == ["ORDERED"]
@@ -180,17 +170,39 @@ def test_nothing_is_sent_to_a_vehicle_that_a_pilot_has_until_its_motors_are_off(
 
 
 def test_a_pilot_who_takes_over_on_the_way_back_is_left_alone(robot):
-    made = robot(Policy("DEVICE_SILENT", "RETURN"))
+    made = robot(Policy("DEVICE_SILENT", "RETURN"), cruise=1.0)
     code = in_background(lambda: made.ending().end(Fault("DEVICE_SILENT", "no answer")))
-    until(lambda: made.said)
+    until(lambda: made.simulated.autopilot.body.pace > 0.5)
     made.simulated.faults.take_stick("loiter")
     until(lambda: any("hands off" in line for line in made.said))
-    made.crew.desk.stop.set()
+    made.stop.set()
     until(lambda: any("interrupted again, they end" in line for line in made.said))
     assert not code.done()
     made.crew.desk.abandon.set()
     assert code.result(20.0) == 1
     assert made.mode == "loiter"
+
+
+@pytest.mark.parametrize("mode", ["loiter", "stabilize"])
+def test_a_pilot_who_takes_over_before_the_response_begins_is_left_alone(robot, mode):
+    made = robot(Policy("DEVICE_SILENT", "RETURN"))
+    made.simulated.faults.take_stick(mode)
+    until(lambda: made.crew.vehicle.state().mode != "guided")
+    heard = len(made.simulated.received)
+    made.crew.desk.abandon.set()
+    assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 1
+    assert made.simulated.received[heard:] == []
+    assert made.mode == mode
+    assert made.events() == ["DEVICE_SILENT"]
+
+
+def test_a_landing_that_the_vehicle_began_itself_does_not_keep_it_from_its_way_home(robot):
+    made = robot(Policy("PEER_LOST", "RETURN"))
+    with made.simulated.lock:
+        made.simulated.autopilot.set_mode(made.simulated.autopilot.numbers["land"])
+    until(lambda: made.crew.vehicle.state().mode == "land")
+    assert made.ending().end(Fault("PEER_LOST", "nobody there")) == 1
+    assert away(made, HOME) < 1.5
 
 
 @pytest.mark.parametrize("begun", [False, True])

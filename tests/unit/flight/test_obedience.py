@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from flight_crew import NORTH, in_background, manned, until
+from flight_crew import NORTH, in_background, until
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Stopped
@@ -15,11 +15,9 @@ from mmrs_core.flight.places import distance
 
 
 @pytest.fixture
-def robot(tmp_path):
+def robot(in_the_air):
     """Return a robot ten metres above its home."""
-    with manned(tmp_path) as made:
-        made.fly_up()
-        yield made
+    return in_the_air()
 
 
 def go_north(made):

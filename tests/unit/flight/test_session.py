@@ -157,7 +157,8 @@ def test_a_robot_that_came_home_for_its_battery_is_not_told_to_have_ended(proces
     assert "fault" not in labels(tmp_path)
 
 
-def test_another_battery_lets_it_go_on_while_others_work(process, vehicle, tmp_path):
+@pytest.mark.parametrize("left_alone", [True, False])
+def test_another_battery_lets_it_go_on_and_be_watched_as_before(process, vehicle, tmp_path, left_alone):
     simulated, port = vehicle
     shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
     code = empty(shared, simulated)
@@ -168,8 +169,15 @@ def test_another_battery_lets_it_go_on_while_others_work(process, vehicle, tmp_p
     assert re.fullmatch(r"the battery is still at [345]%", early.why)
     simulated.faults.set_battery(1.0)
     until(lambda: shared.crews.inboxes["alpha"].give(Order("resume")).confirmed or phase(shared) == WORKS)
-    assert code.result(30.0) == 0
-    assert labels(tmp_path).count("end") == len(STEPS)
+    if left_alone:
+        assert code.result(30.0) == 0
+        assert labels(tmp_path).count("end") == len(STEPS)
+        return
+    until(lambda: simulated.autopilot.body.position[2] > 5.0)
+    simulated.faults.take_stick("loiter")
+    shared.abandon.set()
+    assert code.result(30.0) == 1
+    assert labels(tmp_path)[-1] == "fault"
 
 
 @pytest.mark.parametrize("by", ["order", "signal", "others"])

@@ -5,29 +5,12 @@ from __future__ import annotations
 import threading
 
 import pytest
-from flight_crew import SPEEDUP, manned, robot_of, until
+from flight_crew import SPEEDUP, robot_of, until
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.watch import Watch
-
-
-@pytest.fixture
-def flying(tmp_path):
-    """Return a function that gives a robot with policies, ten metres above its home."""
-    open_ones = []
-
-    def fly(*policies, **settings):
-        context = manned(tmp_path, robot_of(*policies), **settings)
-        made = context.__enter__()
-        open_ones.append(context)
-        made.fly_up()
-        return made
-
-    yield fly
-    for context in open_ones:
-        context.__exit__(None, None, None)
 
 
 def test_only_a_stop_ends_what_has_no_vehicle_yet():
@@ -47,12 +30,12 @@ def test_a_log_that_cannot_be_kept_ends_what_has_no_vehicle_too():
     assert fault.value.event == "LOG_FAILED"
 
 
-def test_a_robot_that_is_well_is_let_alone(flying):
-    flying().quiet(10.0)
+def test_a_robot_that_is_well_is_let_alone(in_the_air):
+    in_the_air().quiet(10.0)
 
 
-def test_a_stop_is_noticed_until_the_robot_answers_something(flying):
-    made = flying()
+def test_a_stop_is_noticed_until_the_robot_answers_something(in_the_air):
+    made = in_the_air()
     made.stop.set()
     with pytest.raises(Stopped):
         made.crew.watch.check()
@@ -60,8 +43,8 @@ def test_a_stop_is_noticed_until_the_robot_answers_something(flying):
     made.crew.watch.check()
 
 
-def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(flying):
-    made = flying(Policy("LINK_LOST", "RETURN", 50.0))
+def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(in_the_air):
+    made = in_the_air(Policy("LINK_LOST", "RETURN", 50.0))
     made.simulated.mute()
     cut = made.crew.desk.clock.now()
     fault = made.caught()
@@ -69,8 +52,8 @@ def test_a_silent_link_is_lost_after_the_seconds_of_the_policy(flying):
     assert made.crew.desk.clock.now() - cut > 45.0
 
 
-def test_a_silent_link_is_borne_by_who_carries_on_and_while_the_battery_is_changed(flying):
-    made = flying(Policy("LINK_LOST", "CONTINUE"))
+def test_a_silent_link_is_borne_by_who_carries_on_and_while_the_battery_is_changed(in_the_air):
+    made = in_the_air(Policy("LINK_LOST", "CONTINUE"))
     made.simulated.mute()
     until(lambda: made.crew.link.silent_for() > 60.0)
     made.crew.watch.check()
@@ -82,8 +65,8 @@ def test_a_silent_link_is_borne_by_who_carries_on_and_while_the_battery_is_chang
     assert made.caught().event == "LINK_LOST"
 
 
-def test_a_pilot_who_takes_the_stick_has_the_vehicle(flying):
-    made = flying(Policy("POSITION_LOST", "CONTINUE"))
+def test_a_pilot_who_takes_the_stick_has_the_vehicle(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
     made.simulated.faults.take_stick("loiter")
     assert made.caught().event == "TAKEN_OVER"
     assert made.crew.watch.taken
@@ -91,51 +74,55 @@ def test_a_pilot_who_takes_the_stick_has_the_vehicle(flying):
     made.quiet(5.0)
 
 
-def test_a_pilot_goes_before_what_he_took_over_for(flying):
-    made = flying(Policy("POSITION_LOST", "LAND"))
+def test_a_pilot_goes_before_what_he_took_over_for(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "LAND"))
     made.simulated.faults.lose_position()
     made.simulated.faults.take_stick("stabilize")
     assert made.caught().event == "TAKEN_OVER"
 
 
-def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(flying):
-    made = flying(Policy("POSITION_LOST", "LAND", 1000.0))
+def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
     made.simulated.faults.lose_position()
     until(lambda: made.mode == "land")
     assert made.caught().event == "POSITION_LOST"
     assert not made.crew.watch.taken
 
 
-def test_a_position_that_comes_back_in_time_was_not_lost(flying):
-    made = flying(Policy("POSITION_LOST", "LAND", 1000.0))
+def test_seconds_without_a_position_count_only_as_long_as_they_last(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "LAND", 20.0))
     made.crew.vehicle.hold()
     with made.simulated.lock:
         made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
+    trouble = made.crew.vehicle.telemetry.position_trouble
+    for _ in range(2):
+        made.simulated.faults.lose_position()
+        until(trouble)
+        made.quiet(12.0)
+        made.simulated.faults.find_position()
+        until(lambda: not trouble())
+        made.quiet(1.0)
     made.simulated.faults.lose_position()
-    until(lambda: made.crew.vehicle.telemetry.position_trouble())
-    made.quiet(5.0)
-    made.simulated.faults.find_position()
-    until(lambda: not made.crew.vehicle.telemetry.position_trouble())
-    made.quiet(5.0)
+    assert made.caught().event == "POSITION_LOST"
 
 
-def test_what_a_policy_bears_is_told_once(flying):
-    made = flying(Policy("OBSTACLE", "CONTINUE"))
+def test_what_a_policy_bears_is_told_once(in_the_air):
+    made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
     made.simulated.faults.meet_obstacle(3.0)
     until(lambda: made.crew.vehicle.telemetry.obstacle())
     made.quiet(5.0)
     assert made.decided == [("OBSTACLE", "CONTINUE")]
 
 
-def test_the_policies_of_a_wait_go_before_those_of_the_robot(flying):
-    made = flying(Policy("OBSTACLE", "CONTINUE"))
+def test_the_policies_of_a_wait_go_before_those_of_the_robot(in_the_air):
+    made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
     made.crew.watch.current = lambda: (Policy("OBSTACLE", "HOLD"),)
     made.simulated.faults.meet_obstacle(3.0)
     assert made.caught().event == "OBSTACLE"
 
 
-def test_a_battery_under_the_reserve_is_low(flying):
-    made = flying()
+def test_a_battery_under_the_reserve_is_low(in_the_air):
+    made = in_the_air()
     made.simulated.faults.set_battery(0.09)
     fault = made.caught()
     assert fault.event == "BATTERY_LOW"
@@ -151,9 +138,9 @@ def test_a_battery_under_the_reserve_is_low(flying):
     ],
 )
 def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down(
-    flying, handled, response, heeded
+    in_the_air, handled, response, heeded
 ):
-    made = flying()
+    made = in_the_air()
     made.crew.watch.relax(handled, response)
     made.simulated.faults.set_battery(0.05)
     until(lambda: (made.crew.vehicle.state().energy or 1.0) < 0.06)
@@ -163,8 +150,8 @@ def test_a_low_battery_overtakes_only_responses_that_do_not_bring_the_robot_down
         made.quiet(5.0)
 
 
-def test_a_robot_that_goes_on_heeds_everything_again(flying):
-    made = flying(Policy("OBSTACLE", "HOLD"))
+def test_a_robot_that_goes_on_heeds_everything_again(in_the_air):
+    made = in_the_air(Policy("OBSTACLE", "HOLD"))
     made.crew.watch.relax()
     made.simulated.faults.meet_obstacle(3.0)
     until(lambda: made.crew.vehicle.telemetry.obstacle())
@@ -173,16 +160,16 @@ def test_a_robot_that_goes_on_heeds_everything_again(flying):
     assert made.caught().event == "OBSTACLE"
 
 
-def test_motors_that_stop_in_the_air_are_a_crash(flying):
-    made = flying()
+def test_motors_that_stop_in_the_air_are_a_crash(in_the_air):
+    made = in_the_air()
     made.quiet(2.0)
     with made.simulated.lock:
         made.simulated.autopilot.disarm()
     assert made.caught().event == "MOTORS_OFF"
 
 
-def test_motors_that_stop_after_a_landing_are_not(flying):
-    made = flying()
+def test_motors_that_stop_after_a_landing_are_not(in_the_air):
+    made = in_the_air()
     made.quiet(2.0)
     made.crew.vehicle.land()
     assert not made.simulated.autopilot.armed
@@ -194,15 +181,15 @@ def grow_old(made):
     until(lambda: made.simulated.autopilot.time > 1.5 * SPEEDUP)
 
 
-def test_a_restart_in_the_air_is_a_fault(flying):
-    made = flying(falls=False)
+def test_a_restart_in_the_air_is_a_fault(in_the_air):
+    made = in_the_air(falls=False)
     grow_old(made)
     made.simulated.faults.restart(armed=True)
     assert made.caught().event == "VEHICLE_RESTARTED"
 
 
-def test_a_restart_on_the_ground_is_kept_for_later(flying):
-    made = flying()
+def test_a_restart_on_the_ground_is_kept_for_later(in_the_air):
+    made = in_the_air()
     made.crew.vehicle.land()
     made.crew.watch.moving = False
     made.crew.watch.silence = True
