@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
+from mmrs_core.behaviour.fingerprint import fingerprint
 from mmrs_core.diagnostics import Place
 from mmrs_core.scene import Frame, Metaclasses, Name, Policy, Position, TravelMode, Value
 
@@ -159,7 +161,7 @@ class RobotProgram:
     place: Place = Place()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Program:
     """The behaviour of all robots.
 
@@ -177,6 +179,11 @@ class Program:
     minimum_separation: float | None = None
     reserve: float = 0.2
     accepted_unknowns: tuple[str, ...] = ()
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Return what differs where two plans of the mission do, whatever files they were read from."""
+        return fingerprint(self)
 
     def robot(self, id: str) -> RobotProgram:
         """Return the robot of that identifier."""

@@ -244,7 +244,7 @@ def _gateway(
     names = [each.id for each in program.robots]
 
     def enter(recorded: Recorded | None) -> Node:
-        carrier = ZenohCarrier(program.name, run, names, endpoints)
+        carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
         given = None if recorded is None else {robot: recorded}
         return node_of(program, [robot], run, folder, carrier, given)
 

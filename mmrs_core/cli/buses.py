@@ -12,7 +12,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
-from mmrs_core.flight.bus import Doubled, Incomplete, begin_together
+from mmrs_core.flight.bus import Incomplete, Unwelcome, begin_together
 from mmrs_core.flight.bus.carrier import Carrier
 from mmrs_core.flight.bus.endpoints import first_fault
 from mmrs_core.runtime.resuming import restore
@@ -78,10 +78,11 @@ def bus_for(
     refuse_endpoints("--bus-listen", wishes.listen)
     refuse_endpoints("--bus-connect", wishes.connect)
     endpoints = Endpoints(wishes.listen, wishes.connect, wishes.config)
-    carrier = ZenohCarrier(program.name, run, sorted(robot.id for robot in program.robots), endpoints)
+    names = sorted(robot.id for robot in program.robots)
+    carrier = ZenohCarrier(program.name, run, names, endpoints, plan=program.fingerprint)
     try:
         return shared_bus(program, here, run, folder, wrap(carrier), resumed)
-    except Doubled as error:
+    except Unwelcome as error:
         raise LinkLostError(str(error)) from error
     except ValueError as error:
         raise UnreadableError(f"{folder}: {error}") from error

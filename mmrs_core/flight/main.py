@@ -97,7 +97,7 @@ def _slots(
 
         fleet = {robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)
-        zenoh = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached)
+        zenoh = ZenohCarrier(robots[0].mission, options.run, sorted(fleet), reached, plan=robots[0].plan)
         carrier = rehearsal.wrap_carrier(zenoh, [robot.id for robot in robots])
         try:
             bus = shared_slots(robots, options.run, options.log, carrier, _recorded(robots, options))

@@ -280,7 +280,8 @@ class Robot:
         fence: polygons to stay out of; rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
-        mission: name of it; fleet: all robots of it, this one included.
+        mission: name of it; plan: what differs where two plans of it do.
+        fleet: all robots of it, this one included.
         travel: how carefully it travels.
     """
 
@@ -304,6 +305,7 @@ class Robot:
     escapes: tuple[tuple[str, Place], ...] = ()
     straight: bool = True
     mission: str = field(default="", kw_only=True)
+    plan: str = field(default="", kw_only=True)
     fleet: tuple[str, ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)
 

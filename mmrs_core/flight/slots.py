@@ -184,7 +184,7 @@ def shared_slots(
         recorded: by robot, what the logs say of those that are started again; see `recorded_of`.
 
     Raises:
-        Doubled: another process runs one of these robots.
+        Unwelcome: another process runs one of these robots.
         OSError: the folder cannot be written, or the carrier cannot begin.
         ValueError: the folder holds slots of another run, or of an earlier start of a robot that is not
             started again.
@@ -194,6 +194,7 @@ def shared_slots(
     node = Node(
         [member_of(robot) for robot in robots],
         run,
+        plan=robots[0].plan,
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]) if robot in paths else NoJournal(),
         recorded=recorded,

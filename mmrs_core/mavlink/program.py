@@ -178,6 +178,7 @@ def _head(
     home = robot.home or (0.0, 0.0, 0.0)
     yield "id", robot.id
     yield "mission", program.name
+    yield "plan", program.fingerprint
     yield "fleet", tuple(each.id for each in program.robots)
     yield "log", log_name(robot.id)
     yield "vehicle", context.vehicle.name

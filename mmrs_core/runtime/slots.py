@@ -115,7 +115,7 @@ def shared_bus(
         records: the steps that these robots made before; None: they are not started again.
 
     Raises:
-        Doubled: if another process runs one of these robots.
+        Unwelcome: if another process runs one of these robots.
         OSError: if the folder cannot be written, or the carrier cannot begin.
         ValueError: if the folder holds slots of another run, or of an earlier start.
     """
@@ -142,6 +142,7 @@ def node_of(
     return Node(
         [members[robot] for robot in robots],
         run,
+        plan=program.fingerprint,
         carrier=carrier,
         journals=lambda robot: FileJournal(paths[robot]),
         recorded=recorded,

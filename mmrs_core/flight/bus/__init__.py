@@ -15,7 +15,7 @@ from .meeting import PATIENCE, Beginning, Incomplete, begin_together
 from .members import Member, Recorded
 from .node import Node
 from .owner import Owned
-from .watching import Doubled
+from .watching import Unwelcome
 from .words import CommandId, SlotId, SlotState
 
 __all__ = [
@@ -24,7 +24,6 @@ __all__ = [
     "Carrier",
     "CommandId",
     "Delivery",
-    "Doubled",
     "FileJournal",
     "Hub",
     "Incomplete",
@@ -35,5 +34,6 @@ __all__ = [
     "Recorded",
     "SlotId",
     "SlotState",
+    "Unwelcome",
     "begin_together",
 ]

@@ -57,9 +57,10 @@ class Answering:
             return self._meeting.answer(request, self._watching.is_gone)
         if isinstance(request, Leave):
             return self._see_off(robot, request)
-        if isinstance(request, Begin):
+        answer = self._owners.answer(robot, request, self._now(), here=here)
+        if isinstance(request, Begin) and answer.what != "refused":
             self._watching.left.discard(request.id.sender)
-        return self._owners.answer(robot, request, self._now(), here=here)
+        return answer
 
     def _see_off(self, robot: str, farewell: Leave) -> Answer:
         sender = farewell.id.sender

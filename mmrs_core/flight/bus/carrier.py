@@ -25,6 +25,10 @@ class Station(Protocol):
         """Take note that a robot of another process can be reached, or no longer."""
         ...
 
+    def stranger(self, robot: str, here: bool) -> None:
+        """Take note that a robot is there by another plan of the mission, or no longer."""
+        ...
+
     def shown(self, robot: str) -> str:
         """Return the state of the slots of one of this process's robots, for whoever looks on."""
         ...

@@ -211,6 +211,11 @@ class Notice:
         self._pause = SHORTEST_PAUSE * 4
 
     @property
+    def waiting(self) -> tuple[str, ...]:
+        """Return who has still to answer."""
+        return tuple(self._open)
+
+    @property
     def is_over(self) -> bool:
         """Return whether nothing is left to do."""
         return not self._open

@@ -35,5 +35,33 @@ class Latest:
             self._settled[id.sender] = True
 
 
+class Starts:
+    """Knows which starts of each sender were heard of.
+
+    One that is no later than those and is none of them knows nothing of what the sender did before.
+    """
+
+    def __init__(self) -> None:
+        """Know of no start."""
+        self._known: dict[str, set[str]] = {}
+
+    def admits(self, id: CommandId) -> bool:
+        """Return whether a start of a sender is known, or later than all that are."""
+        known = self._known.get(id.sender, set())
+        return id.incarnation in known or all(_number(id.incarnation) > _number(each) for each in known)
+
+    def is_first(self, id: CommandId) -> bool:
+        """Return whether no other start of a sender is known."""
+        return self._known.get(id.sender, set()) <= {id.incarnation}
+
+    def add(self, id: CommandId) -> None:
+        """Take note of a start of a sender."""
+        self._known.setdefault(id.sender, set()).add(id.incarnation)
+
+
+def _number(incarnation: str) -> str:
+    return incarnation.partition("-")[0]
+
+
 def _place(id: CommandId, round: int) -> tuple[str, int, int]:
     return id.incarnation, id.sequence, round

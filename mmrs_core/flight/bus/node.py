@@ -20,7 +20,7 @@ from .owners import Owners
 from .pacing import Pacing
 from .reading import written
 from .troubles import Keeping, Net, Tell, tell_people
-from .watching import Watching, refuse_doubles
+from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
 from .words import (
     LARGEST,
     REACH,
@@ -56,6 +56,7 @@ class Node:
         members: Sequence[Member],
         run: str,
         *,
+        plan: str = "",
         carrier: Carrier | None = None,
         journals: Callable[[str], Journal] = lambda robot: NoJournal(),
         recorded: Mapping[str, Recorded] | None = None,
@@ -71,6 +72,7 @@ class Node:
         Args:
             members: the robots of this process.
             run: identifier of the run; nothing of other runs is heard.
+            plan: what tells this plan of the mission from others; robots of others are refused.
             carrier: to robots of other processes; None: there are none.
             journals: what survives this process, by robot.
             recorded: by robot, what the logs say of those that are started again.
@@ -79,17 +81,18 @@ class Node:
             threaded: whether to repeat by itself what is not answered; else `pump` must be called.
             chance: for pauses between tries.
             tell: tells people what goes wrong here, from any thread.
-            settle: seconds to look whether other processes run the same robots; 0: nobody looks.
+            settle: seconds to look whether these robots can take part; 0: nobody looks.
 
         Raises:
-            Doubled: another process runs one of the robots.
+            Unwelcome: another process runs one of the robots, or others are there by another plan of the
+                mission, or know of an earlier start that this one does not.
             OSError: a journal cannot be read or written, or the carrier cannot begin.
             ValueError: a journal is damaged, or holds another run or an earlier start of a robot that
                 is not started again.
         """
         self.lock = threading.Condition(threading.RLock())
         self.now = now
-        self._run, self._alone = run, carrier is None
+        self._run, self._alone = f"{run} of plan {plan}" if plan else run, carrier is None
         self._watching = Watching(lease)
         self._members = {member.owned.robot: member for member in members}
         given = recorded or {}
@@ -97,7 +100,7 @@ class Node:
         self._keeping = keeping = Keeping(self._net, now)
         self._owners = Owners(
             members,
-            run,
+            self._run,
             lambda robot: keeping.watched(robot, journals(robot)),
             given,
             self._watching,
@@ -110,23 +113,40 @@ class Node:
         self._chance = chance or random.Random()
         carrying = carrier or NoCarrier()
         self._courier = Courier(carrying, self._net)
-        self._begin(settle)
-        for robot, member in self._members.items():
-            if robot in given:
-                self._send(news_of(member, self._id_of(robot), given[robot]))
+        self._begin(given, settle)
+        for robot in self._members:
             carrying.appear(robot)
         self.pump()
 
-    def _begin(self, settle: float) -> None:
-        """Open the carrier, and begin if nobody else runs these robots."""
+    def _begin(self, recorded: Mapping[str, Recorded], settle: float) -> None:
+        """Open the carrier, and begin if these robots can take part."""
         self._courier.open(self)
         try:
-            refuse_doubles(self._watching, settle, self.now)
+            refuse_oddities(self._watching, settle, self.now)
             self._owners.begin()
+            self._introduce(recorded, settle)
         except BaseException:
             self._pacing.is_over = True
             self._courier.close()
             raise
+
+    def _introduce(self, recorded: Mapping[str, Recorded], settle: float) -> None:
+        """Tell all that robots have to do with that they start, and wait for those who are there."""
+        told = [
+            news_of(member, self._id_of(robot), recorded.get(robot, Recorded()))
+            for robot, member in self._members.items()
+            if robot in recorded or not self._alone
+        ]
+        for news in told:
+            self._send(news)
+        self.pump()
+        until = self.now() + settle
+        with self.lock:
+            while self.now() < until and any(self._watching.are_here(news.waiting) for news in told):
+                self.lock.wait(0.05)
+            for news in told:
+                for owner, why in news.refusals.items():
+                    raise Unwelcome(f"{owner!a}: {why}")
 
     @property
     def robots(self) -> tuple[str, ...]:
@@ -149,13 +169,13 @@ class Node:
     def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
-        Where there are robots of other processes, the incarnation is this node's, which grows.
+        Where there are robots of other processes, run and incarnation are those of this node.
         """
         parts: dict[str, tuple[str, ...]] = {}
         for owner, slot in slots:
             parts[owner] = (*parts.get(owner, ()), slot)
         if not self._alone:
-            id = replace(id, incarnation=self.incarnation)
+            id = replace(id, run=self._run, incarnation=self.incarnation)
             self._take_part(id.sender)
         errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
         with self.lock:
@@ -308,7 +328,7 @@ class Node:
         with self.lock:
             now = self.now()
             if robot in self._members:
-                self._watching.doubled(robot, here, now)
+                self._watching.odd(robot, TWICE, here, now)
                 self._pacing.keep_going()
                 return
             self._watching.noticed(robot, here, now)
@@ -316,6 +336,12 @@ class Node:
                 self._outbox.back(robot, now)
             self._pacing.keep_going()
         self._tell_changed()
+
+    def stranger(self, robot: str, here: bool) -> None:
+        """Take note that a robot is there by another plan of the mission, or no longer."""
+        with self.lock:
+            self._watching.odd(robot, OTHERWISE, here, self.now())
+            self._pacing.keep_going()
 
     def shown(self, robot: str) -> str:
         """Return the state of a robot's slots as a JSON object."""
@@ -335,7 +361,7 @@ class Node:
             gone = self._outbox.sweep()
             ended = self._owners.end_lost(now)
             silent, back = self._keeping.look()
-            self._tell_doubles(now)
+            self._tell_oddities(now)
             self._pacing.keep_going()
         # Carriers may take other locks, or wait: never with ours.
         for errand, message in work:
@@ -349,9 +375,9 @@ class Node:
         if work or ended or silent or back:
             self._tell_changed()
 
-    def _tell_doubles(self, now: float) -> None:
-        for robot in self._watching.lasting_doubles(now):
-            self._net.forget(words := f"{robot!a} is run by another process, too: end one of them")
+    def _tell_oddities(self, now: float) -> None:
+        for what in self._watching.lasting_oddities(now):
+            self._net.forget(words := f"{what}: end one of them")
             self._net.tell(words)
 
     def _appear(self, robots: Iterable[str]) -> None:
@@ -382,6 +408,8 @@ class Node:
         def take(answer: Answer) -> None:
             with self.lock:
                 errand.answered(message.owner, _round(message.request), answer, self.now())
+                if answer.what == "refused" and isinstance(message.request, Begin):
+                    self._net.tell(f"{message.owner!a} refuses {message.sender!a}: {answer.why}")
                 gone = self._outbox.sweep()
             self._courier.vanish(gone)
             self._tell_changed()
@@ -401,7 +429,7 @@ class Node:
 
     def _next_due(self) -> float:
         """Return when there is something to do; inf: never."""
-        ends = (self._owners.next_end(), self._keeping.due, self._watching.next_double())
+        ends = (self._owners.next_end(), self._keeping.due, self._watching.next_oddity())
         return min((*ends, self._outbox.due))
 
 

@@ -69,6 +69,7 @@ class ZenohCarrier:
         robots: Sequence[str],
         endpoints: Endpoints,
         tell: Tell = tell_people,
+        plan: str = "",
     ) -> None:
         """Keep what is needed to begin.
 
@@ -78,18 +79,20 @@ class ZenohCarrier:
             robots: all of the mission that this process may have to do with, its own included.
             endpoints: how peers are reached.
             tell: tells people what goes wrong here, from any thread.
+            plan: what tells this plan of the mission from others.
         """
         self._net = Net(tell)
         self._prefix = f"mmrs/{digest(mission)}/{digest(run)}"
         self._names = {digest(robot): robot for robot in robots}
         self._endpoints = endpoints
-        self._start = uuid.uuid4().hex[:12]
+        self._plan = digest(plan)
+        self._start = f"{uuid.uuid4().hex[:12]}-{self._plan}"
         self._station: Station | None = None
         self._own: set[str] = set()
         self._session: Any = None
         self._declared: list[Any] = []
         self._tokens: dict[str, Any] = {}
-        self._there: dict[str, set[str]] = {}
+        self._there: dict[tuple[str, bool], set[str]] = {}
         self._work: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._worker = threading.Thread(target=self._serve_all, name="bus answers", daemon=True)
         self._closing = threading.Lock()
@@ -214,12 +217,13 @@ class ZenohCarrier:
         name = self._names.get(robot)
         if name is None or start == self._start or self._station is None:
             return
-        there = self._there.setdefault(name, set())
+        fits = start.endswith(f"-{self._plan}")
+        there = self._there.setdefault((name, fits), set())
         if sample.kind == zenoh.SampleKind.DELETE:
             there.discard(start)
         else:
             there.add(start)
-        self._station.noticed(name, bool(there))
+        (self._station.noticed if fits else self._station.stranger)(name, bool(there))
 
     def _parts(self, key: Any) -> tuple[str, str]:
         """Return whose key it is and what it ends with; empty where it is none of ours or stands for many."""

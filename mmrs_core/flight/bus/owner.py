@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from .journal import Journal
-from .latest import Latest
+from .latest import Latest, Starts
 from .reading import Unreadable
 from .remembered import (
     Line,
@@ -100,7 +100,7 @@ class Owner:
         self._lost = lost or (lambda sender, now: False)
         self._slots = {name: Slot(SlotState(lamport=floor)) for name in owned.slots}
         self._applied: set[CommandId] = set()
-        self._latest = Latest()
+        self._latest, self._starts = Latest(), Starts()
         self._begun: dict[str, str] = {}
         self._left: set[str] = set()
         for number, line in enumerate(journal.lines(), start=1):
@@ -157,18 +157,23 @@ class Owner:
 
     def withdraw(self, given_up: Withdraw) -> Answer:
         """Free what was kept for a command."""
+        if why := self._fault(given_up.id, (), True):
+            return Answer("refused", why=why)
         if any(slot.may_be_reset_by(given_up.id) for slot in self._slots.values()):
             self._journal.keep(freed_line(given_up))
         self._free(given_up)
         return Answer("done")
 
     def begin(self, begun: Begin) -> Answer:
-        """Apply what a restarted sender had recorded, and free what was kept for it before."""
+        """Apply what a sender that starts had recorded, and free what was kept for it before."""
+        why = self._fault(begun.id, (), True)
         for name, active, _ in begun.recorded:
-            if why := self._fault(begun.id, (name,), active):
-                return Answer("refused", why=why)
+            why = why or self._fault(begun.id, (name,), active)
+        if why:
+            return Answer("refused", why=why)
         if self._begun.get(begun.id.sender, "") < begun.id.incarnation:
-            self._journal.keep(begun_line(begun))
+            if begun.recorded or not self._starts.is_first(begun.id):
+                self._journal.keep(begun_line(begun))
             self._apply_recorded(begun)
         return Answer("done")
 
@@ -239,6 +244,8 @@ class Owner:
         """Return what is wrong with a command; empty if nothing is."""
         if id.run != self._run and not self._trusting:
             return f"run {id.run!a}: this is run {self._run!a}"
+        if not self._trusting and not self._starts.admits(id):
+            return f"{id.sender!a} was started before in this run: resume it from its log"
         for name in names:
             if name not in self._slots:
                 return f"{self.robot!a} has no slot {name!a}"
@@ -254,7 +261,7 @@ class Owner:
             self._journal.keep(kept_line(asked, kept.most))
         for slot in slots:
             slot.keep(kept)
-        self._latest.open(asked.id, asked.round)
+        self._open(asked)
         return Answer("granted", least)
 
     def _apply(self, sent: Commit) -> None:
@@ -280,7 +287,12 @@ class Owner:
             slot.free(given_up.id, given_up.round)
         self._settle(given_up.id, given_up.round)
 
+    def _open(self, asked: Prepare) -> None:
+        self._starts.add(asked.id)
+        self._latest.open(asked.id, asked.round)
+
     def _settle(self, id: CommandId, round: int = 0) -> None:
+        self._starts.add(id)
         self._latest.settle(id, round, for_good=id in self._applied)
 
     def _see_off(self, sender: str, lamport: int) -> None:
@@ -314,4 +326,4 @@ class Owner:
         """Keep slots as before; nothing was heard of the sender since, so it is in doubt at once."""
         for name in asked.slots:
             self._slots[name].kept = Kept(asked.id, asked.round, asked.active, most, float("-inf"))
-        self._latest.open(asked.id, asked.round)
+        self._open(asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from .journal import Journal
@@ -61,7 +62,7 @@ class Owners:
         self._watching, self._alone = watching, trusting
         watching.left.update(*(owner.left for owner in self._owners.values()))
         self._number = self._next_start(recorded)
-        self.incarnation = f"{self._number:08d}"
+        self.incarnation = f"{self._number:08d}-{uuid.uuid4().hex[:8]}"
 
     def __contains__(self, robot: str) -> bool:
         """Return whether a robot is one of this process."""

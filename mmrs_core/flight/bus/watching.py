@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 DOUBLE_SECONDS = 3.0
 """How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
 
 
-class Doubled(OSError):  # noqa: N818  # what is the matter with a robot
-    """A robot that another process runs, too."""
+TWICE = "another process runs it on this bus, too"
+OTHERWISE = "it is on this bus by another plan of the mission"
+
+
+class Unwelcome(OSError):  # noqa: N818  # what is the matter with a robot
+    """A robot that cannot take part: others do that it does not go together with."""
 
 
 class Watching:
@@ -26,34 +30,42 @@ class Watching:
         self._lease = lease
         self._here: set[str] = set()
         self._lost_at: dict[str, float] = {}
-        self._doubled: dict[str, float] = {}
+        self._odd: dict[str, float] = {}
         self._told: set[str] = set()
 
-    def doubled(self, robot: str, here: bool, now: float) -> None:
-        """Take note that a robot of this process is run by another one, too, or no longer."""
+    def odd(self, robot: str, what: str, here: bool, now: float) -> None:
+        """Take note that something is the matter with a robot that is there, or no longer.
+
+        Args:
+            robot: of any process.
+            what: is the matter.
+            here: whether it is.
+            now: seconds of the node's clock.
+        """
+        words = f"{robot!a}: {what}"
         if here:
-            self._doubled.setdefault(robot, now)
+            self._odd.setdefault(words, now)
         else:
-            self._doubled.pop(robot, None)
-            self._told.discard(robot)
+            self._odd.pop(words, None)
+            self._told.discard(words)
 
-    def doubles(self) -> tuple[str, ...]:
-        """Return the robots of this process that another one runs, too."""
-        return tuple(self._doubled)
+    def oddities(self) -> tuple[str, ...]:
+        """Return what is the matter, in words."""
+        return tuple(self._odd)
 
-    def lasting_doubles(self, now: float) -> tuple[str, ...]:
-        """Return those that have been so for long, each once."""
+    def lasting_oddities(self, now: float) -> tuple[str, ...]:
+        """Return what has been the matter for long, each once."""
         found = [
-            robot
-            for robot, since in self._doubled.items()
-            if robot not in self._told and now >= since + DOUBLE_SECONDS
+            words
+            for words, since in self._odd.items()
+            if words not in self._told and now >= since + DOUBLE_SECONDS
         ]
         self._told.update(found)
         return tuple(found)
 
-    def next_double(self) -> float:
-        """Return when `lasting_doubles` may have one; inf: never."""
-        untold = (since for robot, since in self._doubled.items() if robot not in self._told)
+    def next_oddity(self) -> float:
+        """Return when `lasting_oddities` may have one; inf: never."""
+        untold = (since for words, since in self._odd.items() if words not in self._told)
         return min((since + DOUBLE_SECONDS for since in untold), default=float("inf"))
 
     def noticed(self, robot: str, here: bool, now: float) -> None:
@@ -68,6 +80,10 @@ class Watching:
     def is_here(self, robot: str) -> bool:
         """Return whether a robot can be reached."""
         return robot in self._here
+
+    def are_here(self, robots: Iterable[str]) -> bool:
+        """Return whether any of these robots can be reached."""
+        return not self._here.isdisjoint(robots)
 
     def is_unseen(self, robot: str) -> bool:
         """Return whether a robot has never been here, and has told nobody here that it has ended."""
@@ -88,16 +104,16 @@ class Watching:
         return at is not None and now >= at
 
 
-def refuse_doubles(watching: Watching, settle: float, now: Callable[[], float]) -> None:
-    """Return when nobody else has been seen for so many seconds to run robots of this process.
+def refuse_oddities(watching: Watching, settle: float, now: Callable[[], float]) -> None:
+    """Return when nothing has been the matter for so many seconds with who is there.
 
     Raises:
-        Doubled: another process runs one of them, and goes on doing so.
+        Unwelcome: something is, and does not end.
     """
     begun = now()
     while (left := begun + settle - now()) > 0:
         time.sleep(min(left, 0.05))
-    while settle and (there := watching.doubles()):
+    while settle and (found := watching.oddities()):
         if now() - begun > settle + DOUBLE_SECONDS:
-            raise Doubled(f"{', '.join(map(ascii, there))}: another process runs it on this bus already")
+            raise Unwelcome("; ".join(found))
         time.sleep(0.05)

@@ -25,8 +25,9 @@ class CommandId:
     """What makes a notify recognisable however often it arrives.
 
     Attributes:
-        run: identifier of the run. sender: the notifying robot. incarnation: differs each time that
-            the sender is started, and grows as text. sequence: counted by the sender, never used twice.
+        run: identifier of the run. sender: the notifying robot. incarnation: grows as text each
+            time that the sender is resumed; behind a ``-``, what tells starts apart that know nothing of each
+            other. sequence: counted by the sender, never used twice.
     """
 
     run: str

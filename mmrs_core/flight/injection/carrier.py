@@ -124,6 +124,9 @@ class _Gate:
         if not self._cut():
             self._station.noticed(robot, here)
 
+    def stranger(self, robot: str, here: bool) -> None:
+        self._station.stranger(robot, here)
+
     def shown(self, robot: str) -> str:
         return self._station.shown(robot)
 

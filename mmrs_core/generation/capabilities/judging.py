@@ -101,9 +101,17 @@ class Trial:
         return False
 
     def _written(self, input: TargetInput) -> dict[str, bytes]:
-        """Return what is rendered; not what is copied, which is the same for every behaviour."""
+        """Return what is rendered for this behaviour.
+
+        Not what is copied, which is the same for every behaviour, nor the fingerprint, which never is.
+        """
+        mark = input.program.fingerprint.encode()
         specs = self._target.files(input)
-        return {spec.path: self._press.content(spec)[0] for spec in specs if spec.source is None}
+        return {
+            spec.path: self._press.content(spec)[0].replace(mark, b"")
+            for spec in specs
+            if spec.source is None
+        }
 
 
 def _short(reason: str) -> str:

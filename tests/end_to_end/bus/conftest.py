@@ -48,6 +48,7 @@ class Ends:
         run: str = RUN,
         listens: bool = True,
         settle: float = 0.0,
+        plan: str = "",
     ) -> Node:
         """Open an end for a robot, with its own certificate if there are any and no other is given."""
         endpoints = self.endpoints(robot, certificate, listens)
@@ -55,11 +56,12 @@ class Ends:
         member = Member(Owned(robot, ("go",), {"go": others}, {"go": others}), frozenset(others))
         folder = self.folder / f"{robot} {len(self.nodes)}"
         folder.mkdir()
-        carrier = ZenohCarrier("mission", run, NAMES, endpoints)
+        carrier = ZenohCarrier("mission", run, NAMES, endpoints, plan=plan)
         journals = lambda id: FileJournal(folder / f"{id}.ndjson")  # noqa: E731
         node = Node(
             [member],
             run,
+            plan=plan,
             carrier=carrier,
             journals=journals,
             tell=lambda line: self.tell(line),

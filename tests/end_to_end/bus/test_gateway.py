@@ -15,8 +15,11 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.flight.bus import CommandId, Member, Node, Owned
+from mmrs_core import pipeline
+from mmrs_core.flight.bus import CommandId
 from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.languages.reading import read_model
+from mmrs_core.runtime.slots import node_of
 
 RUN = "run-0"
 LEASE = 1.5
@@ -114,11 +117,12 @@ def client(gateway):
 
 
 @pytest.fixture
-def peer(behaviour, ends, tmp_path):
+def peer(behaviour, contributions, ends, tmp_path):
     """Return the bus of robot 'b', by Zenoh in this process."""
-    carrier = ZenohCarrier("pair", RUN, ("a", "b"), Endpoints(connect=(f"tcp/127.0.0.1:{ends.ports['a']}",)))
-    member = Member(Owned("b", ("go",), {"go": ("a",)}, {"go": ("a",)}), frozenset({"a"}))
-    node = Node([member], RUN, carrier=carrier)
+    program = pipeline.program_of(read_model(behaviour, contributions.languages).roots[0], contributions)
+    reached = Endpoints(connect=(f"tcp/127.0.0.1:{ends.ports['a']}",))
+    carrier = ZenohCarrier("pair", RUN, ("a", "b"), reached, plan=program.fingerprint)
+    node = node_of(program, ["b"], RUN, tmp_path / "b", carrier, None)
     yield node
     node.close()
 

@@ -12,7 +12,7 @@ import bus_walking
 import pytest
 from bus_walking import RUN, exchange
 
-from mmrs_core.flight.bus import Doubled
+from mmrs_core.flight.bus import Unwelcome
 from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
 from mmrs_core.runtime.slots import shared_bus
 
@@ -97,7 +97,7 @@ def test_a_robot_that_is_killed_has_not_ended_and_its_answer_is_awaited(ends, un
 def test_a_robot_that_another_process_runs_is_refused(ends, until, notify):
     a, b = ends.open("a"), ends.open("b")
     until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
-    with pytest.raises(Doubled, match="'a': another process runs it on this bus already"):
+    with pytest.raises(Unwelcome, match="'a': another process runs it on this bus, too"):
         ends.open("a", listens=False, settle=1.0)
     assert not b.lost(["a"])
     assert notify(b, "b", "a")
@@ -111,7 +111,29 @@ def test_people_are_told_of_a_robot_that_two_processes_run_although_nobody_looke
         ends.open(robot)
     ends.open("a", listens=False)
     until(lambda: len(told) == 2, 8.0)
-    assert set(told) == {"'a' is run by another process, too: end one of them"}
+    assert set(told) == {"'a': another process runs it on this bus, too: end one of them"}
+
+
+def test_robots_of_another_plan_of_the_mission_are_refused(ends, until):
+    told = []
+    ends.tell = told.append
+    a = ends.open("a", plan="first")
+    with pytest.raises(Unwelcome, match="'a': it is on this bus by another plan of the mission"):
+        ends.open("b", plan="second", settle=1.0)
+    assert a.missing(["b"]) == ("b",)
+    ends.open("c", plan="second")
+    until(lambda: told, 8.0)
+    assert told == ["'a': it is on this bus by another plan of the mission: end one of them"]
+
+
+def test_a_robot_that_is_started_afresh_within_a_run_is_refused(ends, until, notify):
+    a, b = ends.open("a"), ends.open("b")
+    until(lambda: not a.missing(["b"]) and not b.missing(["a"]))
+    assert notify(b, "b", "a")
+    b.close()
+    until(lambda: a.lost(["b"]))
+    with pytest.raises(Unwelcome, match="'a': 'b' was started before in this run: resume it from its log"):
+        ends.open("b", settle=1.0)
 
 
 def test_nothing_of_another_run_is_heard(ends, notify):

@@ -153,8 +153,33 @@ def test_what_was_recorded_and_applied_before_is_not_applied_again(owner):
 
 
 def test_an_older_start_of_a_sender_is_not_heard_any_more(owner):
+    owner.prepare(prepare(1, incarnation="1"), 0.0)
     owner.begin(Begin(id(0, incarnation="2"), ()))
     assert owner.prepare(prepare(9, incarnation="1"), 0.0).what == "stale"
+
+
+@pytest.mark.parametrize("incarnation", ["2-other", "1-other", "1"])
+def test_a_start_of_a_sender_that_does_not_know_of_an_earlier_one_is_refused(owner, incarnation):
+    owner.commit(commit(1, incarnation="2-first"))
+    for answer in (
+        owner.begin(Begin(id(0, incarnation=incarnation), ())),
+        owner.prepare(prepare(9, incarnation=incarnation), 0.0),
+        owner.commit(commit(9, 9, incarnation=incarnation)),
+    ):
+        assert answer.what == "refused"
+        assert answer.why == "'a' was started before in this run: resume it from its log"
+
+
+def test_starts_are_remembered_by_the_journal(owner, journal):
+    owner.commit(commit(1, incarnation="1-first"))
+    again = Owner(OWNED, "run", journal)
+    assert again.prepare(prepare(2, incarnation="1-other"), 0.0).what == "refused"
+    assert again.prepare(prepare(2, incarnation="2-second"), 0.0).what == "granted"
+
+
+def test_a_first_start_leaves_nothing_in_the_journal(owner, journal):
+    owner.begin(Begin(id(0), ()))
+    assert list(journal.lines()) == []
 
 
 @pytest.mark.parametrize(
