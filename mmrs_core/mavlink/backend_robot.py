@@ -5,33 +5,23 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from math import inf
-
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
 from mmrs_core.flight.faults import Fault as VehicleFault
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.radios import Radios
-from mmrs_core.flight.objects import Locator
-from mmrs_core.flight.program import Action as VehicleAction
-from mmrs_core.flight.program import Land, Policy, Recharge, Robot, TakeOff
-from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.program import Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
-from mmrs_core.flight.steps.equipping import equip
 from mmrs_core.flight.steps.obeying import obeying
-from mmrs_core.flight.steps.responses import BLOCKED, NEEDS_POSITION, alone, policy_for, respond
+from mmrs_core.flight.steps.responses import NEEDS_POSITION, respond
 from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
-from mmrs_core.flight.vehicles.recognition import recognise
-from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend_equipment import Equipment
+from mmrs_core.mavlink.backend_lost_link import LostLink
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
 from mmrs_core.mavlink.backend_recovery import WayBack
+from mmrs_core.mavlink.backend_setup import Setup
 from mmrs_core.mavlink.backend_worker import Job, Worker
 
 HANDS_OFF = "NOTHING"
@@ -39,59 +29,21 @@ FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
 
-@dataclass(frozen=True, slots=True)
-class Equipment:
-    """What a robot is driven with.
-
-    Attributes:
-        joules: that its batteries hold when full; None where nobody says.
-        locators: what finds objects, by description.
-        box: None where no logs are kept.
-        resumed: whether the vehicle may be in the air at first.
-        passed, begun: what it had done by then.
-        system: of the vehicle when the run began; 0: nobody knows.
-        action: an action of the behaviour as one of the vehicle's program.
-        start: to be called once the robot gets ready, for faults that are made on purpose.
-        let_go: to be called before the link is closed.
-    """
-
-    url: str
-    link: Link
-    vehicle: MavlinkVehicle
-    radios: Radios
-    clock: Clock
-    ground: Ground
-    joules: float | None
-    locators: Mapping[str, Locator]
-    box: BlackBox | None
-    resumed: bool
-    passed: tuple[str, ...]
-    begun: str
-    system: int
-    say: Callable[[str], None]
-    wake: Callable[[], None]
-    action: Callable[[Action], VehicleAction]
-    start: Callable[[], None]
-    let_go: Callable[[], None]
-
-
 class MavlinkBackend:
     """Drives one robot; a thread of its own waits for the vehicle, so that every call returns at once."""
 
     def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
         """Listen to the vehicle; it is told nothing before it is to get ready."""
-        self._robot, self._with, self._options = robot, equipment, options
-        self._policies: Sequence[Policy] = ()
+        self._robot, self._with = robot, equipment
+        self._lost_link = LostLink(robot, equipment.vehicle)
         self._watch = self._new_watch()
-        self._alone = self._wanted = alone(policy_for(LINK_LOST, robot), robot)
-        self._worker = Worker(
-            f"robot {robot.id!a}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
-        )
-        self._worker.changed = equipment.wake
-        equipment.link.guard = self._worker.guard
         self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
         self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
-        self._uploads = uploads_of(robot, fenced=options.fence)
+        uploads = uploads_of(robot, fenced=options.fence)
+        self._flights = uploads.flights
+        self._setup = Setup(
+            robot, equipment, options, uploads, self._watch, self._lost_link, self._way, self.note
+        )
         self._steps = {step.move: step for step in robot.steps}
         self._move = ""
         self._passed: set[str] = set()
@@ -102,22 +54,27 @@ class MavlinkBackend:
         self._holding = self._hands_off = False
         self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
-        self._ready = False
+        # Last: it looks at all of the above from now on.
+        self._worker = Worker(
+            f"robot {robot.id!a}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
+        )
+        self._worker.changed = equipment.wake
+        equipment.link.guard = self._worker.guard
 
     def prepare(self, now: float) -> None:
         """Begin to wait for the vehicle, and to set it up."""
         self._with.start()
-        self._begin(Job(self._meet, self._set_up))
+        self._begin(Job(self._setup.meet, self._setup.set_up))
 
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
-        self._follow(())
+        self._lost_link.follow(())
         self._move = move.id
         self._stand_or_go(move.id)
         if move.id in self._under_way[1:]:
             return
         self._passed.clear()
-        flight = self._uploads.flights.get(move.id)
+        flight = self._flights.get(move.id)
         if flight is not None:
             self._under_way = flight.run.moves
             self._begin(self._moves.run(flight, self._pass))
@@ -151,8 +108,8 @@ class MavlinkBackend:
     def wait(self, now: float) -> None:
         """Hold the pose, with the policies of the wait."""
         then = self._steps[self._move].then if self._move else None
-        self._follow(then.policies if then is not None else ())
-        if self._wanted != self._alone:
+        self._lost_link.follow(then.policies if then is not None else ())
+        if self._lost_link.is_due:
             self._begin(Job())
 
     def state(self, now: float) -> RobotState:
@@ -212,7 +169,7 @@ class MavlinkBackend:
         self._handled.clear()
         self._move = begun or (passed[-1] if passed else "")
         job = self._way.job(passed, begun)
-        job.first(self._take_up)
+        job.first(self._setup.take_up)
         self._begin(job, afresh=True)
 
     def pause(self, now: float) -> None:
@@ -249,15 +206,15 @@ class MavlinkBackend:
             self._with.box.close()
 
     def _begin(self, job: Job, *, afresh: bool = False) -> None:
-        if self._wanted != self._alone:
-            job.first(self._instruct)
+        if self._lost_link.is_due:
+            job.first(self._lost_link.tell_again)
         fresh = afresh or (self._seen is not None and self._seen is self._worker.fault)
         self._worker.begin(job, afresh=fresh)
 
     def _new_watch(self) -> Watch:
         watch = Watch(self._robot, self._with.clock, threading.Event())
         watch.begin(self._with.link, self._with.vehicle)
-        watch.current = lambda: self._policies
+        watch.current = lambda: self._lost_link.policies
         watch.track = lambda: self._moves.track
         watch.decide, watch.say = self._note_decision, self._with.say
         return watch
@@ -271,61 +228,13 @@ class MavlinkBackend:
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
-        if self._ready and not self._hands_off:
+        if self._setup.is_done and not self._hands_off:
             self._with.vehicle.rest(0.0)
         else:
             self._watch.check()
 
     def _halt(self) -> None:
         self._with.vehicle.hold()
-
-    def _meet(self) -> None:
-        patience = self._options.patience * self._with.clock.speedup
-        self._with.say(f"waits for a vehicle at {self._with.url}")
-        self._with.radios.meet(self._with.link, self._with.url, patience)
-
-    def _set_up(self) -> None:
-        """Have the vehicle know what it must, once it is known to be the robot's."""
-        vehicle, robot = self._with.vehicle, self._robot
-        self._watch.renew()
-        self._recognise()
-        if self._with.resumed:
-            vehicle.hold()
-        if self._alone != policy_for(LINK_LOST, robot, self._policies):
-            self._with.say(BLOCKED)
-        vehicle.answer_lost_link(self._alone.response, self._alone.after)
-        equip(robot, vehicle, self._uploads, self._with.say)
-        self._note_start()
-        self._ready = True
-        if vehicle.state().energy is None:
-            self._with.say("does not tell its battery: nobody will notice when it is low")
-        self._watch.tell_missing()
-
-    def _recognise(self) -> None:
-        """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
-        resumed, tolerance = self._with.resumed, self._options.home_tolerance
-        recognise(
-            self._with.link,
-            self._with.vehicle,
-            self._robot,
-            inf if resumed else tolerance,
-            under_way=resumed,
-            system=self._with.system,
-        )
-        if resumed and not self._ready:
-            self._way.check(self._with.passed, self._with.begun)
-
-    def _note_start(self) -> None:
-        beat = self._with.link.latest("HEARTBEAT")
-        firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
-        content = {
-            "link": self._with.url,
-            "vehicle": self._robot.vehicle,
-            "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
-            "home": self._robot.home,
-            "system": self._with.link.system,
-        }
-        self.note("start", content)
 
     def _leave_it_holding(self) -> None:
         """Have a vehicle that holds stay where it is when nobody talks to it any more."""
@@ -335,13 +244,6 @@ class MavlinkBackend:
             time.sleep(0.01)
         if not self._worker.done:
             self._with.say("may not stay where it is when this program has ended")
-
-    def _take_up(self) -> None:
-        """Heed everything again; a vehicle that has started anew, as with a new battery, is set up again."""
-        restarted = self._watch.restarted
-        self._watch.tighten()
-        if restarted:
-            self._set_up()
 
     def _possible(self, found: VehicleFault | None, response: str) -> str:
         """Return the response, or to come down where nobody knows the position that it needs."""
@@ -369,16 +271,6 @@ class MavlinkBackend:
     def _pass(self, move: str) -> None:
         self._passed.add(move)
         self._with.wake()
-
-    def _follow(self, policies: Sequence[Policy]) -> None:
-        """Take up the policies of a wait, and tell the vehicle what it must do without us then."""
-        self._policies = policies
-        self._wanted = alone(policy_for(LINK_LOST, self._robot, policies), self._robot)
-
-    def _instruct(self) -> None:
-        if self._wanted != self._alone:
-            self._with.vehicle.answer_lost_link(self._wanted.response, self._wanted.after)
-            self._alone = self._wanted
 
     def _keep(self, kind: str, name: str, content: Mapping[str, object]) -> None:
         self.note(kind, {"name": name, "content": dict(content)})

@@ -1,0 +1,105 @@
+"""What comes before a robot's program: its vehicle is met, recognised, and told what it must know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight.program import Robot
+from mmrs_core.flight.services.uploads import Uploads
+from mmrs_core.flight.steps.equipping import equip
+from mmrs_core.flight.steps.watch import Watch
+from mmrs_core.flight.vehicles.recognition import recognise
+from mmrs_core.mavlink.backend_equipment import Equipment
+from mmrs_core.mavlink.backend_lost_link import LostLink
+from mmrs_core.mavlink.backend_options import LinkOptions
+from mmrs_core.mavlink.backend_recovery import WayBack
+
+
+class Setup:
+    """Gets a vehicle ready, and again where it has started anew.
+
+    Attributes:
+        is_done: whether it was ready once.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        equipment: Equipment,
+        options: LinkOptions,
+        uploads: Uploads,
+        watch: Watch,
+        lost_link: LostLink,
+        way: WayBack,
+        note: Callable[[str, Mapping[str, object]], None],
+    ) -> None:
+        """Do nothing yet; `note` writes into the black box."""
+        self.is_done = False
+        self._robot, self._with, self._options = robot, equipment, options
+        self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
+        self._way, self._note = way, note
+
+    def meet(self) -> None:
+        """Wait for the vehicle.
+
+        Raises:
+            Fault: it does not come in time.
+        """
+        patience = self._options.patience * self._with.clock.speedup
+        self._with.say(f"waits for a vehicle at {self._with.url}")
+        self._with.radios.meet(self._with.link, self._with.url, patience)
+
+    def set_up(self) -> None:
+        """Have the vehicle know what it must, once it is known to be the robot's.
+
+        Raises:
+            Refused: it is not the robot's, or refuses what it must know.
+        """
+        vehicle = self._with.vehicle
+        self._watch.renew()
+        self._recognise()
+        if self._with.resumed:
+            vehicle.hold()
+        self._lost_link.tell(self._with.say)
+        equip(self._robot, vehicle, self._uploads, self._with.say)
+        self._note_start()
+        self.is_done = True
+        if vehicle.state().energy is None:
+            self._with.say("does not tell its battery: nobody will notice when it is low")
+        self._watch.tell_missing()
+
+    def take_up(self) -> None:
+        """Heed everything again; a vehicle that has started anew, as with a new battery, is set up again."""
+        restarted = self._watch.restarted
+        self._watch.tighten()
+        if restarted:
+            self.set_up()
+
+    def _recognise(self) -> None:
+        """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
+        resumed, tolerance = self._with.resumed, self._options.home_tolerance
+        recognise(
+            self._with.link,
+            self._with.vehicle,
+            self._robot,
+            inf if resumed else tolerance,
+            under_way=resumed,
+            system=self._with.system,
+        )
+        if resumed and not self.is_done:
+            self._way.check(self._with.passed, self._with.begun)
+
+    def _note_start(self) -> None:
+        beat = self._with.link.latest("HEARTBEAT")
+        firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
+        content = {
+            "link": self._with.url,
+            "vehicle": self._robot.vehicle,
+            "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
+            "home": self._robot.home,
+            "system": self._with.link.system,
+        }
+        self._note("start", content)
