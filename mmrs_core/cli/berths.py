@@ -25,6 +25,9 @@ SPACING = 0.0001
 """Degrees between vehicles without a model: eleven metres."""
 
 LAST_PORT = 65_535
+GUST_SECONDS = 5.0
+"""How long gusts last where nobody says."""
+
 USUAL_ENERGY = 1200.0
 """Seconds of hovering where nobody says how long a battery lasts."""
 
@@ -65,6 +68,7 @@ class Berths:
     seed: int
     firmware: str
     wind: str
+    gusts: str
     energy: float | None
     recharge: float | None
     parameters: tuple[str, ...]
@@ -102,6 +106,8 @@ class Berths:
                 system=number + 1,
                 firmware=self.firmware,
                 wind=pair(self.wind, "--wind"),
+                gusts=pair(self.gusts if "," in self.gusts else f"{self.gusts},{GUST_SECONDS}", "--gusts"),
+                seed=self.seed,
                 energy=berth.energy if self.energy is None else self.energy,
                 recharge=berth.recharge if self.recharge is None else self.recharge,
                 parameters=dict(map(_parameter, self.parameters)),

@@ -54,6 +54,14 @@ def sitl(
     wind: Annotated[
         str, typer.Option("--wind", metavar="SPEED,FROM", help="Metres a second, degrees it comes from.")
     ] = "0,0",
+    gusts: Annotated[
+        str,
+        typer.Option(
+            "--gusts",
+            metavar="SPEED[,SECONDS]",
+            help="Unrest of the air about the wind: standard deviation, and how long gusts last (5 s).",
+        ),
+    ] = "0",
     energy: Annotated[
         float | None,
         typer.Option(
@@ -77,7 +85,7 @@ def sitl(
     delay: Annotated[
         float, typer.Option("--delay", min=0.0, max=10.0, help="Real seconds that each takes.")
     ] = 0.0,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the losses.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of losses and gusts.")] = 0,
     fault: Annotated[
         _Texts,
         typer.Option(
@@ -116,6 +124,7 @@ def sitl(
         seed=seed,
         firmware=firmware,
         wind=wind,
+        gusts=gusts,
         energy=energy,
         recharge=recharge,
         parameters=tuple(parameter or ()),

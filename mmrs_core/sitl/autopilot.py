@@ -17,6 +17,7 @@ from mmrs_core.sitl import parameters
 from mmrs_core.sitl.battery import Battery
 from mmrs_core.sitl.body import Body, Vector, wind_of
 from mmrs_core.sitl.camera import Camera
+from mmrs_core.sitl.gusts import Gusts
 from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
 from mmrs_core.sitl.settings import PX4, Settings
@@ -64,6 +65,7 @@ class Autopilot:
         """Stand at home, switched on."""
         self.settings = settings
         self.body = Body(wind=wind_of(*settings.wind))
+        self.gusts = Gusts(*settings.gusts, seed=f"{settings.seed} {settings.system}")
         self.battery = Battery(settings.energy, settings.capacity)
         self.camera = Camera()
         self.parameters = parameters.defaults(settings)

@@ -37,10 +37,13 @@ class Body:
         target: where it goes; None: it comes to a halt.
         onward: where it goes from there without a stop; None: it stops there.
         origin: where its leg begins, to which it keeps; None: it goes straight to its target.
+        post: where it came to a halt in gusts, and stays.
         corner_pace: metres per second at which it turns from the leg before.
         cut: metres from a corner at which it goes by.
         speed: commanded, metres per second over ground; climb, descent: limits of the vertical speed.
-        wind: velocity of the air, metres per second north, east and up.
+        wind: mean velocity of the air, metres per second north, east and up.
+        gust: what the air is faster than that, and push: what it carries the vehicle, although that
+            keeps to its way.
         airspeed: the fastest that it is in the air.
         adrift: whether nothing holds it against the wind.
     """
@@ -60,6 +63,9 @@ class Body:
     acceleration: float = 2.5
     turn_rate: float = 90.0
     wind: Vector = STILL
+    gust: Vector = STILL
+    push: Vector = STILL
+    post: Vector | None = None
     airspeed: float = 18.0
     adrift: bool = False
 
@@ -69,7 +75,7 @@ class Body:
             step = min(seconds, STEP)
             seconds -= step
             self._accelerate(self._in_the_wind(self._wanted_velocity()), step)
-            self.position = plus(self.position, self.velocity, step)
+            self.position = plus(self.position, self.motion, step)
             self._turn(step)
 
     def distance_to(self, place: Vector) -> float:
@@ -77,19 +83,30 @@ class Body:
         return hypot(*plus(place, self.position, -1.0))
 
     @property
+    def motion(self) -> Vector:
+        """Return the present velocity over ground, gusts included, metres per second."""
+        return plus(self.velocity, self.push, 1.0)
+
+    @property
+    def air(self) -> Vector:
+        """Return the present velocity of the air, metres per second."""
+        return plus(self.wind, self.gust, 1.0)
+
+    @property
     def pace(self) -> float:
         """Return the present speed over ground in metres per second."""
-        return hypot(*self.velocity)
+        return hypot(*self.motion)
 
     @property
     def air_pace(self) -> float:
         """Return the present horizontal speed in the air, metres per second."""
-        return hypot(self.velocity[0] - self.wind[0], self.velocity[1] - self.wind[1])
+        air = self.air
+        return hypot(self.velocity[0] - air[0], self.velocity[1] - air[1])
 
     def rest_at(self, up: float) -> None:
         """Stand still at a height."""
         self.position = (self.position[0], self.position[1], up)
-        self.velocity = STILL
+        self.velocity = self.push = STILL
         self.target = self.onward = self.origin = None
 
     def leave(self) -> None:
@@ -105,7 +122,8 @@ class Body:
 
     def _wanted_velocity(self) -> Vector:
         if self.target is None:
-            return STILL
+            return self._at_its_post()
+        self.post = None
         way = plus(self.target, self.position, -1.0)
         left = hypot(*way)
         if left < 1e-3:
@@ -120,6 +138,15 @@ class Body:
         if self.origin is not None and left > before:
             return self._along_the_leg(self.origin, self.target, pace)
         return plus(STILL, way, pace / left)
+
+    def _at_its_post(self) -> Vector:
+        """Return a velocity that brings it to a halt and, once there, back from where gusts carry it."""
+        if self.push == STILL or hypot(*self.velocity) > BACK_PACE:
+            self.post = None
+            return STILL
+        self.post = self.post or self.position
+        back = plus(self.post, self.position, -1.0)
+        return plus(STILL, back, min(BACK_RATE, BACK_PACE / max(hypot(*back), 1e-6)))
 
     def _along_the_leg(self, origin: Vector, target: Vector, pace: float) -> Vector:
         """Return a velocity that is parallel to the leg, and a little towards it."""
@@ -164,22 +191,23 @@ class Body:
 
     def _in_the_wind(self, wanted: Vector) -> Vector:
         """Return what of a wanted velocity over ground is left with so much wind."""
+        air = self.air
         if self.adrift:
-            return (self.wind[0], self.wind[1], wanted[2])
-        if self.wind == STILL:
+            return (air[0], air[1], wanted[2])
+        if air == STILL:
             return wanted
-        north, east = wanted[0] - self.wind[0], wanted[1] - self.wind[1]
+        north, east = wanted[0] - air[0], wanted[1] - air[1]
         needed = hypot(north, east)
         if needed <= self.airspeed:
             return wanted
         pace = hypot(wanted[0], wanted[1])
-        ahead = (self.wind[0] * wanted[0] + self.wind[1] * wanted[1]) / pace if pace else 0.0
-        across = hypot(*self.wind[:2]) ** 2 - ahead * ahead
+        ahead = (air[0] * wanted[0] + air[1] * wanted[1]) / pace if pace else 0.0
+        across = hypot(*air[:2]) ** 2 - ahead * ahead
         if pace and across <= self.airspeed**2:
             part = (ahead + sqrt(self.airspeed**2 - max(0.0, across))) / pace
             return (wanted[0] * part, wanted[1] * part, wanted[2])
         part = self.airspeed / needed
-        return (self.wind[0] + north * part, self.wind[1] + east * part, wanted[2])
+        return (air[0] + north * part, air[1] + east * part, wanted[2])
 
     def _accelerate(self, wanted: Vector, step: float) -> None:
         north, east, up = plus(wanted, self.velocity, -1.0)

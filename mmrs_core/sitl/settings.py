@@ -27,6 +27,9 @@ class Settings:
         tells_battery: whether it knows its battery at all.
         falls: whether its motors stop in the air when the battery is empty.
         wind: metres per second, and degrees where it comes from.
+        gusts: standard deviation of the air about the wind, metres per second on each axis, and for how
+            many seconds they last (correlation time); they carry copters only.
+        seed: of the gusts; vehicles with different system ids meet different ones all the same.
         rate: of its telemetry until somebody asks for another, hertz.
         values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
         refuse: commands that it does not know.
@@ -50,6 +53,8 @@ class Settings:
     tells_battery: bool = True
     falls: bool = True
     wind: tuple[float, float] = (0.0, 0.0)
+    gusts: tuple[float, float] = (0.0, 5.0)
+    seed: int = 0
     rate: float = 4.0
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     refuse: frozenset[int] = frozenset()
@@ -67,5 +72,7 @@ class Settings:
             raise ValueError(f"{self.kind}: no such kind; there are {', '.join(KINDS)}")
         if self.firmware not in (ARDUPILOT, PX4) or (self.firmware == PX4 and self.kind != "copter"):
             raise ValueError(f"{self.firmware}: no such firmware for a {self.kind}")
+        if not (0.0 <= self.gusts[0] <= 20.0 and self.gusts[1] > 0.0):
+            raise ValueError(f"{self.gusts[0]:g},{self.gusts[1]:g}: are no gusts; 0 to 20 m/s, some seconds")
         if not 1 <= self.system <= 255:
             raise ValueError(f"{self.system}: is no MAVLink system; they are 1 to 255")

@@ -8,6 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.battery import load_of
+from mmrs_core.sitl.body import STILL
 from mmrs_core.sitl.failsafes import watch
 from mmrs_core.sitl.modes import MANUAL, first_mode
 from mmrs_core.sitl.pilots import decide
@@ -39,6 +40,7 @@ def advance(pilot: Autopilot, seconds: float) -> None:
 def _move(pilot: Autopilot, seconds: float) -> None:
     body = pilot.body
     body.adrift = pilot.airborne and (not pilot.located or pilot.mode_name in MANUAL)
+    _blow(pilot, seconds)
     body.advance(seconds)
     pilot.battery.drain(seconds, load_of(body) if pilot.flies else 0.3 + 0.7 * min(1.0, body.pace))
     pilot.camera.move(body)
@@ -48,6 +50,17 @@ def _move(pilot: Autopilot, seconds: float) -> None:
     if pilot.flies:
         _touch_ground(pilot)
     _remember(pilot)
+
+
+def _blow(pilot: Autopilot, seconds: float) -> None:
+    """Let gusts come; only what is in the air is carried by them, and what drifts goes with all of it."""
+    if pilot.flies and pilot.airborne:
+        pilot.gusts.go_on(seconds)
+        pilot.body.gust = (*pilot.gusts.air, 0.0)
+        pilot.body.push = STILL if pilot.body.adrift else (*pilot.gusts.push, 0.0)
+    else:
+        pilot.gusts.rest()
+        pilot.body.gust = pilot.body.push = STILL
 
 
 def _stand(pilot: Autopilot, seconds: float) -> None:

@@ -74,7 +74,7 @@ def global_position(pilot: Autopilot) -> Message | None:
         return None
     latitude, longitude = pilot.degrees()
     up = pilot.settings.altitude + pilot.body.position[2]
-    north, east, climb = pilot.body.velocity
+    north, east, climb = pilot.body.motion
     return mavlink.MAVLink_global_position_int_message(
         milliseconds(pilot),
         round(latitude * 1e7),
@@ -93,7 +93,7 @@ def local_position(pilot: Autopilot) -> Message | None:
     if pilot.uptime < pilot.settings.ready:
         return None
     north, east, up = pilot.body.position
-    v_north, v_east, v_up = pilot.body.velocity
+    v_north, v_east, v_up = pilot.body.motion
     now = milliseconds(pilot)
     return mavlink.MAVLink_local_position_ned_message(now, north, east, -up, v_north, v_east, -v_up)
 
@@ -137,7 +137,7 @@ def hud(pilot: Autopilot) -> Message:
     body = pilot.body
     return mavlink.MAVLink_vfr_hud_message(
         body.air_pace,
-        hypot(*body.velocity[:2]),
+        hypot(*body.motion[:2]),
         round(body.heading) % 360,
         50 if pilot.armed else 0,
         pilot.settings.altitude + body.position[2],
@@ -223,7 +223,7 @@ def satellites(pilot: Autopilot) -> Message:
         round((pilot.settings.altitude + pilot.body.position[2]) * 1000),
         80 if located else 9_999,
         UNKNOWN,
-        round(hypot(*pilot.body.velocity[:2]) * 100),
+        round(hypot(*pilot.body.motion[:2]) * 100),
         UNKNOWN,
         14 if located else 0,
     )
@@ -246,7 +246,7 @@ def fence_status(pilot: Autopilot) -> Message | None:
 
 def wind(pilot: Autopilot) -> Message:
     """Return where the wind comes from, and how fast."""
-    north, east, _ = pilot.body.wind
+    north, east, _ = pilot.body.air
     if pilot.settings.firmware == PX4:
         return mavlink.MAVLink_wind_cov_message(
             milliseconds(pilot) * 1000, north, east, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -16,7 +16,15 @@ def berths(example: str):
 
 def common(**given) -> Berths:
     usual = {"port": 14_550, "step": 10, "host": "127.0.0.1", "speedup": 1.0, "loss": 0.0, "delay": 0.0}
-    more = {"seed": 0, "ground": "", "firmware": "ardupilot", "wind": "0,0", "energy": None, "recharge": None}
+    more = {
+        "seed": 0,
+        "ground": "",
+        "firmware": "ardupilot",
+        "wind": "0,0",
+        "gusts": "0",
+        "energy": None,
+        "recharge": None,
+    }
     return Berths(**{**usual, **more, "parameters": (), **given})
 
 
