@@ -56,6 +56,7 @@ def test_every_field_of_what_is_declared_is_told():
     from dataclasses import fields
 
     from mmrs_core.contributions import (
+        backends,
         checks,
         commands,
         constraints,
@@ -78,7 +79,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_checks": checks.Check,
         "mmrs_device_actions": wiring.DeviceWiring,
         "mmrs_targets": targets.Target,
-        "mmrs_backends": execution.BackendFactory,
+        "mmrs_backends": backends.BackendFactory,
         "mmrs_conditions": execution.Condition,
         "mmrs_map_symbols": symbols.MapSymbol,
         "mmrs_commands": commands.Command,
