@@ -30,6 +30,7 @@ from mmrs_core.flight.program import (
 )
 from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.services.uploads import Flight
+from mmrs_core.flight.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
 from mmrs_core.flight.steps.responses import policy_for
 from mmrs_core.flight.vehicles.corners import goes_through
 from mmrs_core.flight.vehicles.vehicle import Vehicle
@@ -39,8 +40,6 @@ FULL = 0.99
 RECHARGE_FACTOR = 3.0
 """How many times as long as expected charging may take."""
 
-SILENCE_SECONDS = 5.0
-"""How long a device may give no answer, where policies do not say."""
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""
@@ -64,6 +63,7 @@ class Moves:
         self._home = robot.home
         after = policy_for(DEVICE_SILENT, robot).after
         self._silence = SILENCE_SECONDS if after is None else after
+        self._silence_of_values = VALUE_SECONDS if after is None else after
         self._vehicle, self._clock, self._locators, self._told = vehicle, clock, locators, told
 
     def movement(self, move: str, *, through: bool = False) -> Job:
@@ -203,7 +203,10 @@ class Moves:
         self._vehicle.turn(found)
 
     def _measure(self, action: Measure) -> None:
-        found = self._vehicle.measure(action.value)
+        try:
+            found = self._vehicle.measure(action.value, self._silence_of_values)
+        except Unanswered as error:
+            raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
         self._told("measured", action.value, {"device": action.device, "result": found})
 
     def _rest(self, seconds: float) -> Callable[[], None]:

@@ -13,6 +13,9 @@ from .waits import Waits
 SILENCE_SECONDS = 5.0
 """How long a device may give no answer, where policies do not say."""
 
+VALUE_SECONDS = 10.0
+"""How long a sensor may publish no value, where policies do not say: some do every few seconds only."""
+
 
 class Doing:
     """Has devices do something, tells people, and notifies other robots."""
@@ -58,18 +61,21 @@ class Doing:
         try:
             self._do(action)
         except Unanswered as error:
-            limit = self._waits.patience(DEVICE_SILENT, SILENCE_SECONDS)
-            if self._desk.clock.now() - begun < limit:
+            if not isinstance(action, Measure) and self._desk.clock.now() - begun < self._silence():
                 return False
-            self._waits.raise_unless_carried_on(Fault(DEVICE_SILENT, str(error)))
+            self._waits.raise_unless_carried_on(Fault(DEVICE_SILENT, f"{_device(action)}{error}"))
         return True
+
+    def _silence(self, usual: float = SILENCE_SECONDS) -> float:
+        """Return for how many seconds a device may say nothing."""
+        return self._waits.patience(DEVICE_SILENT, usual)
 
     def _do(self, action: Action) -> None:
         if isinstance(action, Operate):
             self.operate(action)
             self._vehicle.rest(action.seconds)
         elif isinstance(action, Measure):
-            found = self._vehicle.measure(action.value)
+            found = self._vehicle.measure(action.value, self._silence(VALUE_SECONDS))
             self._vehicle.rest(action.seconds)
             self._journal.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):
@@ -88,3 +94,8 @@ class Doing:
             lambda lamport: self._journal.write("ntf", detail, slots, lamport),
             self._waits.delivery(),
         )
+
+
+def _device(action: Action) -> str:
+    """Return the device of an action as the beginning of a sentence; empty where it has none."""
+    return f"{action.device}: " if isinstance(action, Operate | Measure) else ""

@@ -31,7 +31,6 @@ from .travel import set_up
 from .vehicle import State
 
 FORCE_DISARM = 21_196
-VALUE_SECONDS = 10.0
 IMAGE_SECONDS = 10.0
 IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
 BEFORE_MISSION_ID = 6
@@ -225,20 +224,20 @@ class MavlinkVehicle:
             ):
                 raise Unanswered(f"{name_of(number)}: no image was told within {IMAGE_SECONDS:.0f} s")
 
-    def measure(self, value: str) -> float:
+    def measure(self, value: str, seconds: float) -> float:
         """Return the next value published under that name.
 
         Raises:
-            Refused: none comes.
+            Unanswered: none comes within so many seconds.
         """
         with self._link.inbox("NAMED_VALUE_FLOAT") as inbox:
             found = self._link.wait(
                 lambda: next((m for m in inbox if m.name == value), None),
-                self._link.clock.patience(VALUE_SECONDS),
+                self._link.clock.patience(seconds),
                 heard=True,
             )
         if found is None:
-            raise Refused(f"{value}: no such value comes from the vehicle")
+            raise Unanswered(f"{value}: no such value comes from the vehicle within {seconds:g} s")
         return float(found.value)
 
     def hold(self) -> bool:

@@ -82,7 +82,7 @@ class DryVehicle:
     def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
         """Do nothing."""
 
-    def measure(self, value: str) -> None:
+    def measure(self, value: str, seconds: float) -> None:
         """Measure nothing: there is nothing to measure."""
 
     def hold(self) -> bool:

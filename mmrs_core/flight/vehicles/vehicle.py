@@ -98,8 +98,12 @@ class Vehicle(Protocol):
         """Have a device do something; `confirmed`: and wait for the image that it has promised to tell."""
         ...
 
-    def measure(self, value: str) -> float | None:
-        """Return the next value published under that name; None where there is only a dry run."""
+    def measure(self, value: str, seconds: float) -> float | None:
+        """Return the next value published under that name; None where there is only a dry run.
+
+        Raises:
+            Unanswered: none comes within so many seconds.
+        """
         ...
 
     def hold(self) -> bool:
