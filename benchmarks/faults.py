@@ -4,17 +4,24 @@
 
 Every row is flown by generated controllers and by ``mmrs run``, each as processes, on simulated vehicles
 of ours. What happened is the vehicle's own record: its modes, and where it came to rest; the log line is the
-robot's. Seconds are those of the run, which goes faster than real time; orders are confirmed in real ones.
+robot's. Seconds are those of the run, which goes faster than real time; orders are confirmed in real ones,
+and those to single robots are flown in real time. Several flights go on at once: ``--jobs``.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import multiprocessing
 import re
 import sys
 import tempfile
+import time
+from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from datetime import UTC, datetime
 from pathlib import Path
+from statistics import quantiles
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
@@ -22,42 +29,96 @@ from fault_table.blows import DRILLS
 from fault_table.fleet import EXECUTIONS
 from fault_table.journeys import JOURNEYS
 from fault_table.orders import ORDERS
+from fault_table.row import Outcome
 from fault_table.rows import ROWS
 from fault_table.trial import batches, fly
 
 HEAD = ("fault", "declared", "execution", "what the vehicle did", "answered", "at rest", "log", "as declared")
+JOBS = 4
+"""Flights at once: each takes less than half a core at a speed-up of ten, and much less in real time."""
+
+SHOWN = ("seq", "time", "label", "move", "detail")
 
 
-def outcomes(executions, speedup, pattern, folder):
-    """Yield what became of every row."""
-    chosen = [row for row in (*ROWS, *ORDERS) if re.search(pattern, row.title)]
-    for execution in executions:
-        for number, batch in enumerate(batches(chosen)):
-            yield from fly(batch, execution, folder / f"{execution}-{number}", speedup=speedup)
-        for number, drill in enumerate(each for each in DRILLS if re.search(pattern, each.name)):
-            yield from drill.fly(execution, folder / f"{execution}-drill-{number}")
-        for number, journey in enumerate(each for each in JOURNEYS if re.search(pattern, each.name)):
-            yield journey.fly(execution, folder / f"{execution}-journey-{number}")
+def flights(pattern, speedup):
+    """Return all flights in the table's order: by name, what flies it, given execution and folder."""
+    found = {}
+    for number, batch in enumerate(batches([row for row in ROWS if re.search(pattern, row.title)])):
+        found[f"faults {number}"] = lambda e, f, batch=batch: fly(batch, e, f, speedup=speedup)
+    if orders := [row for row in ORDERS if re.search(pattern, row.title)]:
+        found["orders in real time"] = lambda e, f: fly(orders, e, f, speedup=1.0)
+    for number, drill in enumerate(DRILLS):
+        if any(re.search(pattern, name) for name in (drill.name, *(row.title for row in drill.rows))):
+            found[f"drill {number}: {drill.name}"] = drill.fly
+    for number, journey in enumerate(JOURNEYS):
+        if re.search(pattern, journey.name):
+            found[f"journey {number}: {journey.name}"] = lambda e, f, j=journey: [j.fly(e, f)]
+    return found
+
+
+def flown(pattern, speedup, name, execution, folder):
+    """Return what became of one flight, and the real seconds that it took."""
+    begun = time.monotonic()
+    try:
+        outcomes = flights(pattern, speedup)[name](execution, folder)
+    except Exception as error:
+        outcomes = [Outcome(name, execution, "", problems=[f"cannot be flown: {error!r}", ""])]
+    return outcomes, time.monotonic() - begun
+
+
+def fly_all(given, folder):
+    """Return what became of every row, in the table's order; tell on standard error how far it is."""
+    names = list(flights(given.only, given.speedup))
+    jobs = [(execution, name) for execution in given.execution or EXECUTIONS for name in names]
+    found = {}
+    # What takes longest begins first: at the end, nobody waits for one flight alone.
+    queue = sorted(jobs, key=lambda job: (job[1] != "orders in real time", "to all" not in job[1]))
+    with ProcessPoolExecutor(given.jobs, multiprocessing.get_context("spawn")) as pool:
+        futures = {
+            pool.submit(flown, given.only, given.speedup, name, execution, folder / f"{number}"): (
+                execution,
+                name,
+            )
+            for number, (execution, name) in enumerate(queue)
+        }
+        for future in as_completed(futures):
+            found[futures[future]], seconds = future.result()
+            wrong = sum(bool(outcome.problems) for outcome in found[futures[future]])
+            words = f"{len(found)}/{len(jobs)} {' '.join(futures[future])}: {seconds:.0f} s, {wrong} wrong"
+            print(words, file=sys.stderr, flush=True)
+    return [outcome for job in jobs for outcome in found[job]]
 
 
 def cells(outcome):
     """Return the cells of a row."""
     fault = outcome.title.removesuffix(f", {outcome.declared}")
-    confirmed = f"{outcome.confirmed:.3f} s (real, confirmed)" if outcome.confirmed is not None else ""
-    log = "; ".join(part for part in (outcome.line, outcome.decision.strip('"')) if part)
+    confirmed = ", ".join(f"{order} {value:.3f} s real" for order, value in outcome.confirmed.items())
     return (
         fault,
         outcome.declared,
         outcome.execution,
         outcome.happened,
-        confirmed or seconds(outcome.answered),
-        seconds(outcome.rested),
-        f"`{log}`",
+        confirmed or in_words(outcome.answered),
+        in_words(outcome.rested),
+        log_of(outcome),
         "yes" if not outcome.problems else "NO: " + "; ".join(outcome.problems[:-1])[:400],
     )
 
 
-def seconds(value):
+def log_of(outcome):
+    """Return the line of the step log, without what the table says anyway, and why it was decided so."""
+    line = outcome.line
+    if line.startswith("{"):
+        step = json.loads(line)
+        line = json.dumps({name: step[name] for name in SHOWN if step[name] != ""}, ensure_ascii=False)
+    parts = [f"`{line}`"] if line else []
+    if outcome.decision.startswith("{"):
+        decision = json.loads(outcome.decision)
+        parts += [decision["why"]] if decision.get("why") else []
+    return "; ".join(parts)
+
+
+def in_words(value):
     """Return seconds in words."""
     return "" if value is None else f"{value:.1f} s"
 
@@ -67,23 +128,53 @@ def line(values):
     return "| " + " | ".join(value.replace("|", "\\|").replace("\n", " ") for value in values) + " |"
 
 
+def summary(outcomes):
+    """Yield the lines that tell what all rows have in common."""
+    wrong = [outcome for outcome in outcomes if outcome.problems]
+    yield f"{len(outcomes)} rows, {len(outcomes) - len(wrong)} as declared, {len(wrong)} not."
+    yield from (f"- NOT as declared: {outcome.title}, {outcome.execution}" for outcome in wrong)
+    yield from ("", "Orders, in real seconds until the vehicle was seen to obey:", "")
+    yield from (line(("order", "robots", "median", "99 %", "slowest")), line(["---"] * 5))
+    confirmed = defaultdict(list)
+    for outcome in outcomes:
+        for order, value in outcome.confirmed.items():
+            confirmed[order].append(value)
+            confirmed["all"].append(value)
+    for order, values in sorted(confirmed.items()):
+        spread = quantiles(values, n=100, method="inclusive") if len(values) > 1 else values * 99
+        figures = (f"{value:.3f} s" for value in (spread[49], spread[98], max(values)))
+        yield line((order, str(len(values)), *figures))
+    yield from ("", "Slowest answers, in seconds of the run:", "")
+    yield from (line(("fault", *EXECUTIONS)), line(["---"] * (1 + len(EXECUTIONS))))
+    kinds = defaultdict(lambda: defaultdict(list))
+    for outcome in outcomes:
+        if outcome.answered is not None and not outcome.confirmed:
+            kinds[outcome.title.split(", ")[0]][outcome.execution].append(outcome.answered)
+    for kind, answers in kinds.items():
+        yield line((kind, *(in_words(max(answers[each], default=None)) for each in EXECUTIONS)))
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--speedup", type=float, default=10.0)
+    parser.add_argument("--jobs", type=int, default=JOBS, help="flights at once")
     parser.add_argument("--execution", choices=EXECUTIONS, action="append")
-    parser.add_argument("--only", default="", metavar="PATTERN", help="rows whose title matches")
+    parser.add_argument("--only", default="", metavar="PATTERN", help="rows or stories whose title matches")
     given = parser.parse_args()
-    print(f"# Faults: what was declared, and what happened ({datetime.now(UTC):%Y-%m-%d})\n")
-    print(f"Speed-up {given.speedup:g}; losses on purpose by seed 7; vehicles of ours (mmrs_core.sitl).\n")
-    print(line(HEAD), line(["---"] * len(HEAD)), sep="\n")
-    wrong = total = 0
+    begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        for outcome in outcomes(given.execution or EXECUTIONS, given.speedup, given.only, Path(folder)):
-            total += 1
-            wrong += bool(outcome.problems)
-            print(line(cells(outcome)).replace(f"{folder}/", ""), flush=True)
-    print(f"\n{total} rows, {total - wrong} as declared, {wrong} not.")
-    return 1 if wrong else 0
+        outcomes = fly_all(given, Path(folder))
+        table = [line(cells(outcome)).replace(f"{folder}/", "") for outcome in outcomes]
+    minutes = (time.monotonic() - begun) / 60.0
+    print(f"# Faults: what was declared, and what happened ({datetime.now(UTC):%Y-%m-%d})\n")
+    print(
+        f"Speed-up {given.speedup:g}, orders in real time, those to all at 4; losses on purpose"
+        f" by seed 7; vehicles of ours (mmrs_core.sitl); {given.jobs} flights at once, {minutes:.1f} min.\n"
+    )
+    print(*summary(outcomes), "", line(HEAD), line(["---"] * len(HEAD)), *table, sep="\n")
+    return 1 if any(outcome.problems for outcome in outcomes) else 0
 
 
 if __name__ == "__main__":

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import signal
 import threading
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.orders import RESUMED_AFTER, to_all
 from fault_table.process import Process
 from fault_table.row import Outcome, Row, leave_alone
 from fault_table.rows import SILENCE
 from fault_table.trial import Blow, fly
+from mmrs_core.flight.orders.ordering import give
 
 AT = "at its place"
 INJECTED_AT = 40
@@ -171,6 +174,59 @@ def _interruption(how: str, ends: str) -> Drill:
     )
 
 
+def _order_all(order: str, *, resumes: bool = False) -> Drill:
+    """Return a drill in which all robots of a process get an order at once, each in another state."""
+
+    def give_to_all(fleet: Fleet, process: Process) -> None:
+        fleet.replies += give(fleet.logs, order)
+        if resumes:
+            time.sleep(RESUMED_AFTER / fleet.speedup)
+            fleet.replies += give(fleet.logs, "resume")
+
+    rows = tuple(row for row in to_all(order, resumes=resumes))
+    return Drill(rows[0].fault, rows, give_to_all, speedup=4.0)
+
+
+def _piloted(order: str, event: str) -> Row:
+    """Return a row in which a pilot has the vehicle as the process is interrupted, and keeps it."""
+    return Row(
+        "pilot's stick, then Ctrl-C for the others",
+        AT,
+        ("LINK_LOST", order, 5.0),
+        lambda vehicle: vehicle.faults.take_stick("loiter"),
+        event,
+        "holds",
+        within=None,
+        stay=STAY,
+        hands_off=True,
+        lasts=FROZEN_SECONDS,
+    )
+
+
+def _interrupt_soon(fleet: Fleet, process: Process) -> None:
+    """Interrupt it once it has seen what pilots do."""
+    time.sleep(1.0)
+    process.signal(signal.SIGINT)
+
+
+def _unlocated() -> tuple[Row, ...]:
+    return tuple(
+        Row(
+            "satellites lost by --inject",
+            AT,
+            ("POSITION_LOST", response, None),
+            leave_alone,
+            "POSITION_LOST",
+            "here",
+            within=4.0,
+            least=1.0,
+            stay=STAY,
+            responds="LAND",
+        )
+        for response in ("LAND", "HOLD")
+    )
+
+
 BY_ITSELF = [("RETURN", "home"), ("LAND", "here"), ("HOLD", "holds"), ("EMERGENCY_AREA", "meadow")]
 UNHARMED = [("RETURN", "done"), ("LAND", "done")]
 WATCHED = [("RETURN", "home"), ("LAND", "here"), ("EMERGENCY_AREA", "meadow"), ("CONTINUE", "done")]
@@ -211,6 +267,7 @@ DRILLS: tuple[Drill, ...] = (
         _both("--inject", f"ground-cut@{INJECTED_AT}+20"),
         watched=True,
     ),
+    _injection("satellites lost by --inject", _unlocated(), f"gps-lost@{INJECTED_AT}"),
     _injection("disk full", _full_disk(), f"disk-full@{INJECTED_AT}"),
     _injection(
         "wall clock jumps forward",
@@ -236,7 +293,16 @@ DRILLS: tuple[Drill, ...] = (
             "generated": ("--tries", "12", "--inject", POOR),
             "interpreted": ("--backend-option", "tries=12", "--inject", POOR),
         },
-        speedup=5.0,
     ),
+    Drill(
+        "pilot's stick, then Ctrl-C",
+        (_piloted("RETURN", "TAKEN_OVER"), _piloted("LAND", "TAKEN_OVER")),
+        _interrupt_soon,
+    ),
+    _order_all("hold"),
+    _order_all("hold", resumes=True),
+    _order_all("return"),
+    _order_all("land"),
+    _order_all("stop"),
     *(_interruption(how, ends) for how, ends in (("hold", "holds"), ("return", "home"), ("land", "here"))),
 )

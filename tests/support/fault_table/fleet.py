@@ -7,9 +7,12 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
+from itertools import cycle
 from pathlib import Path
+from random import randrange
+from typing import IO
 
 from fault_table.process import Process
 from fault_table.project import Pad, home_of, write_project
@@ -32,6 +35,7 @@ class Fleet:
         logs: folder of the logs.
         process: the one that was started last.
         station: of people who look on at all vehicles; None: nobody does.
+        replies: of all robots to orders that were given to all of them.
     """
 
     def __init__(
@@ -61,6 +65,7 @@ class Fleet:
         self._links: dict[str, str] = {}
         self._processes: list[Process] = []
         self.station: Process | None = None
+        self.replies: list[dict[str, object]] = []
         self._ground = ("127.0.0.1", free_port()) if watched else None
         for index, pad in enumerate(pads):
             port = free_port()
@@ -89,12 +94,15 @@ class Fleet:
         """Return the process that was started last."""
         return self._processes[-1]
 
-    def start(self, *arguments: str, robot: str = "") -> Process:
-        """Start a process for all robots, or for one of them; give it these arguments beside the usual."""
+    def start(self, *arguments: str, robot: str = "", into: IO[str] | None = None) -> Process:
+        """Start a process for all robots, or for one of them; give it these arguments beside the usual.
+
+        What it says goes to `into`; None: to `Process.said`.
+        """
         chosen = [link for name, link in self._links.items() if robot in ("", name)]
         links = [word for link in chosen for word in ("--connect", link)]
         usual = ["--log", str(self.logs), "--speedup", str(self.speedup)]
-        process = Process([*self._program(robot), *links, *usual, *arguments], self.folder)
+        process = Process([*self._program(robot), *links, *usual, *arguments], self.folder, into)
         self._processes.append(process)
         return process
 
@@ -154,9 +162,24 @@ def free_tcp_port() -> int:
 
 
 def _free(kind: socket.SocketKind) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """Return a port below those that systems give to whoever asks for any: nobody takes it meanwhile."""
+    for port in _ports:
+        with socket.socket(socket.AF_INET, kind) as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return port
+    raise AssertionError("no port is free")
+
+
+def _numbers() -> Iterator[int]:
+    first, last = PORTS
+    yield from cycle([*range(start := randrange(first, last), last), *range(first, start)])
+
+
+PORTS = (10_000, 32_000)
+_ports = _numbers()
 
 
 def wait_for(test: Callable[[], bool], seconds: float) -> bool:

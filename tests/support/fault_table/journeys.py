@@ -13,10 +13,13 @@ from pathlib import Path
 from fault_table.fleet import Fleet, free_tcp_port, wait_for
 from fault_table.project import OUT, TOUR, Pad
 from fault_table.record import MOMENTS, answered, ending, story, struck
-from fault_table.row import Outcome
+from fault_table.row import Outcome, within
 from mmrs_core.sitl import SimulatedVehicle
 
 AT, AUTO = "at its place", "on a mission (AUTO)"
+PEER_SECONDS, LEASE_SECONDS = 2.0, 1.5
+"""Real seconds for which a peer must be lost at least, and for which one that is frozen may be silent."""
+
 AROUND = 2.0
 """Metres from a place that a vehicle which passes it without a stop may be."""
 
@@ -113,6 +116,10 @@ def peer(execution: str, folder: Path, number: int, response: str, ends: str) ->
         ):
             outcome.problems.append(f"does not end as wanted: {ends}")
         outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        lease = LEASE_SECONDS if number == signal.SIGSTOP else 0.0
+        limit = within(max(5.0, PEER_SECONDS * fleet.speedup) + lease * fleet.speedup, fleet.speedup)
+        if outcome.answered is None or outcome.answered > limit:
+            outcome.problems.append(f"answered after {outcome.answered}, not {limit} s")
         outcome.happened = story(vehicle, since) + f"; {time.monotonic() - begun:.1f} s of real time"
         steps = fleet.steps("r0")
         outcome.line = json.dumps(steps[-1])

@@ -1,49 +1,88 @@
-"""The part of the fault table about orders: every order, from every state."""
+"""The part of the fault table about orders: every order, from every state, to one robot and to all."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fault_table.row import Row, leave_alone
 
-STATES = ("climbing", "on a leg (GUIDED)", "on a mission (AUTO)", "at its place", "waiting", "charging")
+STATES = (
+    "on the ground",
+    "climbing",
+    "on a leg (GUIDED)",
+    "on a mission (AUTO)",
+    "at its place",
+    "waiting",
+    "landing at home",
+    "charging",
+)
+DOWN = ("on the ground", "charging")
+ABOVE_HOME = ("climbing", "landing at home")
 FAST = (
     ("hold", "on a mission (AUTO)"),
     ("return", "at its place"),
     ("land", "climbing"),
     ("stop", "waiting"),
 )
+STAYS = {"on a mission (AUTO)": 5.0, "charging": 30.0, "landing at home": 2.0, "on the ground": 5.0}
+
+RESUMED_AFTER = 12.0
+"""Seconds of the run for which robots are held before they may go on."""
 
 
-def _row(order: str, state: str, event: str, ends: str, *, resumes: float | None = None) -> Row:
+def _row(order: str, state: str, event: str, ends: str, *, resumes: bool = False, stay: float = 20.0) -> Row:
     program = {"waiting": "wait", "charging": "charge"}.get(state, "tour")
-    words = f"order {order}" + (", then resume" if resumes is not None else "")
+    at_once = state not in (*DOWN, "landing at home")
     return Row(
-        words,
+        f"order {order}" + (", then resume" if resumes else ""),
         state,
         None,
         leave_alone,
         event,
         ends,
-        within=None if state == "charging" else 3.0,
+        within=3.0 if at_once else None,
         least=1.0,
         program=program,
-        stay={"on a mission (AUTO)": 5.0, "charging": 30.0}.get(state, 20.0),
+        stay=STAYS.get(state, stay),
         order=order,
-        resumes=resumes,
-        fast=(order, state) in FAST and resumes is None,
+        resumes=RESUMED_AFTER if resumes else None,
+        fast=(order, state) in FAST and not resumes,
     )
 
 
-def _rows() -> list[Row]:
-    rows = []
-    for state in STATES:
-        down = state == "charging"
-        rows.append(_row("hold", state, "", "home" if down else "holds"))
-        rows.append(_row("return", state, "ORDERED", "home"))
-        rows.append(_row("land", state, "ORDERED", "home" if down or state == "climbing" else "here"))
-        rows.append(_row("stop", state, "STOPPED", "home" if down else "holds"))
-        if state != "waiting":
-            rows.append(_row("hold", state, "", "done", resumes=12.0))
+def _of(state: str) -> list[Row]:
+    """Return all orders in a state of the robot."""
+    down = state in DOWN
+    rows = [
+        _row("hold", state, "", "home" if down else "holds"),
+        _row("return", state, "ORDERED", "home"),
+        _row("land", state, "ORDERED", "home" if down or state in ABOVE_HOME else "here"),
+        _row("stop", state, "STOPPED", "home" if down else "holds"),
+    ]
+    if state != "waiting":
+        rows.append(_row("hold", state, "", "done", resumes=True))
     return rows
 
 
-ORDERS: tuple[Row, ...] = tuple(_rows())
+ORDERS: tuple[Row, ...] = tuple(row for state in STATES for row in _of(state))
+
+AT_ONCE = ("on a mission (AUTO)", "at its place", "waiting", "charging")
+"""States in which the robots of one process are at the same moment."""
+
+
+def to_all(order: str, *, resumes: bool = False) -> tuple[Row, ...]:
+    """Return the rows of an order that all robots get at once, each in another state."""
+    stays = {"at its place": 45.0, "charging": 45.0}
+    return tuple(
+        replace(
+            row,
+            fault=row.fault.replace("order ", "order to all: "),
+            stay=stays.get(row.during, row.stay),
+            together=True,
+            fast=False,
+            resumes=None,
+        )
+        for state in AT_ONCE
+        for row in _of(state)
+        if row.order == order and (row.resumes is not None) == resumes
+    )

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import cos, radians
+from math import atan2, degrees, hypot
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+from pyproj import Geod
+
 LATITUDE, LONGITUDE, ALTITUDE = 42.37, 13.35, 720.0
-METRES_PER_DEGREE = 111_319.49
+EARTH = Geod(ellps="WGS84")
+"""PROJ's geodesics, which know nothing of how robots and simulated vehicles reckon."""
+
 PAD_METRES = 150.0
 
 OUT = (30.0, 0.0, 12.0)
@@ -61,7 +65,7 @@ class Step:
 
 def home_of(index: int) -> tuple[float, float]:
     """Return latitude and longitude of a pad."""
-    return LATITUDE, LONGITUDE + index * PAD_METRES / (METRES_PER_DEGREE * cos(radians(LATITUDE)))
+    return _away((LATITUDE, LONGITUDE), 0.0, index * PAD_METRES)
 
 
 def steps_of(pad: Pad, pads: Sequence[Pad]) -> list[Step]:
@@ -162,9 +166,14 @@ def _policies(policies: Iterable[POLICY]) -> str:
 
 
 def _degrees(index: int, north: float, east: float) -> tuple[float, float]:
-    latitude, longitude = home_of(index)
-    scale = METRES_PER_DEGREE * cos(radians(latitude))
-    return latitude + north / METRES_PER_DEGREE, longitude + east / scale
+    return _away(home_of(index), north, east)
+
+
+def _away(place: tuple[float, float], north: float, east: float) -> tuple[float, float]:
+    """Return the latitude and longitude that are so many metres from others."""
+    azimuth = degrees(atan2(east, north))
+    longitude, latitude, _ = EARTH.fwd(place[1], place[0], azimuth, hypot(north, east))
+    return latitude, longitude
 
 
 def _target(index: int, place: tuple[float, float, float]) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, sqrt
 
 from shapely import Point, Polygon
 
@@ -25,7 +26,10 @@ NAMES = {
 }
 STILL = 0.3
 NEAR_HOME = 2.0
-STOPPING_METRES = 20.0
+MARGIN = 1.0
+"""Metres by which a vehicle may go farther than it must to brake: it takes a moment to lean back."""
+
+GRAVITY = 9.81
 
 Moment = Callable[[Autopilot], bool]
 
@@ -35,7 +39,7 @@ def _near(place: tuple[float, float, float]) -> Moment:
 
 
 MOMENTS: Mapping[str, Moment] = {
-    "before the start": lambda pilot: not pilot.armed and pilot.uptime > 0.0,
+    "on the ground": lambda pilot: not (pilot.armed or pilot.track) and pilot.heard is not None,
     "climbing": lambda pilot: pilot.armed and 3.0 < pilot.body.position[2] < 8.0,
     "on a leg (GUIDED)": lambda pilot: (
         pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0
@@ -60,18 +64,21 @@ class Struck:
 
     Attributes:
         modes, commands: how many changes of mode and commands it had had by then.
+        falls: whether its motors no longer run.
     """
 
     time: float
     place: tuple[float, float, float]
     modes: int
     commands: int
+    falls: bool = False
 
 
 def struck(vehicle: SimulatedVehicle) -> Struck:
     """Return where a vehicle is now."""
     pilot = vehicle.autopilot
-    return Struck(pilot.time, pilot.body.position, len(pilot.modes), len(pilot.history))
+    body, falls = pilot.body, not pilot.armed and pilot.body.position[2] > MARGIN
+    return Struck(pilot.time, body.position, len(pilot.modes), len(pilot.history), falls)
 
 
 def answered(vehicle: SimulatedVehicle, since: Struck) -> float | None:
@@ -94,8 +101,30 @@ def ending(vehicle: SimulatedVehicle, since: Struck) -> str:
         return "home"
     if Polygon(MEADOW).contains(Point(north, east)):
         return "meadow"
-    aside = hypot(north - since.place[0], east - since.place[1])
-    return "here" if aside < STOPPING_METRES else "elsewhere"
+    return "here" if stops_short(vehicle, since) else "elsewhere"
+
+
+def stops_short(vehicle: SimulatedVehicle, since: Struck) -> bool:
+    """Return whether a vehicle is no farther from where it answered than it must be to come to a halt.
+
+    From a speed v it takes v²/2a to brake, and if it falls from a height h, v·√(2h/g) to the ground.
+    """
+    pilot = vehicle.autopilot
+    (north, east, up), pace = _then(vehicle, since)
+    room = pace * pace / (2.0 * pilot.body.acceleration)
+    if since.falls:
+        room = pace * sqrt(2.0 * up / GRAVITY)
+    return hypot(pilot.body.position[0] - north, pilot.body.position[1] - east) <= room + MARGIN
+
+
+def _then(vehicle: SimulatedVehicle, since: Struck) -> tuple[tuple[float, float, float], float]:
+    """Return where a vehicle was when it answered, and its speed over the ground then."""
+    track, at = vehicle.autopilot.track, since.time + (answered(vehicle, since) or 0.0)
+    index = min(bisect_left(track, (at,)), len(track) - 1)
+    if since.falls or index < 1:
+        index = max(1, bisect_left(track, (since.time,)) - 1)
+    (t0, n0, e0, _), (t1, n1, e1, u1) = track[index - 1], track[index]
+    return (n1, e1, u1), hypot(n1 - n0, e1 - e0) / max(1e-3, t1 - t0)
 
 
 WORDS = {
@@ -112,12 +141,17 @@ def story(vehicle: SimulatedVehicle, since: Struck) -> str:
     """Return what a vehicle did from then on, in words."""
     pilot = vehicle.autopilot
     modes = [
-        f"{NAMES.get(mode, mode)} after {max(0.0, time - since.time):.1f} s"
+        f"{NAMES.get(mode, mode)} {max(0.0, time - since.time):.1f} s"
         for time, mode in pilot.modes[since.modes :]
     ]
     north, east, up = pilot.body.position
-    end = WORDS[ending(vehicle, since)]
-    return "; ".join([*modes[:6], f"{end} ({north:.1f} m north, {east:.1f} m east, {up:.1f} m up)"])
+    found = ending(vehicle, since)
+    where = "" if found == "home" else f" ({_short(north)} N, {_short(east)} E, {_short(up)} up)"
+    return "; ".join([*modes[:6], f"{WORDS[found]}{where}"])
+
+
+def _short(metres: float) -> str:
+    return f"{metres:.1f}".replace("-0.0", "0.0") + " m"
 
 
 def strayed(vehicle: SimulatedVehicle, since: Struck) -> float:

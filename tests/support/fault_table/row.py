@@ -15,6 +15,16 @@ def leave_alone(vehicle: SimulatedVehicle) -> None:
     """Do nothing to the vehicle: what goes wrong is elsewhere."""
 
 
+HASTE_SECONDS = 1.0
+"""Real seconds that a busy machine may take for what takes none: at a speed-up of ten they are ten seconds
+of the run, in real time nothing is added."""
+
+
+def within(seconds: float, speedup: float) -> float:
+    """Return the seconds of the run in which something must be answered, given those that are declared."""
+    return seconds + HASTE_SECONDS * (speedup - 1.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """Something that goes wrong with one robot, or an order that it gets.
@@ -38,6 +48,8 @@ class Row:
         suspends: whether the robot only comes down for a new battery, which is no fault in its log.
         responds: the response, where it cannot be that of the policy.
         says: what the process must say, where logs cannot.
+        lasts: seconds of the run for which the vehicle must stay where it has come to rest.
+        together: whether the order is given to all robots at once, by somebody else.
     """
 
     fault: str
@@ -62,6 +74,8 @@ class Row:
     suspends: bool = False
     responds: str = ""
     says: str = ""
+    lasts: float = 5.0
+    together: bool = False
 
     @property
     def declared(self) -> str:
@@ -96,7 +110,7 @@ class Outcome:
 
     Attributes:
         answered: seconds until the vehicle did something else; rested: until it had come to rest.
-        confirmed: real seconds until the robot confirmed its order.
+        confirmed: real seconds until the robot confirmed its orders, by order.
         line: of the step log; decision: of the black box.
     """
 
@@ -106,7 +120,7 @@ class Outcome:
     happened: str = ""
     answered: float | None = None
     rested: float | None = None
-    confirmed: float | None = None
+    confirmed: dict[str, float] = field(default_factory=dict)
     line: str = ""
     decision: str = ""
     problems: list[str] = field(default_factory=list)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from fault_table.project import POLICY
 from fault_table.row import Row, leave_alone
 from mmrs_core.sitl import SimulatedVehicle
@@ -12,6 +14,9 @@ from mmrs_core.sitl import SimulatedVehicle
 PHOTO = 2000
 SILENCE = 2.5
 """Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
+
+UNCONFIRMED = 6.0
+"""Real seconds in which a device has not confirmed what it was told as often as it is told."""
 
 AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", "climbing"
 
@@ -42,6 +47,16 @@ def _stick_and_battery(vehicle: SimulatedVehicle) -> None:
 def _barely(vehicle: SimulatedVehicle) -> None:
     """Leave a little more than the reserve, but not what the way back takes beside it."""
     vehicle.faults.set_battery(0.215)
+
+
+def _critical(vehicle: SimulatedVehicle) -> None:
+    """Have a vehicle that cannot measure its battery say all the same that it is nearly empty."""
+    said = mavlink.MAVLink_battery_status_message(
+        0, 0, 0, 32_767, [65_535] * 10, -1, -1, -1, -1, 0, mavlink.MAV_BATTERY_CHARGE_STATE_CRITICAL
+    )
+    with vehicle.lock:
+        for radio in vehicle.radios:
+            radio.send(said)
 
 
 def _mute_camera(vehicle: SimulatedVehicle) -> None:
@@ -260,7 +275,8 @@ def _device_rows() -> list[Row]:
             _mute_camera,
             "DEVICE_SILENT",
             ends,
-            within=60.0,
+            within=10.0,
+            least=UNCONFIRMED,
             fast=response == "EMERGENCY_AREA",
         )
         for response, ends in cases
@@ -289,7 +305,7 @@ def _wait_rows() -> list[Row]:
             leave_alone,
             "WAIT_TOO_LONG",
             ends,
-            within=16.0,
+            within=11.0,
             program="wait",
             fast=response == "EMERGENCY_AREA",
         )
@@ -303,7 +319,7 @@ def _wait_rows() -> list[Row]:
             _stick,
             "PEER_LOST",
             ends,
-            within=20.0,
+            within=7.0,
             least=SILENCE,
             program="wait",
             strikes_peer=True,
@@ -369,6 +385,16 @@ ROWS: tuple[Row, ...] = (
         _barely,
         [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
         "",
+    ),
+    *(
+        replace(row, settings={"tells_battery": False})
+        for row in _event_rows(
+            "battery critical, as only the vehicle says",
+            "",
+            _critical,
+            [(AUTO, "RETURN", "home"), (AT, "EMERGENCY_AREA", "meadow")],
+            "",
+        )
     ),
     *_landing_rows(),
     *_device_rows(),

@@ -16,8 +16,8 @@ from mmrs_core.errors import MmrsError
 GOODBYE_SECONDS = 8.0
 """Real seconds after which a process is interrupted again that stays for vehicles which pilots have."""
 
-REAL_SECONDS = 50.0
-"""How long everything may take."""
+REAL_SECONDS, RUN_SECONDS = 50.0, 240.0
+"""How long everything may take, at least: real seconds, and those of the run."""
 
 Blow = Callable[[Fleet, Process], object]
 """Something that happens to the process, and so to all robots at once."""
@@ -46,12 +46,13 @@ def fly(
         arguments: of the process.
         watched: whether somebody looks on by a ground station.
     """
+    patience = max(REAL_SECONDS, RUN_SECONDS / speedup)
     pads, names = _pads(rows)
     settings = {name: row.settings for row, name in zip(rows, names, strict=True)}
     with Fleet(folder, pads, execution, speedup=speedup, settings=settings, watched=watched) as fleet:
         process = fleet.start(*arguments)
         watches = [Watch(row, name, fleet) for row, name in zip(rows, names, strict=True)]
-        if blow is not None and wait_for(lambda: all(watch.ready() for watch in watches), REAL_SECONDS):
+        if blow is not None and wait_for(lambda: all([watch.ready() for watch in watches]), patience):
             if until is not None:
                 until(fleet, process)
             for watch in watches:
@@ -59,7 +60,7 @@ def fly(
             blow(fleet, process)
         wait_for(
             lambda: all([watch.settled(blow is None) for watch in watches]) or _over(process, blow),
-            REAL_SECONDS,
+            patience,
         )
         for watch in watches:
             watch.observe()
@@ -75,10 +76,6 @@ def fly(
 def batches(rows: Sequence[Row], size: int = 10) -> list[tuple[Row, ...]]:
     """Return rows in groups that two cores can fly at once."""
     return [tuple(rows[first : first + size]) for first in range(0, len(rows), size)]
-
-
-def _settled(watches: Sequence[Watch], blow: Blow | None) -> bool:
-    return all([watch.settled(itself=blow is None) for watch in watches])
 
 
 def _over(process: Process, blow: Blow | None) -> bool:
