@@ -23,7 +23,7 @@ from mmrs_core.cli.figures import clock
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.cli.output import counted, say, tell
+from mmrs_core.cli.output import counted, say, tell, unfailing
 from mmrs_core.errors import InvalidModelError, LinkLostError
 from mmrs_core.pipeline import conditions_for, inputs_of, run_live
 from mmrs_core.runtime.clock import RealClock
@@ -156,6 +156,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         )
         stack.enter_context(hear_orders(wishes.folder, run, here, orders, observer.status))
         stack.enter_context(_stopping(orders, here))
+        stack.enter_context(unfailing())
         ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
@@ -295,7 +296,10 @@ def _refuse_others(program: Program, wishes: Wishes) -> None:
 
 @contextmanager
 def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
-    """Have interrupts stop the robots; the second one ends the waiting for them."""
+    """Have interrupts stop the robots; the second one ends the waiting for them.
+
+    A terminal that closes gives no order: robots fly on.
+    """
     seen: list[int] = []
 
     def stop(number: int, frame: FrameType | None) -> None:
@@ -306,6 +310,8 @@ def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
         orders.give(STOP, robots)
 
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    if hasattr(signal, "SIGHUP"):
+        before[signal.SIGHUP] = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         yield
     finally:

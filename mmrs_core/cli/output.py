@@ -6,8 +6,8 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO
+from contextlib import contextmanager, redirect_stderr, suppress
+from typing import TYPE_CHECKING, Any, TextIO
 from unicodedata import category
 
 import typer
@@ -137,6 +137,38 @@ def _write(stream: TextIO, words: str) -> None:
         encoding = stream.encoding or "ascii"
         stream.write(words.encode(encoding, "backslashreplace").decode(encoding))
         stream.flush()
+
+
+@contextmanager
+def unfailing() -> Iterator[None]:
+    """Within it, what standard error cannot take is left out: robots rely on the process, read or not."""
+    stream = sys.stderr
+    with redirect_stderr(_Unfailing(stream)):
+        yield
+    try:
+        stream.flush()
+    except OSError:
+        _close(stream)
+
+
+class _Unfailing:
+    """A stream to people that never fails."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, words: str) -> int:
+        try:
+            return self._stream.write(words)
+        except OSError:
+            return len(words)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            self._stream.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def _close(stream: TextIO) -> None:

@@ -147,3 +147,6 @@ def _stop_on_signals(stop: threading.Event, abandon: threading.Event) -> None:
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, heed)
+        if hasattr(signal, "SIGHUP"):
+            # A terminal that closes gives no order: robots fly on.
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from fault_table.fleet import free_port, wait_for
@@ -17,6 +19,7 @@ from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.sitl.commands import obey
 
 PATIENCE = 60.0
+FULL = Path("/dev/full")
 TAKE_OFF = 22
 HOLDING = 17
 """ArduPilot's number of BRAKE."""
@@ -66,6 +69,35 @@ def test_robots_of_one_process_wait_for_each_other_and_their_logs_replay(fleet):
     assert judged(flown) is Outcome.SUCCESS
     assert landed(flown)
     assert all(least_distance(flown.vehicles["c"], place) < 2.0 for place in (OUT, *TOUR))
+
+
+def test_robots_fly_on_where_nobody_reads_or_what_is_said_cannot_be_written(fleet):
+    flown = fleet(Pad("a"))
+    reading, writing = os.pipe()
+    with os.fdopen(writing, "w") as into:
+        process = flown.start(into=into)
+    begun(flown, "a", "out")
+    os.close(reading)
+    process.signal(signal.SIGHUP)
+    assert process.end(PATIENCE) == 0
+    assert judged(flown) is Outcome.SUCCESS
+
+
+@pytest.mark.skipif(not FULL.exists(), reason="needs a device that is full")
+def test_robots_fly_where_nothing_that_is_said_can_be_written(fleet):
+    flown = fleet(Pad("a"))
+    with FULL.open("w") as into:
+        assert flown.start(into=into).end(PATIENCE) == 0
+    assert judged(flown) is Outcome.SUCCESS
+
+
+def test_a_full_disk_ends_a_robot_by_its_policy_also_where_what_is_said_goes_there(fleet, tmp_path):
+    flown = fleet(Pad("a"))
+    with (tmp_path / "said.txt").open("w") as into:
+        process = flown.start("--inject", "disk-full@30+25", into=into)
+        assert process.end(PATIENCE) == 1
+    assert "'a': has done RETURN" in (tmp_path / "said.txt").read_text()
+    assert landed(flown)
 
 
 def test_robots_of_two_processes_meet_on_the_bus_and_begin_together(fleet):

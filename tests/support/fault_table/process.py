@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
+from typing import IO
 
 
 class Process:
@@ -17,15 +18,15 @@ class Process:
         said: what it has said so far, by lines.
     """
 
-    def __init__(self, arguments: Sequence[str], folder: Path) -> None:
-        """Start it in a folder."""
+    def __init__(self, arguments: Sequence[str], folder: Path, into: IO[str] | None = None) -> None:
+        """Start it in a folder; `into`: where it says what it says; None: here."""
         self.said: list[str] = []
         self._popen = subprocess.Popen(
             [sys.executable, "-W", "error", *arguments],
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
+            stderr=into or subprocess.PIPE,
             text=True,
         )
         self._reader = threading.Thread(target=self._listen, daemon=True)
@@ -57,7 +58,8 @@ class Process:
         self._reader.join()
 
     def _listen(self) -> None:
-        assert self._popen.stderr is not None
+        if self._popen.stderr is None:
+            return
         with self._popen.stderr:
             for line in self._popen.stderr:
                 self.said.append(line.rstrip("\n"))
