@@ -44,13 +44,18 @@ def links_of(homes: Sequence[Home], ports: Sequence[int]) -> dict[str, str]:
 
 
 class Ours:
-    """Our simulated vehicles, in a thread of this process."""
+    """Our simulated vehicles, in a thread of this process.
+
+    Attributes:
+        armed: by robot, whether its motors still run at the end.
+    """
 
     speedup = 20.0
 
     def __init__(self, homes: Sequence[Home], folder: Path) -> None:
         ports = [free_port() for _ in homes]
         self.links = links_of(homes, ports)
+        self.armed: dict[str, bool] = {}
         self.tracks: dict[str, list] = {}
         self._vehicles = {
             home.robot: SimulatedVehicle(
@@ -70,6 +75,7 @@ class Ours:
         self._host.stop()
         for robot, vehicle in self._vehicles.items():
             self.tracks[robot] = vehicle.autopilot.track
+            self.armed[robot] = vehicle.autopilot.armed
             vehicle.stop()
 
 

@@ -12,11 +12,13 @@ from shutil import copytree
 from shapely import LineString, Polygon
 
 from mmrs_core import pipeline
+from mmrs_core.behaviour.program import Program
 from mmrs_core.languages.writing import write_model
 from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.mavlink.vehicles import vehicle_class
 from mmrs_core.plugins import load_plugins
 from mmrs_core.resources import shipped
-from mmrs_core.scene import AreaUse
+from mmrs_core.scene import Area, AreaUse, Position
 
 EXAMPLE = "carbon-dioxide"
 SLACK = 0.05
@@ -39,7 +41,7 @@ class Mission:
     """The planned mission, in a folder with its behaviour and its generated controllers.
 
     Attributes:
-        program: what robots do. homes: in its order.
+        program: what robots do. place: where. homes: in its order.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -51,8 +53,8 @@ class Mission:
         behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
         write_model([behaviour], folder / "behaviour.xmi", contributions.languages)
         self.program = pipeline.program_of(behaviour, contributions)
-        self._place = pipeline.place_of_scene(scene)
-        files = pipeline.render(self.program, self._place, "mavlink-python", contributions)
+        self.place = pipeline.place_of_scene(scene)
+        files = pipeline.render(self.program, self.place, "mavlink-python", contributions)
         pipeline.write(files, folder / "controllers")
         degrees = degrees_of([robot.home[:2] for robot in self.program.robots], self.program.frame)
         self.homes = [
@@ -61,25 +63,33 @@ class Mission:
         ]
 
     def margins(self, home: Home, track: Track) -> dict[str, float]:
-        """Return how much farther from each area as drawn than it must be a track stays, metres.
-
-        Args:
-            home: of the robot.
-            track: seconds, metres north, east and up of home.
-        """
-        robot = next(each for each in self.program.robots if each.id == home.robot)
-        needed = self._place.types[robot.type_name].half_diagonal + self.program.position_error
-        areas = [area for area in self._place.areas if area.use is not AreaUse.EMERGENCY]
-        concerned = [area for area in areas if area.concerns(robot.type_name)]
-        assert concerned
-        return {
-            area.name: least_distance(home, track, area) - area.safety_distance - needed for area in concerned
-        }
+        """Return how much farther from each area as drawn than it must be a robot's track stays, metres."""
+        return margins(self.program, self.place, home.robot, track)
 
 
-def least_distance(home: Home, track: Track, area) -> float:
+def margins(program: Program, place: pipeline.Place, robot_id: str, track: Track) -> dict[str, float]:
+    """Return how much farther from each area as drawn than it must be a track stays, by area, metres.
+
+    Args:
+        program: of all robots. place: where they are, with their types.
+        robot_id: whose track it is.
+        track: seconds, metres north, east and up of home; under water, up of the surface.
+    """
+    robot = next(each for each in program.robots if each.id == robot_id)
+    dives = vehicle_class(robot, place.types[robot.type_name]).dives
+    zero = (*robot.home[:2], program.frame.surface if dives else robot.home[2])
+    needed = place.types[robot.type_name].half_diagonal + program.position_error
+    areas = [area for area in place.areas if area.use is not AreaUse.EMERGENCY]
+    return {
+        area.name: least_distance(zero, track, area) - area.safety_distance - needed
+        for area in areas
+        if area.concerns(robot.type_name)
+    }
+
+
+def least_distance(zero: Position, track: Track, area: Area) -> float:
     """Return the metres between an area as drawn and what was flown, leg by leg of the record."""
-    shape, (east, north, up) = Polygon(area.shell), home.place
+    shape, (east, north, up) = Polygon(area.shell), zero
     least = inf
     for (_, n1, e1, u1), (_, n2, e2, u2) in pairwise(track):
         way = LineString([(east + e1, north + n1), (east + e2, north + n2)])

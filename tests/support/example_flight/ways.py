@@ -32,7 +32,19 @@ def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -
 
 def by_run(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
     """Have `mmrs run` carry it out; return exit codes and words."""
-    command = [sys.executable, "-m", "mmrs_core", "run", str(mission.folder), "--speedup", f"{speedup:g}"]
+    return _run(mission, links, speedup, str(mission.folder))
+
+
+def by_behaviour(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
+    """Have `mmrs run` carry out the behaviour that was planned before; return exit codes and words."""
+    models = [str(mission.folder / "behaviour.xmi"), "--context", str(mission.folder / "context.xmi")]
+    return _run(mission, links, speedup, *models, "--robots", str(mission.folder / "robots"))
+
+
+def _run(
+    mission: Mission, links: Mapping[str, str], speedup: float, *models: str
+) -> tuple[dict[str, int], str]:
+    command = [sys.executable, "-W", "error", "-m", "mmrs_core", "run", *models, "--speedup", f"{speedup:g}"]
     command += ["--log", str(mission.folder / "logs")]
     for robot, link in links.items():
         command += ["--connect", f"{robot}={link}"]
