@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
 from mmrs_core.flight.faults import Fault as VehicleFault
-from mmrs_core.flight.program import Land, Recharge, Robot, TakeOff
+from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
 from mmrs_core.flight.steps.obeying import obeying
 from mmrs_core.flight.steps.responses import NEEDS_POSITION, respond
@@ -70,17 +70,19 @@ class MavlinkBackend:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
         self._lost_link.follow(())
         self._move = move.id
-        self._stand_or_go(move.id)
         if move.id in self._under_way[1:]:
             return
         self._passed.clear()
         flight = self._flights.get(move.id)
-        if flight is not None:
-            self._under_way = flight.run.moves
-            self._begin(self._moves.run(flight, self._pass))
-            return
-        self._under_way = ()
-        job = self._moves.movement(move.id, through=through)
+        self._under_way = () if flight is None else flight.run.moves
+        if flight is None:
+            job = self._moves.movement(move.id, through=through)
+        else:
+            job = self._moves.run(flight, self._pass)
+        if self._begins_sortie(move.id):
+            job.first(self._setup.begin_sortie)
+        if self._moves.kind(move.id) is Recharge:
+            self._watch.moving = False
         if self._moves.kind(move.id) is Land:
             job.append(self._landed)
         self._begin(job)
@@ -118,8 +120,9 @@ class MavlinkBackend:
         energy = (
             None if known.energy is None or self._with.joules is None else known.energy * self._with.joules
         )
+        place = self._with.ground.position(known.place)
         return RobotState(
-            now, self._with.ground.position(known.place), known.speed, known.heading, energy, known.energy
+            now, place, known.speed, known.heading, energy, known.energy, known.wind, known.detected
         )
 
     def stop(self, now: float, response: str = "HOLD") -> None:
@@ -254,16 +257,15 @@ class MavlinkBackend:
         return "LAND"
 
     def _respond(self, response: str) -> None:
+        self._watch.check_hands()
         vehicle, track = self._with.vehicle, self._moves.track
         self._holding = respond(response, self._robot, vehicle, track, lambda movement: movement())
         self._watch.moving = self._holding
 
-    def _stand_or_go(self, move: str) -> None:
-        """Say whether the robot is under way, and where its sorties begin."""
+    def _begins_sortie(self, move: str) -> bool:
+        """Return whether the robot leaves the ground, or the place where it was charged, with a move."""
         kind = self._moves.kind(move)
-        if kind is TakeOff:
-            self._watch.renew()
-        self._watch.moving = kind is not Recharge and (self._watch.moving or kind is TakeOff)
+        return kind is TakeOff or (kind is GoTo and not self._watch.moving)
 
     def _landed(self) -> None:
         self._watch.moving = False

@@ -37,7 +37,7 @@ class Setup:
         note: Callable[[str, Mapping[str, object]], None],
     ) -> None:
         """Do nothing yet; `note` writes into the black box."""
-        self.is_done = False
+        self.is_done = self._restarted = False
         self._robot, self._with, self._options = robot, equipment, options
         self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
         self._way, self._note = way, note
@@ -72,11 +72,19 @@ class Setup:
         self._watch.tell_missing()
 
     def take_up(self) -> None:
-        """Heed everything again; a vehicle that has started anew, as with a new battery, is set up again."""
-        restarted = self._watch.restarted
+        """Heed everything again, and go on with the sortie."""
+        self._restarted = self._restarted or self._watch.restarted
         self._watch.tighten()
-        if restarted:
+        self.begin_sortie()
+
+    def begin_sortie(self) -> None:
+        """Be under way; a vehicle that has started anew, as with a new battery, is set up again first."""
+        self._restarted = self._restarted or self._watch.restarted
+        if self._restarted:
             self.set_up()
+        self._restarted = False
+        self._watch.renew()
+        self._watch.moving = True
 
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""

@@ -1,0 +1,100 @@
+"""The backend mavlink by itself, with a simulated vehicle: what it tells, and what it watches for."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import replace
+
+from flight_crew import SPEEDUP, free_port, until
+
+from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.mavlink.backend import MAVLINK
+from mmrs_core.runtime.clock import RealClock
+from mmrs_core.scene import Frame, Policy
+from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.testing.programs import move
+from mmrs_core.testing.small_programs import go, program, robot, robot_type
+
+EARTH = Frame("EPSG:4326", 42.37, 13.35, 720.0, "MSL")
+ROVER = robot(
+    "r",
+    [
+        go("out", (10.0, 0.0, 0.0)),
+        go("back", (0.0, 0.0, 0.0)),
+        move("charge", "Recharge", duration=2.0),
+        go("far", (150.0, 0.0, 0.0)),
+    ],
+)
+
+
+class Driven:
+    """A robot's backend that is ready, and its simulated vehicle."""
+
+    def __init__(self, backend, clock, vehicle):
+        self.backend, self.clock, self.vehicle = backend, clock, vehicle
+
+    @property
+    def state(self):
+        return self.backend.state(self.clock.now())
+
+    @property
+    def fault(self):
+        found = self.backend.fault(self.clock.now())
+        return found.which if found is not None else ""
+
+    def begin(self, id):
+        self.backend.begin(next(each for each in ROVER.moves if each.id == id), self.clock.now())
+
+    def do(self, *ids):
+        for id in ids:
+            self.begin(id)
+            self.finish()
+
+    def finish(self):
+        until(lambda: self.fault or self.backend.finished(self.clock.now()))
+        assert self.fault == ""
+
+
+@contextmanager
+def rover(*policies, **settings):
+    """Give a rover that is ready."""
+    port = free_port()
+    clock = RealClock(SPEEDUP)
+    given = BackendInput(
+        replace(program(ROVER), frame=EARTH),
+        replace(ROVER, policies=policies),
+        robot_type(),
+        {},
+        {},
+        {},
+        {},
+        live=Live(clock, lambda: None, lambda line: None, "run-0", links={"r": f"udpin:127.0.0.1:{port}"}),
+    )
+    with SimulatedVehicle(port, Settings(kind="rover", **settings), speedup=SPEEDUP) as vehicle:
+        driven = Driven(MAVLINK.connect(given), clock, vehicle)
+        try:
+            driven.backend.prepare(clock.now())
+            driven.finish()
+            yield driven
+        finally:
+            driven.backend.close()
+
+
+def test_a_robots_state_holds_the_wind_that_conditions_ask_for():
+    with rover(wind=(6.0, 90.0)) as driven:
+        until(lambda: driven.state.wind is not None)
+        assert abs(driven.state.wind - 6.0) < 1.0
+
+
+def test_a_robots_state_holds_what_its_vehicle_has_detected():
+    with rover(values={"fire": lambda seconds: 1.0}) as driven:
+        until(lambda: driven.state.detected == {"fire"})
+
+
+def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
+    with rover(Policy("OBSTACLE", "HOLD")) as driven:
+        driven.do("out", "back", "charge")
+        driven.begin("far")
+        until(lambda: driven.state.position[0] > 20.0)
+        driven.vehicle.faults.meet_obstacle(3.0, 0.0)
+        until(lambda: driven.fault == "OBSTACLE")
