@@ -48,6 +48,17 @@ def test_a_held_robot_halts_and_then_comes_to_where_it_was_going(robot):
     assert distance(robot.crew.vehicle.state().place, NORTH) < 1.0
 
 
+def test_a_landing_that_was_held_is_begun_again(robot):
+    done = in_background(lambda: robot.crew.obedience.repeat(robot.crew.vehicle.land))
+    until(lambda: robot.simulated.autopilot.body.position[2] < 9.0)
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    assert robot.simulated.autopilot.airborne
+    robot.inbox.give(Order("resume"))
+    done.result(20.0)
+    assert not robot.simulated.autopilot.armed
+
+
 @pytest.mark.parametrize("name", ["return", "land"])
 def test_an_order_that_ends_the_program_ends_a_hold_too(robot, name):
     done = go_north(robot)
