@@ -10,21 +10,18 @@ import time
 from collections.abc import Sequence
 from contextlib import nullcontext, suppress
 from types import FrameType
-from typing import TYPE_CHECKING
 
 import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
+from mmrs_core.errors import InternalError
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.faults import ENDS, FAULTS, Faults
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.schedule import Planned, Schedule, order, planned
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 from mmrs_core.sitl.words import Deeds, deeds_of, state_of, summary
-
-if TYPE_CHECKING:
-    pass
 
 LOOK_SECONDS = 0.1
 TELL_SECONDS = 10.0
@@ -67,7 +64,7 @@ class Rehearsal:
         before = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
         host.start()
         try:
-            ended = self._watch(time.monotonic() + seconds if seconds else float("inf"), lines)
+            ended = self._watch(host, time.monotonic() + seconds if seconds else float("inf"), lines)
         finally:
             host.stop()
             for number, handler in before.items():
@@ -85,11 +82,13 @@ class Rehearsal:
     def _stop(self, number: int, frame: FrameType | None) -> None:
         self._stopped = True
 
-    def _watch(self, until: float, lines: queue.SimpleQueue[str]) -> bool:
+    def _watch(self, host: Host, until: float, lines: queue.SimpleQueue[str]) -> bool:
         """Return whether it ended by itself, or by a line; False: it was interrupted."""
         due = time.monotonic() + TELL_SECONDS
         while not self._stopped:
             now = time.monotonic()
+            if host.failure is not None:
+                raise InternalError("the simulated vehicles fail") from host.failure
             if now >= until or self._obey(lines):
                 return True
             for name, schedule in self._schedules.items():

@@ -129,6 +129,8 @@ def sitl(
         recharge=recharge,
         parameters=tuple(parameter or ()),
     )
+    if behaviour is not None:
+        _refuse_beside(call, behaviour, ("count", "home", "kind"))
     settings = settings_of(call)
     given = berths_of(settings, behaviour) if behaviour is not None else plain_berths(count, home, kind)
     rehearsal = Rehearsal(berths.vehicles(given), fault or [])
@@ -138,3 +140,15 @@ def sitl(
     if json:
         say_json({"vehicles": rehearsal.deeds(), "connect": berths.arguments(given)})
     return code
+
+
+def _refuse_beside(call: typer.Context, behaviour: Path, names: tuple[str, ...]) -> None:
+    """Refuse options of vehicles without a model.
+
+    Raises:
+        typer.BadParameter: if there are any.
+    """
+    for name in names:
+        source = call.get_parameter_source(name)
+        if source is not None and source.name != "DEFAULT":
+            raise typer.BadParameter(f"--{name}: '{behaviour}' says it of its robots")

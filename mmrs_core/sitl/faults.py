@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from math import isfinite
 
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.body import wind_of
@@ -64,6 +65,7 @@ class Faults:
 
     def meet_obstacle(self, distance: float = 3.0, bearing: float = 0.0) -> None:
         """Have it report an obstacle, metres away, in degrees clockwise from where it looks."""
+        _refuse_below("metres", distance)
         with self._lock:
             self._autopilot.obstacle = (distance, bearing)
 
@@ -85,7 +87,13 @@ class Faults:
             self._autopilot.breached = False
 
     def set_battery(self, level: float) -> None:
-        """Have a battery of which so much is left, 0 to 1: an old one, or a fresh one after a change."""
+        """Have a battery of which so much is left, 0 to 1: an old one, or a fresh one after a change.
+
+        Raises:
+            ValueError: it is not from 0 to 1.
+        """
+        if not 0.0 <= level <= 1.0:
+            raise ValueError(f"{level:g} is not from 0 to 1")
         with self._lock:
             self._autopilot.energy = level
 
@@ -128,6 +136,7 @@ class Faults:
 
     def slow_uploads(self, seconds: float = 3.0) -> None:
         """Answer every message of an upload so much later."""
+        _refuse_below("seconds", seconds)
         self.answer_delay = seconds
 
     def break_camera(self) -> None:
@@ -142,6 +151,7 @@ class Faults:
 
     def change_wind(self, speed: float, comes_from: float) -> None:
         """Have the wind blow otherwise: metres per second, and degrees where it comes from."""
+        _refuse_below("metres per second", speed)
         with self._lock:
             self._autopilot.body.wind = wind_of(speed, comes_from)
 
@@ -165,23 +175,36 @@ class Faults:
             ENDS[name](self)
 
 
+def _finite(text: str) -> float:
+    if not isfinite(number := float(text)):
+        raise ValueError(f"{text} is no finite number")
+    return number
+
+
+def _refuse_below(unit: str, number: float) -> None:
+    if number < 0.0:
+        raise ValueError(f"{number:g} {unit} are less than none")
+
+
 Act = Callable[..., None]
 
 FAULTS: Mapping[str, Act] = {
     "gps-lost": Faults.lose_position,
     "restart": lambda faults, how="": faults.restart(how == "armed"),
     "stick": Faults.take_stick,
-    "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(float(metres), float(bearing)),
+    "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(
+        _finite(metres), _finite(bearing)
+    ),
     "breach": Faults.breach_fence,
-    "battery": lambda faults, level: faults.set_battery(float(level)),
+    "battery": lambda faults, level: faults.set_battery(_finite(level)),
     "silent": lambda faults, *commands: faults.silence(*map(int, commands)),
     "link-down": Faults.cut_link,
     "ground-down": Faults.cut_ground,
-    "clock-jump": lambda faults, seconds="3600": faults.jump_clock(float(seconds)),
+    "clock-jump": lambda faults, seconds="3600": faults.jump_clock(_finite(seconds)),
     "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
-    "slow-upload": lambda faults, seconds="3": faults.slow_uploads(float(seconds)),
+    "slow-upload": lambda faults, seconds="3": faults.slow_uploads(_finite(seconds)),
     "camera-dead": Faults.break_camera,
-    "wind": lambda faults, speed, bearing="0": faults.change_wind(float(speed), float(bearing)),
+    "wind": lambda faults, speed, bearing="0": faults.change_wind(_finite(speed), _finite(bearing)),
 }
 """What can go wrong, by name, and how it begins."""
 

@@ -42,10 +42,15 @@ class Hosted(Protocol):
 
 
 class Host:
-    """Keeps vehicles going: what comes is answered at once, and time passes in ticks."""
+    """Keeps vehicles going: what comes is answered at once, and time passes in ticks.
+
+    Attributes:
+        failure: what has ended this before its time; None: nothing has.
+    """
 
     def __init__(self, vehicles: Sequence[Hosted]) -> None:
         """Be ready to keep these vehicles going."""
+        self.failure: Exception | None = None
         self._vehicles = vehicles
         self._tick = max(SHORTEST_TICK, TICK_SECONDS / max((each.speedup for each in vehicles), default=1.0))
         self._stopping = threading.Event()
@@ -62,6 +67,12 @@ class Host:
             self._thread.join()
 
     def _run(self) -> None:
+        try:
+            self._keep_going()
+        except Exception as error:
+            self.failure = error
+
+    def _keep_going(self) -> None:
         with selectors.DefaultSelector() as selector:
             for vehicle in self._vehicles:
                 for radio in vehicle.radios:

@@ -39,20 +39,23 @@ class Radio:
         """Be ready to speak.
 
         Args:
-            address: host and UDP port of the ground station.
+            address: host and UDP port of the ground station; names are looked up once.
             system: MAVLink system that speaks.
             key: to sign with and to expect signatures of; empty: no signatures.
             loss: part of all datagrams that are lost, either way.
             delay: real seconds that a datagram takes, either way.
             seed: of the losses.
+
+        Raises:
+            ValueError: the host has no address.
         """
         self.down: Callable[[], bool] = lambda: False
         self.sent = self.heard = 0
-        self._address = address
+        self._address = _found(address)
         self._loss, self._delay = loss, delay
         self._random = random.Random(seed * 1009 + system)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1" if address[0] in ("127.0.0.1", "localhost") else "0.0.0.0", 0))
+        self._socket.bind(("127.0.0.1" if self._address[0] == "127.0.0.1" else "0.0.0.0", 0))
         self._socket.setblocking(False)
         self._mav = mavlink.MAVLink(None, srcSystem=system, srcComponent=COMPONENT)
         self._mav.robust_parsing = True
@@ -122,8 +125,8 @@ class Radio:
         try:
             self._socket.sendto(data, self._address)
             self.sent += 1
-        except (ConnectionError, BlockingIOError):
-            return  # nobody listens there yet, or the network takes no more: lost, as on any radio
+        except OSError:
+            return  # nobody listens there, there is no way to it, or it takes no more: lost, as on any radio
 
     def _loses(self) -> bool:
         return self.down() or (self._loss > 0.0 and self._random.random() < self._loss)
@@ -132,3 +135,11 @@ class Radio:
         signing = self._mav.signing
         signing.secret_key, signing.sign_outgoing = key, True
         signing.timestamp = int((time.time() - SIGNATURE_EPOCH) * 100_000)
+
+
+def _found(address: tuple[str, int]) -> tuple[str, int]:
+    host, port = address
+    try:
+        return socket.gethostbyname(host), port
+    except (OSError, UnicodeError) as error:
+        raise ValueError(f"{host}: no address is known of it") from error
