@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from live_runs import Flight
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.contributions.rules import MoveKind, MoveSpec, RobotKind
@@ -76,3 +77,17 @@ def fly(kinds):
         return found
 
     return run
+
+
+@pytest.fixture
+def live(kinds):
+    """Return a function that begins a run in real time, and gives what it is steered and judged by."""
+    runs = []
+
+    def begin(behaviour, script, **more):
+        runs.append(Flight(behaviour, script, kinds, **more))
+        return runs[-1]
+
+    yield begin
+    for run in runs:
+        run.abort()

@@ -1,0 +1,188 @@
+"""Runs in real time, with robots that do each thing for as long as a test says."""
+
+from __future__ import annotations
+
+import threading
+import time
+from math import inf
+
+from mmrs_core.contributions.backends import BackendFactory, BackendInput
+from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.errors import MmrsError
+from mmrs_core.runtime.clock import RealClock
+from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.orders import STOP, Orders
+from mmrs_core.runtime.run import inputs_of
+from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, robot_type
+
+FAST = 100.0
+
+
+class Walker:
+    """A robot that does each thing until it is told that it is done; it wakes the interpreter itself."""
+
+    def __init__(self, given: BackendInput, script):
+        self.given, self.script = given, script
+        self.done, self.trouble, self.stops, self.begun = True, None, [], []
+        self.halted = self.closed = self.watched_for = self.doubted = False
+        self.recovered = None
+        script.robots[given.robot.id] = self
+
+    def _go(self, what):
+        self.begun.append(what)
+        seconds = self.script.seconds.get(what, 0.0)
+        self.done = seconds == 0.0
+        if 0.0 < seconds < inf:
+            threading.Timer(seconds, self._finish, (what,)).start()
+
+    def _finish(self, what):
+        if self.begun[-1] == what:
+            self.done = True
+            self.given.live.wake()
+
+    def fail(self, which):
+        self.trouble = Fault(which, "says the test")
+        self.given.live.wake()
+
+    def prepare(self, now):
+        self._go("ready")
+
+    def begin(self, move, now, *, through=False):
+        self._go(move.id)
+
+    def act(self, action, now):
+        self._go(action.name)
+
+    def finished(self, now):
+        return self.done
+
+    def fault(self, now):
+        return self.trouble
+
+    def next_event(self, now):
+        return inf
+
+    def wait(self, now):
+        pass
+
+    def state(self, now):
+        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=self.script.charge)
+
+    def stop(self, now, response="HOLD"):
+        self.stops.append(response)
+        self.trouble = None
+        self._go(f"stop {response}")
+
+    def obeys(self, now):
+        return self.begun[-1].startswith("stop")
+
+    def in_doubt(self, now):
+        return self.doubted or (self.trouble is not None and self.trouble.which == "TAKEN_OVER")
+
+    def watched(self, now):
+        return self.watched_for and self.trouble is None
+
+    def pause(self, now):
+        self.halted = True
+
+    def resume(self, now):
+        self.halted = False
+
+    def paused(self, now):
+        return self.halted
+
+    def recover(self, passed, begun, now):
+        self.recovered = (tuple(passed), begun)
+        self._go("recovered")
+
+    def close(self):
+        self.closed = True
+
+
+class Script:
+    """How long things take, in real seconds; what is not named takes none, and inf never ends."""
+
+    def __init__(self, **seconds):
+        self.seconds = {name.replace("_", " "): value for name, value in seconds.items()}
+        self.robots, self.charge = {}, 0.5
+
+    @property
+    def factory(self):
+        return BackendFactory("walker", "a robot of the test", lambda given: Walker(given, self))
+
+
+class Flight:
+    """A run in a thread of its own."""
+
+    def __init__(self, behaviour, script, kinds, speedup=1.0, here=None, **more):
+        self.behaviour, self.script, self.records, self.said = behaviour, script, [], []
+        self.orders = Orders()
+        inputs = inputs_of(
+            behaviour, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds
+        )
+        inputs = {id: given for id, given in inputs.items() if here is None or id in here}
+        factory = script.factory if isinstance(script, Script) else script
+        given = {"bus": InProcessBus(behaviour), "conditions": {}, **more}
+        self.venture = Venture(
+            behaviour,
+            inputs,
+            clock=RealClock(speedup),
+            orders=self.orders,
+            say=self.said.append,
+            **given,
+        )
+        self.ending = self.error = None
+        self._thread = threading.Thread(target=self._go, args=(factory,), daemon=True)
+        self._thread.start()
+
+    def _go(self, factory):
+        steps = run_live(self.venture, factory)
+        try:
+            while True:
+                self.records.append(next(steps))
+        except StopIteration as stop:
+            self.ending = stop.value
+        except (MmrsError, KeyboardInterrupt) as error:
+            self.error = error
+
+    def wait_for(self, test, seconds=20.0):
+        until = time.monotonic() + seconds
+        while not test():
+            assert time.monotonic() < until, (self.shown(), self.said)
+            time.sleep(0.002)
+
+    def wait_for_step(self, words):
+        self.wait_for(lambda: words in self.shown())
+
+    def shown(self):
+        return [f"{r.robot} {r.label} {r.move} {r.detail}".strip() for r in list(self.records)]
+
+    def order(self, kind, *robots):
+        order = self.orders.give(kind, robots or [each.id for each in self.behaviour.robots])
+        assert order.settled.wait(20.0), (kind, order.open)
+        return order
+
+    def end(self, seconds=20.0):
+        self._thread.join(seconds)
+        assert not self._thread.is_alive(), (self.shown(), self.said)
+        return self.ending
+
+    def abort(self):
+        """End the thread of a test that has failed, or does not wait for the end."""
+        while self._thread.is_alive():
+            self.orders.give(STOP, [each.id for each in self.behaviour.robots])
+            for each in self.script.robots.values() if isinstance(self.script, Script) else ():
+                each._finish(each.begun[-1])
+            self._thread.join(0.2)
+
+
+def do(id, **more):
+    """Return a move that may last as long, or as short, as it likes."""
+    return hold(id, 0.0, **more)
+
+
+WALK = program(robot("r", [do("walk"), do("rest")]))
+
+
+TWO = program(robot("a", [do("walk")]), robot("b", [do("walk")]))

@@ -1,0 +1,158 @@
+"""Runs in real time that are broken off, for a battery or for good, and go on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import pytest
+from live_runs import TWO, WALK, Script, do
+
+from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.contributions.execution import Fault
+from mmrs_core.runtime.live import Venture, run_live
+from mmrs_core.runtime.orders import LAND, RESUME, STOP
+from mmrs_core.runtime.resuming import restore
+from mmrs_core.runtime.run import inputs_of
+from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.scene import Policy
+from mmrs_core.testing.small_programs import ROBOT_TYPE, notify, program, robot, robot_type
+
+LOW = (Policy("BATTERY_LOW", "RETURN"),)
+
+
+SURVEY = program(
+    robot("a", [do("one"), do("two", after=(notify("b.s"),)), do("three")], policies=LOW),
+    robot("b", [do("h")], waits={"h": ["s"]}),
+)
+
+
+def suspended(live, **more):
+    run = live(SURVEY, Script(two=inf), **more)
+    run.wait_for_step("a begin two")
+    run.script.robots["a"].fail("BATTERY_LOW")
+    return run
+
+
+def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
+    run = suspended(live)
+    ending = run.end()
+    assert ending.suspended == ("a",)
+    assert ending.responses["a"] == "RETURN"
+    assert ending.outcome is Outcome.INCOMPLETE
+    assert run.script.robots["a"].stops == ["RETURN"]
+    assert all(record.label != "fault" for record in run.records)
+    assert replay(SURVEY, run.records, partial=True).accepted
+
+
+def test_a_low_battery_that_is_answered_in_the_air_is_a_fault(live):
+    behaviour = program(robot("r", [do("walk")], policies=(Policy("BATTERY_LOW", "HOLD"),)))
+    run = live(behaviour, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].fail("BATTERY_LOW")
+    assert run.end().faults["r"].which == "BATTERY_LOW"
+
+
+def test_a_changed_battery_lets_the_program_go_on_in_the_same_process(live):
+    run = suspended(live, patience=20.0)
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run.script.seconds["two"] = 0.0
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
+    assert run.end().outcome is Outcome.SUCCESS
+    assert run.script.robots["a"].recovered == (("start", "one"), "two")
+    assert replay(SURVEY, run.records).accepted
+
+
+def test_a_battery_that_was_not_changed_is_told_and_nothing_moves(live):
+    run = suspended(live, patience=20.0)
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run.script.charge = 0.15
+    assert run.order(RESUME, "a").refused == {"a": "its battery is still at 15%"}
+    assert run.script.robots["a"].recovered is None
+
+
+def test_a_run_is_resumed_from_its_log(live):
+    first = suspended(live)
+    first.end()
+    records = tuple(first.records)
+    bus = InProcessBus(SURVEY)
+    restore(bus, SURVEY, records)
+    second = live(SURVEY, Script(), resumed=records, bus=bus)
+    assert second.end().outcome is Outcome.SUCCESS
+    assert second.script.robots["a"].recovered == (("start", "one"), "two")
+    assert second.script.robots["a"].begun[:3] == ["ready", "recovered", "two"]
+    result = replay(SURVEY, [*records, *(replace(r, time=r.time + 1e3) for r in second.records)])
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+
+
+def test_a_robot_that_cannot_be_taken_up_again_can_be_tried_again_later(live):
+    first = suspended(live)
+    first.end()
+    records = tuple(first.records)
+    bus = InProcessBus(SURVEY)
+    restore(bus, SURVEY, records)
+    second = live(SURVEY, Script(recovered=inf), resumed=records, bus=bus)
+    second.wait_for(lambda: len(second.script.robots) == 2 and second.script.robots["b"].recovered)
+    second.script.robots["a"].fail("REFUSED")
+    second.script.robots["b"]._finish("recovered")
+    ending = second.end()
+    assert ending.suspended == ("a",)
+    assert ending.faults["a"].which == "REFUSED"
+    assert [record.label for record in second.records if record.robot == "a"] == []
+
+
+def test_a_robot_that_ended_by_a_fault_is_left_alone_and_the_others_go_on(live):
+    first = live(TWO, Script(walk=inf))
+    first.wait_for_step("a begin walk")
+    first.wait_for_step("b begin walk")
+    first.order(LAND, "a")
+    first.script.robots["b"].fail("BATTERY_LOW")
+    first.wait_for(lambda: "'a': has done LAND" in first.said)
+    first.order(STOP, "b")
+    records = tuple(record for record in first.records if record.detail != "STOPPED")
+    second = live(TWO, Script(), resumed=records)
+    ending = second.end()
+    assert list(second.script.robots) == ["b"]
+    assert ending.outcome is Outcome.FAILED
+    assert ending.faults == {"a": Fault("ORDERED")}
+    assert "b end stop" in second.shown()
+
+
+def test_a_robot_that_waits_for_one_that_failed_before_is_told_so(live):
+    behaviour = program(
+        robot("a", [do("walk", after=(notify("b.s"),))]),
+        robot("b", [do("h")], waits={"h": ["s"]}, policies=(Policy("PEER_LOST", "LAND", 0.1),)),
+    )
+    first = live(behaviour, Script(walk=inf, h=inf))
+    first.wait_for_step("b begin h")
+    first.order(LAND, "a")
+    records = tuple(first.records)
+    second = live(behaviour, Script(), resumed=records)
+    assert second.end().faults["b"].which == "PEER_LOST"
+
+
+@pytest.mark.parametrize("kept", range(1, 14))
+def test_a_run_is_resumed_after_any_of_its_steps(live, kept):
+    behaviour = program(
+        robot("a", [do("one", after=(notify("b.s"),)), do("two")]),
+        robot("b", [do("h"), do("i")], waits={"h": ["s"]}),
+    )
+    whole = live(behaviour, Script())
+    whole.end()
+    records = tuple(whole.records[:kept])
+    bus = InProcessBus(behaviour)
+    restore(bus, behaviour, records)
+    rest = live(behaviour, Script(), resumed=records, bus=bus)
+    assert rest.end().outcome is Outcome.SUCCESS
+    result = replay(behaviour, [*records, *(replace(r, time=r.time + 1e3) for r in rest.records)])
+    assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
+
+
+def test_a_log_of_another_behaviour_is_refused(live, kinds):
+    run = live(WALK, Script())
+    run.end()
+    other = program(robot("r", [do("swim")]))
+    given = inputs_of(other, types={ROBOT_TYPE: robot_type()}, options={}, environment={}, areas=(), **kinds)
+    venture = Venture(other, given, InProcessBus(other), {}, resumed=tuple(run.records))
+    with pytest.raises(ValueError, match="none of its program's"):
+        list(run_live(venture, Script().factory))
