@@ -137,6 +137,16 @@ class Autopilot:
         return 0 if self.settings.firmware == PX4 else 1
 
     @property
+    def told_item(self) -> int:
+        """Return the item that it tells: ArduPilot that which it flies to, not what it does on the way."""
+        items = self.stores[MISSION]
+        if self.settings.firmware == PX4 or not self.first_item <= self.item < len(items):
+            return self.item
+        ahead = (seq for seq in range(self.item, len(items)) if items[seq].is_flown)
+        behind = (seq for seq in range(self.item, 0, -1) if items[seq].is_flown)
+        return next(ahead, next(behind, 0))
+
+    @property
     def flies(self) -> bool:
         """Return whether it is of a kind that takes off and lands."""
         return self.settings.kind == "copter"
@@ -177,6 +187,7 @@ class Autopilot:
         if number != self.mode:
             self.modes.append((self.time, number))
             self.beats_now = True
+            self._take_up_mission(name)
         self.mode, self.mode_name = number, name
         self.body.target = self.body.onward = self.body.origin = None
         self.body.speed = self._usual_speed()
@@ -238,6 +249,12 @@ class Autopilot:
         if mode not in self.numbers:
             raise ValueError(f"{mode}: no such mode; this vehicle has {', '.join(self.numbers)}")
         self.set_mode(self.numbers[mode])
+
+    def _take_up_mission(self, mode: str) -> None:
+        """Begin the mission anew where it is over, or where it shall not go on at the item it is at."""
+        if mode == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
+            self.item, self.finished = self.first_item, False
+            self.loops.clear()
 
     def _usual_speed(self) -> float:
         for name, part in (("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0)):

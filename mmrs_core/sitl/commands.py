@@ -119,8 +119,12 @@ def _yaw(pilot: Autopilot, params: Params) -> int:
 
 
 def _current(pilot: Autopilot, params: Params) -> int:
-    if not 0 <= params[0] < len(pilot.stores[MISSION]):
+    items = pilot.stores[MISSION]
+    if not 0 <= params[0] < len(items):
         return DENIED
+    flown = any(item.is_flown for item in items[int(params[0]) :])
+    if pilot.settings.firmware != PX4 and not flown:
+        return FAILED
     jump(pilot, int(params[0]))
     if params[1] == 1.0:
         pilot.loops.clear()

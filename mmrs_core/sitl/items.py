@@ -24,6 +24,9 @@ OTHERS = frozenset(
     {20, 93, 112, 114, 115, 177, 178, 181, 182, 183, 184, 197, 203, 204, 205, 206, 207, 211}
     | {1000, 1001, 2000, 2001, 2500, 2501, 42600, 530, 531}
 )
+LAST_TO_FLY = 95
+"""Items with higher commands are carried out on the way; the vehicle goes nowhere for them."""
+
 KNOWN = {MISSION: (PLACED - FENCES - {5100}) | OTHERS, FENCE: FENCES, RALLY: frozenset({5100})}
 
 
@@ -37,6 +40,11 @@ class Item:
     x: int
     y: int
     z: float
+
+    @property
+    def is_flown(self) -> bool:
+        """Return whether the vehicle goes, waits or turns back for it, and does not only do something."""
+        return self.command <= LAST_TO_FLY
 
     @property
     def above_sea(self) -> bool:

@@ -146,10 +146,10 @@ def hud(pilot: Autopilot) -> Message:
 
 
 def mission_current(pilot: Autopilot) -> Message:
-    """Return the item that it is at."""
+    """Return the item that it is at, or flies to."""
     total = max(0, len(pilot.stores[MISSION]) - 1)
     state = 4 if pilot.finished else 3 if pilot.mode_name == "auto" else 2
-    return mavlink.MAVLink_mission_current_message(pilot.item, total, state if total else 1)
+    return mavlink.MAVLink_mission_current_message(pilot.told_item, total, state if total else 1)
 
 
 def status(pilot: Autopilot) -> Message:

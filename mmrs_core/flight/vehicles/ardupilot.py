@@ -25,6 +25,7 @@ from .enclosure import enclose
 from .evidence import LinkEvidence
 from .following import Following
 from .helm import MODE_SECONDS, Helm
+from .runs import first_flown, keep_place, speed_before
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
 from .travel import set_up
@@ -96,6 +97,8 @@ class MavlinkVehicle:
             self._mission = uploads.mission
             mission = self._helm.habits.mission(uploads.mission)
             self._mark = preparation.replace_all(self._link, mission, uploads.fence, uploads.rally)
+        if self._mission and (changed := keep_place(self._link)):
+            self._tell(changed)
         for line in safeguards.report(self._link, self._kind):
             self._tell(line)
         for line in set_up(self._link, self._kind, self._travel):
@@ -182,11 +185,10 @@ class MavlinkVehicle:
         """
         self._helm.arm()
         self._check_mission()
-        self._helm.habits.select(self._helm.habits.number(first))
-        patience = self._link.clock.patience(MODE_SECONDS)
-        if not self._link.wait(lambda: self._item() == first, patience, heard=True):
-            raise Refused(f"the vehicle does not go to item {first} of its mission")
+        self._select(first)
         self._helm.enter(modes.AUTO)
+        if (speed := speed_before(self._mission, first)) is not None:
+            command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
         following = Following(self._telemetry, self._places(first, last), self._item, first)
         done = first - 1
         while done < last:
@@ -299,6 +301,18 @@ class MavlinkVehicle:
         """Return what is known now."""
         mode, armed = self._helm.mode(), self._telemetry.armed()
         return replace(self._telemetry.state(), mode=mode, armed=armed)
+
+    def _select(self, seq: int) -> None:
+        """Have the mission go on at an item, or at the first after it that is flown to.
+
+        Raises:
+            Refused: the vehicle does not say that it will.
+        """
+        flown = first_flown(self._mission, seq)
+        self._helm.habits.select(self._helm.habits.number(seq))
+        patience = self._link.clock.patience(MODE_SECONDS)
+        if not self._link.wait(lambda: seq <= self._item() <= flown, patience, heard=True):
+            raise Refused(f"the vehicle does not go to item {seq} of its mission")
 
     def _item(self) -> int:
         """Return the item of the program's mission that the vehicle is at; less than 0: not known."""

@@ -9,10 +9,12 @@ import pytest
 from simulated import Bench
 
 from mmrs_core.sitl.items import Item
+from mmrs_core.sitl.telemetry import mission_current
 
 CORNER = (0.0, 60.0, 20.0)
 LEGS = ((0.0, 10.0, 20.0), CORNER, (60.0, 60.0, 20.0), (60.0, 100.0, 20.0))
 LOITER, LAND, RETURN, SPEED, PHOTO, TRIGGER, JUMP = 17, 21, 20, 178, 203, 206, 177
+SET_CURRENT = 224
 
 
 def plain(command: int, *params: float, x: int = 0, y: int = 0, z: float = 0.0) -> Item:
@@ -159,3 +161,47 @@ def test_the_next_item_can_be_chosen_and_one_that_is_not_there_cannot(bench):
     assert bench.command(224, 3) == 0
     assert bench.pilot.item == 3
     assert bench.command(224, 9) == 2
+
+
+def telling(bench: Bench) -> int:
+    return int(mission_current(bench.pilot).seq)
+
+
+def test_an_arducopter_that_does_not_fly_its_mission_goes_on_to_the_next_item_that_is_flown(bench):
+    bench.load(plain(SPEED, 1, 2.0), *bench.go_to(*LEGS), plain(SPEED, 1, 3.0))
+    bench.fly_up(20.0)
+    assert bench.command(SET_CURRENT, 1) == 0
+    assert telling(bench) == 2
+    bench.mode("auto")
+    bench.wait(1.0)
+    assert bench.pilot.body.speed == 2.0, "what stands before the item that is flown is done, too"
+
+
+def test_a_mission_does_not_go_on_where_nothing_is_flown_any_more(bench):
+    bench.load(*bench.go_to(*LEGS), plain(SPEED, 1, 3.0))
+    assert bench.command(SET_CURRENT, 5) == 4
+
+
+def test_a_px4_tells_the_item_that_was_chosen_whatever_it_is():
+    bench = Bench(firmware="px4")
+    bench.pilot.stores[0] = [plain(SPEED, 1, 2.0), *bench.go_to(*LEGS)]
+    assert bench.command(SET_CURRENT, 0) == 0
+    assert telling(bench) == 0
+
+
+@pytest.mark.parametrize(("restarts", "item"), [(0.0, 3), (1.0, 1)])
+def test_a_mission_goes_on_where_it_was_told_or_begins_anew_as_its_owner_has_set_it(bench, restarts, item):
+    bench.pilot.parameters["MIS_RESTART"] = restarts
+    bench.load(*bench.go_to(*LEGS))
+    bench.fly_up(20.0)
+    assert bench.command(SET_CURRENT, 3) == 0
+    bench.mode("auto")
+    assert telling(bench) == item
+
+
+def test_a_mission_that_is_over_begins_anew_when_auto_is_entered_again(bench):
+    flown(bench, *bench.go_to(*LEGS[:2]), until=2)
+    assert bench.wait_for(lambda: bench.pilot.finished)
+    bench.mode("guided")
+    bench.mode("auto")
+    assert telling(bench) == 1

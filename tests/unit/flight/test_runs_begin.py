@@ -1,0 +1,101 @@
+"""Where runs of an uploaded mission begin, with vehicles that take what they are told each in their way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from flight_crew import manned, robot_of
+
+from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.places import distance
+from mmrs_core.flight.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
+from mmrs_core.flight.services import parameters
+from mmrs_core.flight.services.uploads import mission_of, uploads_of
+from mmrs_core.flight.vehicles.runs import first_flown, keep_place, speed_before
+
+WAYS = {
+    name: Geographic(42.37 + north / 111_080.0, 13.35, 10.0)
+    for name, north in (("a1", 10.0), ("a2", 20.0), ("b1", 40.0), ("b2", 60.0), ("b3", 90.0))
+}
+MOVES = [("start", Start()), ("up", TakeOff(10.0))]
+MOVES += [(name, GoTo(place, 4.0 if name == "b3" else 3.0)) for name, place in WAYS.items()]
+MOVES += [("down", Land()), ("stop", Stop())]
+ROBOT = replace(
+    robot_of(),
+    steps=tuple(
+        Step(name, movement, then=Then(MOVES[index + 1][0]) if index + 1 < len(MOVES) else None)
+        for index, (name, movement) in enumerate(MOVES)
+    ),
+    runs=(Run(("a1", "a2"), (0.0, 0.0)), Run(("b1", "b2", "b3"), (0.0, 0.0, 0.0))),
+)
+MISSION, FLIGHTS = mission_of(ROBOT)
+SECOND = FLIGHTS["b1"]
+
+
+@pytest.fixture
+def airborne(tmp_path):
+    """Return a function that gives the crew of a robot that has taken off, with its mission uploaded."""
+    opened = []
+
+    def fly(**settings):
+        opened.append(manned(tmp_path, ROBOT, **settings))
+        made = opened[-1].__enter__()
+        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        made.crew.watch.renew()
+        made.crew.vehicle.take_off(10.0)
+        return made
+
+    yield fly
+    for made in opened:
+        made.__exit__(None, None, None)
+
+
+@pytest.mark.parametrize("firmware", ["ardupilot", "px4"])
+def test_a_run_begins_with_its_own_first_place(airborne, firmware):
+    made = airborne(firmware=firmware)
+    reached = []
+    made.crew.vehicle.fly(SECOND.first, SECOND.last, reached.append)
+    assert reached == list(range(SECOND.first, SECOND.last + 1))
+    assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
+
+
+def test_what_is_left_of_a_run_is_flown_as_fast_as_the_run(airborne):
+    made = airborne()
+    autopilot, speeds = made.simulated.autopilot, []
+    rest = SECOND.first + 2
+    assert MISSION[rest].x == round(WAYS["b2"].latitude * 1e7)
+    made.crew.link.observe(
+        lambda message, out: speeds.append(autopilot.body.speed) if made.mode == "auto" else None
+    )
+    made.crew.vehicle.fly(rest, SECOND.last, lambda seq: None)
+    assert set(speeds[len(speeds) // 4 :]) == {3.0, 4.0}
+
+
+def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told(tmp_path):
+    with manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made:
+        told = []
+        made.crew.vehicle._tell = told.append
+        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        assert made.simulated.autopilot.parameters["MIS_RESTART"] == 0.0
+        assert "MIS_RESTART = 0, which was 1: each run begins with its own first place" in told
+        made.crew.watch.renew()
+        made.crew.vehicle.take_off(10.0)
+        made.crew.vehicle.fly(SECOND.first, SECOND.last, lambda seq: None)
+        assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
+
+
+def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(tmp_path, monkeypatch):
+    monkeypatch.setattr(parameters, "write", lambda *given: False)
+    with (
+        manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made,
+        pytest.raises(Refused, match="MIS_RESTART = 1: the vehicle would begin every run"),
+    ):
+        keep_place(made.crew.link)
+
+
+def test_a_run_says_its_speed_before_its_first_place():
+    assert first_flown(MISSION, SECOND.first) == SECOND.first + 1
+    assert speed_before(MISSION, SECOND.first) is None
+    assert speed_before(MISSION, SECOND.first + 1) == 3.0
+    assert speed_before(MISSION, SECOND.last) == 4.0
