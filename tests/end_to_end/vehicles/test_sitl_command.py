@@ -108,6 +108,12 @@ def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
         (["--kind", "plane"], "no such kind"),
         (["--parameter", "RTL_ALT"], "is not NAME=NUMBER"),
         (["--speedup", "0"], "speedup"),
+        (("--host", "nowhere.invalid"), "nowhere.invalid: no address is known of it"),
+        (("--fault", "battery=2"), "--fault battery 2: 2 is not from 0 to 1"),
+        (("--fault", "slow-upload=-3"), "-3 seconds are less than none"),
+        (("--fault", "obstacle=nan"), "nan is no finite number"),
+        (("--home", "91,0"), "--home 91,0: is no place"),
+        (("carbon-dioxide", "--kind", "rover"), "--kind: 'carbon-dioxide' says it of its robots"),
     ],
 )
 def test_a_wrong_command_line_is_a_usage_error(arguments, complaint):
