@@ -76,3 +76,15 @@ def test_the_arguments_are_those_of_controllers_and_of_mmrs_run(speedup, end):
 def test_what_makes_no_sense_is_refused(given, told):
     with pytest.raises(typer.BadParameter, match=told):
         common(**given).vehicles(plain_berths(2, "42.37,13.35", "copter"))
+
+
+def test_a_ground_station_that_looks_on_is_reached_by_a_radio_of_its_own():
+    ((_, vehicle),) = common(ground="14650").vehicles(plain_berths(1, "42.37,13.35", "copter"))
+    assert len(vehicle.radios) == 2
+    vehicle.stop()
+
+
+@pytest.mark.parametrize("text", ["station", "127.0.0.1:", "0", "127.0.0.1:70000"])
+def test_a_ground_station_without_a_port_is_refused(text):
+    with pytest.raises(typer.BadParameter, match=r"is not \[HOST:\]PORT"):
+        common(ground=text).vehicles(plain_berths(1, "42.37,13.35", "copter"))

@@ -84,7 +84,7 @@ def test_what_makes_no_sense_is_refused(text, complaint):
         injections([text], URLS)
 
 
-@pytest.mark.parametrize("text", ["loss=0.1", "cut@1", "gps-lost@1"])
+@pytest.mark.parametrize("text", ["loss=0.1", "cut@1", "gps-lost@1", "ground-cut@1"])
 def test_a_dry_run_has_no_links_to_make_faulty(text):
     with pytest.raises(ValueError, match="a dry run has no link"):
         injections([text], URLS, dry=True)
