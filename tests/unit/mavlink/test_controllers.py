@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
+from mmrs_core.behaviour.program import Heading, Target, Transition
 from mmrs_core.contributions.wiring import DeviceWiring, Wired
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
@@ -226,19 +226,6 @@ def test_a_response_to_a_lost_link_that_the_vehicle_cannot_give_by_itself_is_ref
         "robot 'alpha': policy LINK_LOST: no copter does SURFACE by itself",
         "robot 'alpha', move 'up': policy LINK_LOST: no copter does SURFACE by itself",
     )
-
-
-def test_an_unknown_kind_of_move_is_refused_even_if_it_extends_a_known_one():
-    spiral = replace(go_to("a", (0.0, 9.0, 5.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
-    assert refused(take_off("up", 5.0), spiral, LAND) == (
-        "robot 'alpha', move 'a': Spiral is not known to this target",
-    )
-
-
-def test_an_unknown_action_is_refused():
-    strange = replace(photo(), metaclasses=(("urn:x:1.0", "Sing"), (BEHAVIOUR, "Action")))
-    (fault,) = refused(take_off("up", 5.0), replace(LAND, before=(strange,)))
-    assert fault == "robot 'alpha', move 'down': action Sing is not known to this target"
 
 
 def test_an_object_is_looked_for_by_the_users_own_function():

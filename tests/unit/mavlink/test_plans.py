@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Heading, Target, Transition
+from mmrs_core.behaviour.program import Heading, Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.geometry.frames import LocalFrame
@@ -206,13 +206,6 @@ def test_everything_that_a_plan_cannot_say_is_listed():
         "robot 'beta', move 'b1'",
         "robot 'beta', move 'b2'",
     ]
-
-
-def test_a_move_of_an_unknown_kind_is_refused_even_if_it_is_a_goto():
-    spiral = replace(go_to("a", (0.0, 9.0, 20.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
-    assert refused(take_off("up", 20.0), spiral, LAND) == (
-        "robot 'alpha', move 'a': Spiral is not known to this target",
-    )
 
 
 def test_a_take_off_to_no_height_is_refused():
