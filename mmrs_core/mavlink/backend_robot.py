@@ -131,7 +131,7 @@ class MavlinkBackend:
             return
         found = self._worker.fault
         self._response, self._holding, self._under_way = response, False, ()
-        self._shown = lambda: False
+        self._shown = self._brakes = lambda: False
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, response)
         if found is not None and found.event == LINK_LOST:

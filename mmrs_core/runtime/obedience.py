@@ -106,7 +106,9 @@ class Obedience:
     def _resume(self, order: Order, robot: RunningRobot) -> None:
         if robot.point.is_final:
             order.refuse(robot.id, "its program has ended")
-        elif robot.suspended and not robot.stopping:
+        elif robot.suspended and robot.stopping:
+            order.refuse(robot.id, f"has still to do {robot.response}")
+        elif robot.suspended:
             self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
             robot.backend.resume(self._clock.now())

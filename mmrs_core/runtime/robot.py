@@ -183,7 +183,8 @@ class RunningRobot:
     def _suspend(self, found: Fault, response: str) -> None:
         """Break the program off; its log ends where it can be taken up again."""
         self.notify.give_up()
-        self.fault, self.response, self.suspended, self.recovering = found, response, True, False
+        self.fault, self.response, self.suspended = found, response, True
+        self.recovering = self.held = False
         self._answered.add(found.which)
 
     def overtaken_by(self, found: Fault) -> bool:

@@ -71,7 +71,7 @@ class Walker:
 
     def stop(self, now, response="HOLD"):
         self.stops.append(response)
-        self.trouble = None
+        self.trouble, self.halted = None, False
         self._go(f"stop {response}")
 
     def obeys(self, now):

@@ -11,7 +11,7 @@ from live_runs import TWO, WALK, Script, do
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import LAND, RESUME, STOP
+from mmrs_core.runtime.orders import HOLD, LAND, RESUME, STOP
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.runtime.slots import InProcessBus
@@ -61,6 +61,26 @@ def test_a_changed_battery_lets_the_program_go_on_in_the_same_process(live):
     assert run.end().outcome is Outcome.SUCCESS
     assert run.script.robots["a"].recovered == (("start", "one"), "two")
     assert replay(SURVEY, run.records).accepted
+
+
+def test_a_robot_whose_battery_got_low_while_it_was_held_goes_on_with_its_program(live):
+    run = live(SURVEY, Script(two=inf), patience=20.0)
+    run.wait_for_step("a begin two")
+    assert run.order(HOLD, "a").confirmed
+    run.script.robots["a"].fail("BATTERY_LOW")
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run.script.seconds["two"] = 0.0
+    assert run.order(RESUME, "a").confirmed
+    assert run.end().outcome is Outcome.SUCCESS
+
+
+def test_a_robot_that_still_comes_down_for_its_battery_does_not_go_on(live):
+    run = live(SURVEY, Script(two=inf, stop_RETURN=inf), patience=20.0)
+    run.wait_for_step("a begin two")
+    run.script.robots["a"].fail("BATTERY_LOW")
+    run.wait_for(lambda: run.script.robots["a"].stops == ["RETURN"])
+    assert run.order(RESUME, "a").refused == {"a": "has still to do RETURN"}
+    assert run.script.robots["a"].recovered is None
 
 
 def test_a_battery_that_was_not_changed_is_told_and_nothing_moves(live):
