@@ -148,9 +148,7 @@ def plain_berths(count: int, home: str, kind: str) -> list[Berth]:
     """
     latitude, longitude = pair(home, "--home")
     if not (-90.0 <= latitude <= 90.0 and -180.0 <= longitude <= 180.0):
-        raise typer.BadParameter(
-            f"--home {home}: is no place: LATITUDE from -90 to 90, LONGITUDE to 180"
-        )
+        raise typer.BadParameter(f"--home {home}: is no place: LATITUDE from -90 to 90, LONGITUDE to 180")
     return [Berth(f"Vehicle{n + 1}", kind, (latitude, longitude + SPACING * n)) for n in range(count)]
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from errno import EEXIST, ENOTEMPTY
 from pathlib import Path
 
 
@@ -11,7 +11,9 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
     """Put texts into files, and make the folders that they need.
 
     Raises:
-        OSError: if one cannot be written; all files and folders are as they were before.
+        OSError: if one cannot be written; all files and folders are as they were before, but for those
+            that it names because they could not be put back. A folder in which somebody else has put
+            something meanwhile stays.
     """
     from mmrs_core.languages.writing import replace_file
 
@@ -22,11 +24,10 @@ def replace_files(texts: Mapping[Path, bytes]) -> None:
             _make_for(file, folders)
             before[file] = file.read_bytes() if file.exists() else None
             replace_file(file, text)
-    except BaseException:
-        for file, old in before.items():
-            _put_back(file, old)
-        for folder in reversed(folders):
-            folder.rmdir()
+    except BaseException as error:
+        if lost := [*_put_back(before), *_take_away(folders)]:
+            why = str(error) or type(error).__name__
+            raise OSError(f"{why}; and not as before: {', '.join(map(str, lost))}") from error
         raise
 
 
@@ -37,11 +38,25 @@ def _make_for(file: Path, made: list[Path]) -> None:
         made.append(folder)
 
 
-def _put_back(file: Path, text: bytes | None) -> None:
+def _put_back(before: Mapping[Path, bytes | None]) -> Iterator[Path]:
+    """Give files their old content, and yield those for which that fails; None: there was no file."""
     from mmrs_core.languages.writing import replace_file
 
-    if text is not None:
-        replace_file(file, text)
-        return
-    with suppress(FileNotFoundError):  # it was not written yet
-        file.unlink()
+    for file, text in before.items():
+        try:
+            if text is None:
+                file.unlink(missing_ok=True)
+            elif file.read_bytes() != text:
+                replace_file(file, text)
+        except OSError:
+            yield file
+
+
+def _take_away(folders: list[Path]) -> Iterator[Path]:
+    """Remove folders, inner ones first, and yield those for which that fails though they are empty."""
+    for folder in reversed(folders):
+        try:
+            folder.rmdir()
+        except OSError as error:
+            if error.errno not in (ENOTEMPTY, EEXIST):
+                yield folder

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from mmrs_core.cli import run
-from mmrs_core.cli.replacing import replace_files
 
 ROOT = Path(__file__).parents[3]
 DAM = ROOT / "examples" / "mixed-team"
@@ -105,16 +104,6 @@ def test_two_models_do_not_go_to_one_file(tmp_path, capsys):
 def test_three_files_need_a_folder_to_go_to(zoos, capsys):
     assert run(["convert", "a.xmi", "b.xmi", "c.xmi"]) == 2
     assert "-o DIR" in capsys.readouterr().err
-
-
-def test_files_that_were_not_there_are_gone_again_if_a_later_one_cannot_be_written(tmp_path):
-    (tmp_path / "old").write_bytes(b"old")
-    (tmp_path / "folder").mkdir()
-    texts = {tmp_path / "new" / "a": b"a", tmp_path / "old": b"new", tmp_path / "folder": b"no file"}
-    with pytest.raises(OSError):
-        replace_files(texts)
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["folder", "old"]
-    assert (tmp_path / "old").read_bytes() == b"old"
 
 
 def test_a_metamodel_is_shown_by_its_classes(capsys):

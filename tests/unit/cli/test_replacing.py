@@ -1,0 +1,149 @@
+"""Several files are replaced together, or nothing is: whichever step fails, all is as it was."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from mmrs_core.cli.replacing import replace_files
+
+
+def all_in(folder):
+    """Return everything below a folder: content by file, None by folder."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
+        for path in sorted(folder.rglob("*"))
+    }
+
+
+@pytest.fixture
+def before(tmp_path):
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "old").write_bytes(b"old")
+    return all_in(tmp_path)
+
+
+@pytest.fixture
+def texts(tmp_path):
+    """Return texts for an old file, one in a folder of two new ones, and one beside it."""
+    new = tmp_path / "new" / "deep"
+    return {tmp_path / "kept" / "old": b"younger", new / "a": b"a", new / "b": b"b"}
+
+
+class Failing:
+    """Does what a function does, but for one call, counted from 1."""
+
+    def __init__(self, function, number):
+        self.function, self.number, self.calls = function, number, 0
+
+    def __call__(self, *given, **more):
+        self.calls += 1
+        if self.calls == self.number:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return self.function(*given, **more)
+
+    def __get__(self, instance, owner):
+        return self if instance is None else lambda *given, **more: self(instance, *given, **more)
+
+
+def test_files_and_their_folders_are_made(tmp_path, texts, before):
+    replace_files(texts)
+    assert {path: path.read_bytes() for path in texts} == texts
+    assert sorted(all_in(tmp_path)) == ["kept", "kept/old", "new", "new/deep", "new/deep/a", "new/deep/b"]
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_a_folder_that_cannot_be_made_leaves_all_as_it_was(tmp_path, texts, before, monkeypatch, number):
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "mkdir", Failing(Path.mkdir, number))
+        with pytest.raises(OSError, match="No space"):
+            replace_files(texts)
+    assert all_in(tmp_path) == before
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize("step", ["fsync", "fdopen"])
+def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
+    tmp_path, texts, before, monkeypatch, step, number
+):
+    with monkeypatch.context() as patched:
+        patched.setattr(os, step, Failing(getattr(os, step), number))
+        with pytest.raises(OSError, match="No space"):
+            replace_files(texts)
+    assert all_in(tmp_path) == before
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_file_that_cannot_be_put_in_its_place_leaves_all_as_it_was(
+    tmp_path, texts, before, monkeypatch, number
+):
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "replace", Failing(Path.replace, number))
+        with pytest.raises(OSError, match="No space"):
+            replace_files(texts)
+    assert all_in(tmp_path) == before
+
+
+def test_a_file_that_cannot_be_read_is_not_replaced(tmp_path, texts, before):
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(IsADirectoryError):
+        replace_files({**texts, tmp_path / "folder": b"no file"})
+    assert all_in(tmp_path) == {**before, "folder": None}
+
+
+def test_an_interrupt_leaves_all_as_it_was(tmp_path, texts, before, monkeypatch):
+    replace = Path.replace
+
+    def interrupted(part, target):
+        if target.name == "b":
+            raise KeyboardInterrupt
+        return replace(part, target)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "replace", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            replace_files(texts)
+    assert all_in(tmp_path) == before
+
+
+def test_a_folder_that_somebody_else_has_filled_meanwhile_stays(tmp_path, texts, monkeypatch):
+    replace = Path.replace
+
+    def filled(part, target):
+        if target.name == "b":
+            (target.parent / "another's").write_bytes(b"keep me")
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return replace(part, target)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "replace", filled)
+        with pytest.raises(OSError, match="No space"):
+            replace_files(texts)
+    assert all_in(tmp_path / "new") == {"deep": None, "deep/another's": b"keep me"}
+
+
+def test_what_cannot_be_put_back_is_named_and_all_else_is_put_back(tmp_path, texts, before, monkeypatch):
+    replace = Path.replace
+
+    def full(part, target):
+        if target.name == "b" or (target.name == "old" and target.read_bytes() == b"younger"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return replace(part, target)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "replace", full)
+        with pytest.raises(OSError, match=r"No space .*; and not as before: .*/kept/old$"):
+            replace_files(texts)
+    assert all_in(tmp_path) == {**before, "kept/old": b"younger"}
+
+
+@pytest.mark.skipif(os.name != "posix" or not os.geteuid(), reason="root may do everything")
+def test_a_folder_that_may_not_be_written_to_leaves_all_as_it_was(tmp_path, texts, before):
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o500)
+    with pytest.raises(PermissionError):
+        replace_files({**texts, locked / "in" / "it": b"no"})
+    assert all_in(tmp_path) == {**before, "locked": None}
