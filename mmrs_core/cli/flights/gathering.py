@@ -14,7 +14,7 @@ from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
-from mmrs_core.errors import UnreadableError
+from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.scene import RobotType
 
 SIMULATION = "simulation"
@@ -92,6 +92,7 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
 
     Raises:
         UnreadableError: if a file cannot be opened, or there is neither log nor black box.
+        InvalidModelError: if none of them is of a robot of the behaviour.
     """
     absent = next((path for path in paths if not path.exists() and not is_part(path)), None)
     if absent is not None:
@@ -104,7 +105,11 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
         raise UnreadableError(f"{', '.join(map(str, paths))}: neither a log nor a black box is here")
     contents = _contents(boxes, damages)
     known = {robot.id for robot in program.robots}
-    for stranger in sorted({*steps, *contents} - known):
+    told = {*steps, *contents}
+    if told and not told & known:
+        strangers, robots_here = ", ".join(sorted(told)), ", ".join(sorted(known))
+        raise InvalidModelError(f"these are of {strangers}: the behaviour has only {robots_here}")
+    for stranger in sorted(told - known):
         damages.append(f"{stranger}: no such robot in the behaviour; left out")
     damages += _runs(steps, contents)
     for robot in program.robots:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mmrs_core.cli.output import say, say_json
+from mmrs_core.cli.output import say, say_json, tell
 from mmrs_core.cli.parameters import Assume, Behaviour, Context, Robots, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
 
@@ -56,6 +56,8 @@ def report(
     workshop, file = Workshop(settings_of(call)), behaviour_file(behaviour)
     loaded = load_behaviour(workshop, file, context=context, robots=robot_files(robots))
     flight = read_flight(logs, loaded.program, loaded.place.types)
+    for damage in flight.damages:
+        tell(damage)
     planned = planned_for(workshop, loaded, flight, answers(assume))
     given = Given(loaded.program, loaded.place, flight, planned, workshop.contributions.move_kinds)
     made = report_of(given)
@@ -92,7 +94,7 @@ def _picture(workshop: Workshop, loaded: Loaded, given: Given, made: Report, fol
 
 
 def _write(path: Path, made: Report, given: Given, picture: Picture) -> None:
+    from mmrs_core.cli.replacing import replace_files
     from mmrs_core.cli.report.page import page
 
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page(made, given, picture), encoding="utf-8")
+    replace_files({path: page(made, given, picture).encode()})

@@ -11,7 +11,7 @@ from mmrs_core.cli.flights.gathering import read_flight
 from mmrs_core.cli.flights.recording import write_boxes
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.cli.simulation import write_logs
-from mmrs_core.errors import UnreadableError
+from mmrs_core.errors import InvalidModelError, UnreadableError
 
 
 def box_line(robot="alpha", **more):
@@ -77,6 +77,14 @@ def test_a_robot_of_another_behaviour_is_told_and_left_out(flight, folder):
     read = flight()
     assert list(read.robots) == ["alpha", "beta"]
     assert "gamma: no such robot in the behaviour; left out" in read.damages
+
+
+def test_logs_of_none_of_the_robots_are_refused(flight, folder):
+    for path in folder.iterdir():
+        path.unlink()
+    (folder / "gamma.blackbox.ndjson").write_text(box_line("gamma"))
+    with pytest.raises(InvalidModelError, match="these are of gamma: the behaviour has only alpha, beta"):
+        flight()
 
 
 def test_logs_of_different_runs_are_told(flight, folder):
