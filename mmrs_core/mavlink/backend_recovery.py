@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from math import hypot
 
 from mmrs_core.flight.faults import Refused
-from mmrs_core.flight.places import distance, ends_of, offset
+from mmrs_core.flight.places import ends_of, offset
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
+from mmrs_core.flight.steps.rejoining import OFF_ITS_WAY, distance_to_leg, way_ahead
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend_worker import Job
-
-ON_THE_WAY = 5.0
-"""Metres that a vehicle may be off its way, to go on from there."""
 
 Point = tuple[str, Place]
 
@@ -66,27 +65,22 @@ class WayBack:
             self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
             height = first.height
             return [lambda: self._moves.climb(sortie[0], height), *self._legs(came[1:])]
-        return self._along(here, came, list(self._places(came[-1][1], self._ahead(begun))))
+        last = came[-1][1]
+        ahead = way_ahead(self._robot, begun, last, self._moves.target_of) if begun else ()
+        return self._along(here, came, ahead)
 
-    def _along(self, here: Place, came: list[Point], ahead: list[Point]) -> list[Callable[[], None]]:
+    def _along(self, here: Place, came: list[Point], ahead: Sequence[Place]) -> list[Callable[[], None]]:
         """Return the legs along the way from a place on it to the end of what has been passed."""
-        places = [self._robot.home, *(place for _, place in (*came, *ahead))]
-        gaps = [_gap(here, places[i], places[i + 1]) for i in range(len(places) - 1)]
+        legs = pairwise([self._robot.home, *(place for _, place in came), *ahead])
+        gaps = [distance_to_leg(here, *leg) for leg in legs]
         nearest = min(range(len(gaps)), key=gaps.__getitem__)
-        self._refuse_far(gaps[nearest], ON_THE_WAY)
+        self._refuse_far(gaps[nearest], OFF_ITS_WAY)
         if nearest < len(came):
             self._moves.track = came[:nearest]
             return self._legs(came[nearest:])
         self._moves.track = came[:-1]
         back = ahead[: nearest - len(came)]
-        return self._legs([*((came[-1][0], place) for _, place in reversed(back)), came[-1]])
-
-    def _ahead(self, begun: str) -> tuple[str, ...]:
-        """Return the moves by which the vehicle may have gone on while nobody told it anything."""
-        for run in self._robot.runs:
-            if begun in run.moves:
-                return run.moves[run.moves.index(begun) :]
-        return (begun,) if begun else ()
+        return self._legs([*((came[-1][0], place) for place in reversed(back)), came[-1]])
 
     def _places(self, here: Place, moves: Sequence[str]) -> Iterator[Point]:
         for move in moves:
@@ -128,12 +122,3 @@ def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:
         elif isinstance(movement, TakeOff):
             begin = index
     return tuple(passed[begin:])
-
-
-def _gap(here: Place, a: Place, b: Place) -> float:
-    """Return the metres from a place to a straight leg."""
-    whole, part = offset(a, b), offset(a, here)
-    length = distance(a, b)
-    share = sum(p * w for p, w in zip(part, whole, strict=True)) / length**2 if length else 0.0
-    share = min(1.0, max(0.0, share))
-    return hypot(*(p - share * w for p, w in zip(part, whole, strict=True)))

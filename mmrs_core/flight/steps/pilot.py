@@ -19,13 +19,17 @@ from ..vehicles.corners import goes_through
 from ..vehicles.vehicle import Vehicle
 from .doing import Doing
 from .equipping import equip
-from .resuming import OFF_ITS_WAY, rest_of_way, still_on, track_of
+from .rejoining import OFF_ITS_WAY, rest_of_way, way_ahead
+from .resuming import still_on, track_of
 from .waits import Waits
 from .watch import Watch
 
 FULL = 0.99
 RECHARGE_FACTOR = 3.0
 """How many times as long as expected charging may take."""
+
+ON_THE_GROUND = 1.0
+"""Metres above home under which a vehicle that was to land does not climb once more."""
 
 STARTS = 3
 """How often a vehicle may start anew while it is set up."""
@@ -91,10 +95,10 @@ class Pilot:
             self._desk.recognise(bool(records))
             if not (records and self._vehicle.state().armed):
                 return
-            track = track_of(self._robot, records) or [("", self._robot.home)]
+            track = track_of(self._robot, records)
             here, below = self._vehicle.state().place, at_height(self._robot.home, 0.0)
-            if len(track) > 1 or distance(at_height(here, 0.0), below) > OFF_ITS_WAY:
-                rest_of_way([place for _, place in track], here, self._next_place())
+            if track or distance(at_height(here, 0.0), below) > OFF_ITS_WAY:
+                self._rest_of_way([place for _, place in track])
         except Refused as error:
             raise Strange(str(error)) from error
         self._vehicle.carry_on()
@@ -161,14 +165,11 @@ class Pilot:
         return f"the battery is still at {left:.0%}"
 
     def _is_down(self, step: Step) -> bool:
-        """Return whether the robot stands where it was to land."""
+        """Return whether the robot stands where it was to land, or is about to."""
         state = self._vehicle.state()
         here = at_height(state.place, self.track[-1][1].height)
-        return (
-            isinstance(step.movement, Land)
-            and not state.armed
-            and distance(here, self.track[-1][1]) < OFF_ITS_WAY
-        )
+        low = not state.armed or state.place.height - self._robot.home.height < ON_THE_GROUND
+        return isinstance(step.movement, Land) and low and distance(here, self.track[-1][1]) < OFF_ITS_WAY
 
     def _way_to_work(self) -> Sequence[Place]:
         places = [place for _, place in self.track]
@@ -180,15 +181,16 @@ class Pilot:
                 self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
             return places
         self._vehicle.carry_on()
-        return rest_of_way(places, state.place, self._next_place())
+        return self._rest_of_way(places)
 
-    def _next_place(self) -> Place | None:
-        movement = self._steps[self.journal.move].movement
-        return (
-            place_of(movement.at, self._desk.locators, self._vehicle.state())
-            if isinstance(movement, GoTo)
-            else None
-        )
+    def _rest_of_way(self, passed: Sequence[Place]) -> Sequence[Place]:
+        """Return the places to go to, in the air, to be where the interrupted leg began."""
+        state, came = self._vehicle.state(), [self._robot.home, *passed]
+
+        def locate(movement: GoTo) -> Place:
+            return place_of(movement.at, self._desk.locators, state)
+
+        return rest_of_way(came, way_ahead(self._robot, self.journal.move, came[-1], locate), state.place)
 
     def _perform(self, step: Step) -> Step | None:
         self._tell(step)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 from ..faults import Refused
-from ..places import at_height, between, distance, ends_of, offset
+from ..places import at_height, ends_of
 from ..program import (
     Action,
     Choose,
@@ -25,9 +24,6 @@ from ..program import (
 )
 
 Record = Mapping[str, object]
-
-OFF_ITS_WAY = 5.0
-"""Metres that a robot may be from the way of its program when it is to go on in the air."""
 
 CAMERA_STATES = {206: 206, 2500: 2500, 2501: 2500}
 """Commands after which a camera goes on by itself, and which of them concern the same."""
@@ -117,20 +113,6 @@ def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]
     return track
 
 
-def rest_of_way(places: Sequence[Place], here: Place, target: Place | None) -> Sequence[Place]:
-    """Return what is left of a way to its last place, from somewhere on it or on the leg after it.
-
-    Raises:
-        Refused: the robot is not on its way.
-    """
-    legs = [*pairwise(places), *([(places[-1], target)] if target is not None else [])]
-    away = [_distance_to_leg(here, a, b) for a, b in legs] or [distance(here, places[-1])]
-    nearest = min(range(len(away)), key=lambda index: away[index])
-    if away[nearest] > OFF_ITS_WAY:
-        raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")
-    return places[nearest + 1 :] or places[-1:]
-
-
 def slots_of(robots: Iterable[Robot], records: Iterable[Record]) -> tuple[set[tuple[str, str]], int]:
     """Return the slots that are active after the steps of these robots, and the last logical time."""
     steps = {(robot.id, step.move): step for robot in robots for step in robot.steps}
@@ -156,13 +138,6 @@ def still_on(robot: Robot, records: Iterable[Record]) -> Iterator[Operate]:
         if isinstance(action, Operate) and action.command in CAMERA_STATES:
             last[action.device, CAMERA_STATES[action.command]] = action
     yield from last.values()
-
-
-def _distance_to_leg(here: Place, a: Place, b: Place) -> float:
-    along, leg = offset(a, here), offset(a, b)
-    square = sum(each * each for each in leg)
-    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
-    return distance(here, between(a, b, min(1.0, max(0.0, part))))
 
 
 def _order(record: Record) -> tuple[int, str, int]:

@@ -22,7 +22,7 @@ from mmrs_core.flight.program import (
     Then,
 )
 from mmrs_core.flight.records.log import Log, read
-from mmrs_core.flight.steps.resuming import Progress, progress_of, rest_of_way, slots_of, still_on, track_of
+from mmrs_core.flight.steps.resuming import Progress, progress_of, slots_of, still_on, track_of
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))
@@ -104,14 +104,6 @@ def test_a_log_of_another_program_is_refused(line):
 
 def test_the_way_of_a_sortie_begins_at_its_take_off_and_ends_where_the_last_leg_did():
     assert track_of(ROBOT, records()) == [("up", Local(0.0, 0.0, 10.0)), ("far", FAR)]
-
-
-def test_a_robot_in_the_air_goes_on_from_the_leg_that_it_is_on():
-    places = [place for _, place in track_of(ROBOT, records())]
-    assert rest_of_way(places, Local(50.0, 1.0, 10.0), NEAR) == [FAR]
-    assert rest_of_way(places, Local(50.0, 25.0, 10.0), NEAR) == [FAR]
-    with pytest.raises(Refused, match="40 m from the way"):
-        rest_of_way(places, Local(50.0, -40.0, 10.0), NEAR)
 
 
 def test_what_a_camera_did_by_itself_is_told_again():

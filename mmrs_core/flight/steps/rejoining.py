@@ -1,0 +1,70 @@
+"""How a vehicle that is still in the air comes back to where a leg of its program begins.
+
+It may be anywhere on the way that it came in this sortie, or ahead: on the leg that was under way when
+nobody told it anything any more, or on what is left of a run, which it flies to its end by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+from ..faults import Refused
+from ..places import at_height, between, distance, ends_of, offset
+from ..program import GoTo, Land, Place, Robot, TakeOff
+
+OFF_ITS_WAY = 5.0
+"""Metres that a robot may be from the way of its program when it is to go on in the air."""
+
+ALIKE = 0.1
+"""Metres by which one leg must be nearer than another to count as that: of two, the later one is meant."""
+
+
+def way_ahead(robot: Robot, move: str, here: Place, locate: Callable[[GoTo], Place]) -> tuple[Place, ...]:
+    """Return the ends of the legs that a vehicle may be on without another word from its program.
+
+    Args:
+        robot: whose program it is.
+        move: that was under way.
+        here: where that move began.
+        locate: finds where a movement leads to.
+    """
+    run = next((run.moves for run in robot.runs if move in run.moves), (move,))
+    ahead: list[Place] = []
+    for each in run[run.index(move) :]:
+        begun, movement = ahead[-1] if ahead else here, robot.step(each).movement
+        if isinstance(movement, TakeOff):
+            ahead.append(at_height(begun, movement.height))
+        elif isinstance(movement, Land):
+            ahead.append(at_height(begun, robot.home.height))
+        elif isinstance(movement, GoTo):
+            ahead += ends_of(begun, locate(movement), movement.legs, movement.distance)
+    return tuple(ahead)
+
+
+def rest_of_way(came: Sequence[Place], ahead: Sequence[Place], here: Place) -> Sequence[Place]:
+    """Return the places to go to, one after the other, to be at the last of those that were passed.
+
+    Args:
+        came: places passed in this sortie, from home on; at least one.
+        ahead: ends of the legs after the last of them.
+        here: where the vehicle is.
+
+    Raises:
+        Refused: it is not on its way.
+    """
+    way = [*came, *ahead]
+    away = [distance_to_leg(here, a, b) for a, b in pairwise(way)] or [distance(here, way[0])]
+    nearest = max(range(len(away)), key=lambda leg: (-round(away[leg] / ALIKE), leg))
+    if away[nearest] > OFF_ITS_WAY:
+        raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")
+    last = len(came) - 1
+    return way[nearest + 1 : last + 1] if nearest < last else way[last : nearest + 1][::-1]
+
+
+def distance_to_leg(here: Place, a: Place, b: Place) -> float:
+    """Return the metres from a place to a straight leg."""
+    along, leg = offset(a, here), offset(a, b)
+    square = sum(each * each for each in leg)
+    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
+    return distance(here, between(a, b, min(1.0, max(0.0, part))))
