@@ -277,7 +277,8 @@ class Robot:
         endurance: seconds that a full battery lasts at the type's mean power; None where nobody knows.
         cruise: metres per second at which the robot goes back; None: the vehicle's own.
         descent: metres per second at which it comes down; None where nobody knows.
-        fence: polygons to stay out of; rally: places to go to in an emergency.
+        fence: polygons to stay out of; tight: what people must know of them.
+        rally: places to go to in an emergency.
         escapes: by move, where to go in an emergency from where that move ends.
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
         mission: name of it; plan: what differs where two plans of it do.
@@ -304,6 +305,7 @@ class Robot:
     rally: tuple[Place, ...] = ()
     escapes: tuple[tuple[str, Place], ...] = ()
     straight: bool = True
+    tight: tuple[str, ...] = field(default=(), kw_only=True)
     mission: str = field(default="", kw_only=True)
     plan: str = field(default="", kw_only=True)
     fleet: tuple[str, ...] = field(default=(), kw_only=True)

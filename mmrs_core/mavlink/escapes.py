@@ -33,14 +33,30 @@ def escapes_of(
     context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
 ) -> Iterator[tuple[str, Call]]:
     """Yield, by move, where to go from where that move ends; nothing for moves from which no way is safe."""
+    for move, _, place in _escapes(context, input, points, clearance):
+        yield move.id, place_of(place, context)
+
+
+def escape_legs(
+    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
+) -> tuple[tuple[Point, Point], ...]:
+    """Return the legs from where moves end to emergency areas, seen from above."""
+    legs = _escapes(context, input, points, clearance)
+    return tuple((begin[:2], end[:2]) for _, begin, end in legs)
+
+
+def _escapes(
+    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
+) -> Iterator[tuple[Move, Position, Position]]:
+    """Yield moves, where they end, and where to go from there, as far as a way is safe."""
     if not points:
         return
     areas = areas_of(context.robot, input)
     for index, move in enumerate(context.robot.moves):
         position = _end_of(index, move, context)
         place = escape_from(position, points, areas, clearance) if position is not None else None
-        if place is not None:
-            yield move.id, place_of(place, context)
+        if position is not None and place is not None:
+            yield move, position, place
 
 
 def _end_of(index: int, move: Move, context: RobotContext) -> Position | None:

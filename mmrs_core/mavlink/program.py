@@ -14,7 +14,7 @@ from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.mavlink.escapes import escapes_of, straight_lines_are_clear
-from mmrs_core.mavlink.fencing import fence_of
+from mmrs_core.mavlink.fencing import Fence, fences_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
 from mmrs_core.mavlink.safety import (
@@ -60,12 +60,13 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     areas, program = areas_of(robot, input), input.program
     clearance = clearance_of(input.types.get(robot.type_name), program.position_error)
     geographic = not program.frame.is_local
-    fence, points = (fence_of(robot, areas, clearance), refuges(areas, clearance)) if geographic else ((), ())
-    vertices: list[Point] = [vertex for ring in fence for vertex in ring]
+    points = refuges(areas, clearance) if geographic else ()
+    fences = fences_of(robot, input, points) if geographic else ()
+    vertices: list[Point] = [vertex for fence in fences for vertex in fence.ring]
     context = context_of(robot, input, [*vertices, *points], geographic=geographic)
     traced = zip(_ordered(robot), trace_of(robot), strict=True)
     steps = tuple(_step(index, context, step) for index, step in traced)
-    head = tuple(each for each in _head(context, input, fence, points, clearance) if each[1] != ())
+    head = tuple(each for each in _head(context, input, fences, points, clearance) if each[1] != ())
     words = {"Robot"} | _words((head, [step.call for step in steps]))
     return RobotView(
         robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot), objects_in(robot)
@@ -170,7 +171,7 @@ def _then(transition: Transition, robot: RobotProgram) -> Call:
 def _head(
     context: RobotContext,
     input: TargetInput,
-    fence: tuple[tuple[Point, ...], ...],
+    fences: tuple[Fence, ...],
     points: tuple[Point, ...],
     clearance: float,
 ) -> Iterator[tuple[str, object]]:
@@ -195,7 +196,8 @@ def _head(
     how = tuple((name, getattr(manner, name)) for name in names)
     yield "travel", Call("Travel", (robot.travel_mode,), how)
     yield "runs", tuple(_run(run, robot) for run in runs_of(context))
-    yield "fence", tuple(tuple(_ground(vertex, context) for vertex in ring) for ring in fence)
+    yield "fence", tuple(tuple(_ground(vertex, context) for vertex in fence.ring) for fence in fences)
+    yield "tight", tuple(str(fence) for fence in fences if fence.is_tight)
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
     yield "escapes", tuple(escapes_of(context, input, points, clearance))
     if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points, clearance):

@@ -36,6 +36,7 @@ class Uploads:
         mission: of all runs; empty where there are none.
         flights: by first move of a run, where it lies in the mission.
         fence: polygons that the vehicle must stay out of. rally: where it may go in an emergency.
+        words: what people must know of the fence.
         places: all that the program leads to, which the vehicle's own fences must leave free.
     """
 
@@ -44,13 +45,15 @@ class Uploads:
     fence: tuple[Item, ...] = ()
     rally: tuple[Item, ...] = ()
     places: tuple[Place, ...] = ()
+    words: tuple[str, ...] = ()
 
 
 def uploads_of(robot: Robot, *, fenced: bool = True) -> Uploads:
     """Return what a robot's vehicle must know; `fenced`: the areas to stay out of, too."""
     mission, flights = mission_of(robot)
     fence = fence_of(robot) if fenced else ()
-    return Uploads(mission, flights, fence, rally_of(robot), places_in(robot))
+    words = robot.tight if fenced else ()
+    return Uploads(mission, flights, fence, rally_of(robot), places_in(robot), words)
 
 
 def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:

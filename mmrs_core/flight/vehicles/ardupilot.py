@@ -93,6 +93,8 @@ class MavlinkVehicle:
         fenced = bool(uploads.fence)
         for line in enclose(self._link, self._home, uploads.places, uploads.rally, polygons=fenced):
             self._tell(line)
+        for line in uploads.words:
+            self._tell(line)
         if geographic:
             self._mission = uploads.mission
             mission = self._helm.habits.mission(uploads.mission)

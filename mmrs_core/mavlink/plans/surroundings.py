@@ -11,7 +11,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import RobotContext, context_of, require_home
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
-from mmrs_core.mavlink.fencing import fence_of
+from mmrs_core.mavlink.fencing import fences_of
 from mmrs_core.mavlink.plans.flight import sorties_of
 from mmrs_core.mavlink.plans.items import Item, Row, rows_of
 from mmrs_core.mavlink.safety import areas_of, clearance_of, refuges
@@ -60,14 +60,14 @@ def missions_of(input: TargetInput) -> Iterator[Mission]:
 
 def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
     robot, areas = context.robot, areas_of(context.robot, input)
-    clearance = clearance_of(context.type, input.program.position_error)
+    points = refuges(areas, clearance_of(context.type, input.program.position_error))
     return Mission(
         context,
         stem,
         _home(robot, context),
         rows_of(context, sortie),
-        tuple(degrees_of(ring, context.frame) for ring in fence_of(robot, areas, clearance)),
-        _rally(context, refuges(areas, clearance), sortie),
+        tuple(degrees_of(fence.ring, context.frame) for fence in fences_of(robot, input, points)),
+        _rally(context, points, sortie),
     )
 
 
