@@ -51,15 +51,6 @@ def _next(index: int, count: int) -> int:
     return (index + 1) % count
 
 
-def signed_area(ring: ArrayLike) -> float:
-    """Return the area of a ring in square metres; positive when it runs counter-clockwise."""
-    corners = np.asarray(ring, dtype=np.float64).reshape(-1, 2)
-    if len(corners) < 3:
-        return 0.0
-    x, y = (corners - corners[0]).T
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-
-
 def contains(ring: ArrayLike, points: ArrayLike) -> NDArray[np.bool_]:
     """Return which of the (n, 2) points lie inside a ring; on its edge they may count either way.
 

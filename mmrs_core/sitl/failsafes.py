@@ -16,7 +16,6 @@ CRITICAL = mavlink.MAV_SEVERITY_CRITICAL
 WARNING = mavlink.MAV_SEVERITY_WARNING
 EKF_SECONDS = 1.0
 FENCE_SECONDS = 1.0
-GIVE_UP_METRES = 100.0
 DISARM = "disarm"
 
 Answers = Mapping[int, tuple[str, ...]]

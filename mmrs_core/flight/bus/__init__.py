@@ -8,7 +8,7 @@ process's end: what it has still to tell is in ``outbox.py``, what it answers in
 machines. ``gateway.py`` lets programs without Zenoh take part.
 """
 
-from .carrier import Carrier, Hub
+from .carrier import Carrier
 from .delivery import Delivery
 from .journal import FileJournal, NoJournal
 from .meeting import PATIENCE, Beginning, Incomplete, begin_together
@@ -25,7 +25,6 @@ __all__ = [
     "CommandId",
     "Delivery",
     "FileJournal",
-    "Hub",
     "Incomplete",
     "Member",
     "NoJournal",

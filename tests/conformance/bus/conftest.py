@@ -14,9 +14,10 @@ import bus_walking
 import pytest
 from bus_walking import RUN, Gone, Walker, logged
 from cut_proxy import CutProxy
+from hub import Hub
 
 from mmrs_core.behaviour.replay import replay
-from mmrs_core.flight.bus import FileJournal, Hub, Node
+from mmrs_core.flight.bus import FileJournal, Node
 from mmrs_core.runtime.slots import ProgramBus, members_of, recorded_of
 
 PATIENCE = 60.0

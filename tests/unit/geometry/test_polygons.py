@@ -7,7 +7,6 @@ from mmrs_core.geometry.polygons import (
     polygon,
     ring_faults,
     rings,
-    signed_area,
 )
 
 SQUARE = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
@@ -32,11 +31,6 @@ def test_a_square_is_sound():
 )
 def test_faults_of_a_ring_are_named(ring, fault):
     assert any(fault in reason for reason in ring_faults(ring))
-
-
-def test_area_has_the_sign_of_the_direction():
-    assert signed_area(SQUARE) == 100.0
-    assert signed_area(SQUARE[::-1]) == -100.0
 
 
 def test_points_are_inside_or_not():

@@ -6,10 +6,11 @@ import time
 from math import inf
 
 import pytest
+from hub import Hub
 from live_runs import WALK, Script, do
 
 from mmrs_core.behaviour.replay import Outcome
-from mmrs_core.flight.bus import CommandId, Hub, Node, NoJournal
+from mmrs_core.flight.bus import CommandId, Node, NoJournal
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.slots import ProgramBus, members_of
 from mmrs_core.scene import Policy

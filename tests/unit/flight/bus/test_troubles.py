@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from hub import Hub, HubCarrier
 
-from mmrs_core.flight.bus import CommandId, Hub, Member, Node, Owned
-from mmrs_core.flight.bus.carrier import HubCarrier
+from mmrs_core.flight.bus import CommandId, Member, Node, Owned
 
 RUN = "run-0"
 

@@ -3,8 +3,8 @@ from __future__ import annotations
 import time
 
 import pytest
+from hub import Hub
 
-from mmrs_core.flight.bus.carrier import Hub
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.injection import Rehearsal, injections
 
