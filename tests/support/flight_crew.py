@@ -11,6 +11,8 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from patience import until
+
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.desk import Desk
 from mmrs_core.flight.faults import Fault
@@ -53,14 +55,6 @@ def free_port() -> int:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
-
-
-def until(test: Callable[[], object], seconds: float = 20.0) -> None:
-    """Wait for something, and fail if it does not come."""
-    end = time.monotonic() + seconds
-    while not test():
-        assert time.monotonic() < end, "it did not come to that"
-        time.sleep(0.005)
 
 
 def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from patience import until
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
@@ -60,6 +61,11 @@ class Controllers:
     def steps(self, robot: str) -> list[dict]:
         """Return the lines of a robot's log."""
         return list(map(json.loads, (self.logs / f"{robot}.jsonl").read_text("ascii").splitlines()))
+
+    def await_step(self, move: str, label: str = "begin", robot: str = "alpha") -> None:
+        """Wait until a robot's log tells of a step of a move."""
+        path, step = self.logs / f"{robot}.jsonl", f'"label": "{label}", "move": "{move}"'
+        until(lambda: path.exists() and step in path.read_text("ascii"), PATIENCE)
 
     def replayed(self, *, partial: bool = False) -> ReplayResult:
         return replay(self.program, read_logs([self.logs]), partial=partial)

@@ -3,8 +3,10 @@ from __future__ import annotations
 import signal
 import time
 from dataclasses import replace
+from functools import partial
 
 import pytest
+from patience import until
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.orders.ordering import give
@@ -21,12 +23,11 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-pytestmark = pytest.mark.thorough
-"""The fault table flies the same, and more, in the fast profile; these say each thing by itself."""
-
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE = 17
 LOITER = 5
+thorough = partial(pytest.param, marks=pytest.mark.thorough)
+"""Values of a test that runs in the full counts only."""
 
 
 def one_drone(*policies: Policy, hold: float = 60.0, **robot):
@@ -37,13 +38,6 @@ def one_drone(*policies: Policy, hold: float = 60.0, **robot):
         LAND,
     ]
     return program(replace(robot_program("alpha", moves, **robot), policies=policies))
-
-
-def wait_for(test, seconds: float = 60.0) -> None:
-    until = time.monotonic() + seconds
-    while not test():
-        assert time.monotonic() < until, "waited in vain"
-        time.sleep(0.05)
 
 
 def interrupt_twice(process) -> None:
@@ -61,7 +55,7 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -75,7 +69,7 @@ def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(contr
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links, "--on-stop", "return") as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         process.send_signal(signal.SIGTERM)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130, said
@@ -87,7 +81,7 @@ def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controll
     made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         vehicles["alpha"].mute()
         _, said = process.communicate(timeout=60)
     assert process.returncode == 5, said
@@ -99,7 +93,7 @@ def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         vehicles["alpha"].mute()
         time.sleep(0.5)
         vehicles["alpha"].unmute()
@@ -121,7 +115,7 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         vehicles["alpha"].faults.take_stick("loiter")
         assert any("hands off" in line for line in process.stderr)
         heard = len(vehicles["alpha"].received)
@@ -156,7 +150,7 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
     with made.start("fleet.py", *links) as process:
-        wait_for(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
+        until(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
         vehicles["alpha"].mute()
         _, said = process.communicate(timeout=60)
     assert process.returncode == 5, said
@@ -223,7 +217,7 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     made = controllers(waiting_pair(Policy("PEER_LOST", "LAND", 5.0)))
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
+        until(lambda: vehicles["alpha"].autopilot.body.position[0] > 5.0)
         vehicles["alpha"].faults.take_stick("loiter")
         assert any("'beta': ended early" in line for line in process.stderr)
         interrupt_twice(process)
@@ -242,7 +236,7 @@ def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
     assert not vehicles["beta"].autopilot.armed
 
 
-@pytest.mark.parametrize("command", [22, 400, 176])
+@pytest.mark.parametrize("command", [22, *map(thorough, (400, 176))])
 def test_a_vehicle_that_refuses_is_a_fault(controllers, hangar, command):
     made = controllers(one_drone())
     _, links = hangar(made.program, refuse=frozenset({command}))
@@ -258,7 +252,7 @@ def test_a_program_that_crashes_leaves_its_robot_holding(controllers, hangar):
     actions.write_text(broken, "utf-8")
     vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
-        wait_for(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
+        until(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 1
@@ -279,10 +273,8 @@ def test_stop_before_there_is_a_vehicle_ends_the_program(controllers):
     ("fault", "mode", "policy"),
     [
         ("gps-lost", "alt_hold", Policy("POSITION_LOST", "LAND")),
-        pytest.param(
-            "gps-lost", "stabilize", Policy("POSITION_LOST", "LAND", 5.0), marks=pytest.mark.thorough
-        ),
-        pytest.param("obstacle", "loiter", Policy("OBSTACLE", "HOLD", 10.0), marks=pytest.mark.thorough),
+        thorough("gps-lost", "stabilize", Policy("POSITION_LOST", "LAND", 5.0)),
+        thorough("obstacle", "loiter", Policy("OBSTACLE", "HOLD", 10.0)),
     ],
 )
 def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
@@ -291,7 +283,7 @@ def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
     made = controllers(one_drone(policy))
     vehicles, links = hangar(made.program, speedup=5.0)
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         vehicles["alpha"].faults.begin(fault)
         time.sleep(0.1)
         vehicles["alpha"].faults.take_stick(mode)
@@ -304,19 +296,19 @@ def test_a_pilot_who_takes_over_because_of_a_fault_keeps_the_vehicle(
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
 
 
-@pytest.mark.parametrize("airborne", [True, False])
+@pytest.mark.parametrize("airborne", [True, thorough(False)])
 def test_a_vehicle_that_somebody_else_has_is_told_nothing(controllers, hangar, airborne):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program, disarm_delay=1000.0)
     foreign = vehicles["alpha"].autopilot
-    wait_for(lambda: foreign.ready)
+    until(lambda: foreign.ready)
     with vehicles["alpha"].lock:
         foreign.set_mode(foreign.numbers["guided"])
         foreign.arm()
         if airborne:
             obey(foreign, 22, (*[0.0] * 6, 20.0))
     if airborne:
-        wait_for(lambda: foreign.body.position[2] > 15.0)
+        until(lambda: foreign.body.position[2] > 15.0)
     parameters = dict(foreign.parameters)
     code, said = made.run("fleet.py", *links)
     assert code == 1
@@ -330,7 +322,7 @@ def test_a_vehicle_that_has_fallen_is_not_armed_again(controllers, hangar):
     vehicles, links = hangar(made.program, speedup=5.0)
     alpha = vehicles["alpha"]
     with made.start("fleet.py", *links) as process:
-        wait_for(at_work(alpha))
+        until(at_work(alpha))
         with alpha.lock:
             alpha.autopilot.disarm()
         fallen = alpha.autopilot.time
@@ -344,7 +336,7 @@ def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN")))
     vehicles, links = hangar(made.program, recharge=1e9)
     with made.start("fleet.py", *links, "--battery-patience", "60") as process:
-        wait_for(at_work(vehicles["alpha"]))
+        until(at_work(vehicles["alpha"]))
         vehicles["alpha"].faults.set_battery(0.15)
         assert any("came home for its battery" in line for line in process.stderr)
         (told,) = give(made.logs, "resume", ["alpha"])

@@ -72,7 +72,6 @@ def test_fence_and_rally_points_are_uploaded(flown):
     assert vehicles["alpha"].autopilot.parameters["FENCE_ENABLE"] == 1.0
 
 
-@pytest.mark.thorough
 def test_a_lossy_link_changes_nothing(controllers, hangar):
     made = controllers(two_drones())
     _, links = hangar(made.program, speedup=10.0, loss=0.15)

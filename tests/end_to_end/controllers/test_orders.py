@@ -19,11 +19,9 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-pytestmark = pytest.mark.thorough
-"""The fault table flies the same, and more, in the fast profile; these say each thing by itself."""
-
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE, GUIDED, LANDING = 17, 4, 9
+SPEEDUP = 20.0
 PROMPT = 1.0
 """Real seconds in which an order on loopback is confirmed."""
 
@@ -62,14 +60,6 @@ def order(made, name: str, **options):
             time.sleep(0.02)
 
 
-def await_move(made, name: str, label: str = "begin") -> None:
-    path = made.logs / "alpha.jsonl"
-    until = time.monotonic() + 60.0
-    while not (path.exists() and f'"label": "{label}", "move": "{name}"' in path.read_text("ascii")):
-        assert time.monotonic() < until, f"{name} never comes to {label}"
-        time.sleep(0.02)
-
-
 def pace(vehicle) -> float:
     return vehicle.autopilot.body.pace
 
@@ -77,14 +67,14 @@ def pace(vehicle) -> float:
 @pytest.mark.parametrize("state", [full("up"), full("out"), "r2", full("stay"), full("down")])
 def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, hangar, state):
     made = controllers(survey())
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, state)
+        made.await_step(state)
         time.sleep(0.1)
         held = order(made, "hold")
         place = vehicles["alpha"].autopilot.body.position
         assert (held["confirmed"], vehicles["alpha"].autopilot.mode) == (True, BRAKE), held
-        time.sleep(1.0)
+        time.sleep(0.5)
         assert pace(vehicles["alpha"]) < 0.3
         assert vehicles["alpha"].autopilot.body.distance_to(place) < 12.0
         resumed = order(made, "resume")
@@ -112,9 +102,9 @@ def test_a_hold_is_obeyed_at_once_and_the_robot_goes_on_to_its_end(controllers, 
 )
 def test_a_robot_comes_home_or_down_when_it_is_told_to(controllers, hangar, state, name):
     made = controllers(survey(leg=30.0))
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, state)
+        made.await_step(state)
         time.sleep(0.1)
         told = order(made, name)
         assert told["confirmed"], told
@@ -132,9 +122,9 @@ def test_a_robot_comes_home_or_down_when_it_is_told_to(controllers, hangar, stat
 
 def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(controllers, hangar):
     made = controllers(survey())
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, "out")
+        made.await_step("out")
         told = order(made, "stop")
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130, said
@@ -146,9 +136,9 @@ def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(control
 
 def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, hangar):
     made = controllers(survey(leg=80.0))
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, "r1")
+        made.await_step("r1")
         assert order(made, "return")["confirmed"]
         time.sleep(0.2)
         held = order(made, "hold")
@@ -163,9 +153,9 @@ def test_a_robot_that_comes_home_can_be_held_and_landed_on_its_way(controllers, 
 
 def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar):
     made = controllers(survey(leg=20.0, waits=True))
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, "stay", "end")
+        made.await_step("stay", "end")
         assert order(made, "hold")["seconds"] < PROMPT
         assert order(made, "resume")["confirmed"]
         assert vehicles["alpha"].autopilot.mode == GUIDED
@@ -176,9 +166,9 @@ def test_a_robot_that_waits_for_others_is_held_and_waits_on(controllers, hangar)
 
 def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     made = controllers(survey())
-    _, links = hangar(made.program, speedup=10.0)
+    _, links = hangar(made.program, speedup=SPEEDUP)
     with made.start("fleet.py", *links) as process:
-        await_move(made, "stay")
+        made.await_step("stay")
         told = order(made, "status")
         order(made, "land")
         process.communicate(timeout=60)
@@ -188,7 +178,7 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
 
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
     made = controllers(survey(leg=20.0))
-    vehicles, links = hangar(made.program, speedup=10.0, silent=frozenset({2000}))
+    vehicles, links = hangar(made.program, speedup=SPEEDUP, silent=frozenset({2000}))
     with made.start("fleet.py", *links) as process:
         assert any("holds; interrupt to end" in line for line in process.stderr)
         refused = order(made, "resume")

@@ -7,8 +7,6 @@ import pytest
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
 
-pytestmark = pytest.mark.thorough
-
 OFFBOARD, TAKE_OFF, MISSION, LAND = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
 ROUND = [(0.0, 60.0, 20.0), (0.0, 120.0, 20.0), (0.0, 180.0, 20.0), (60.0, 180.0, 20.0)]
 
@@ -26,7 +24,7 @@ def flown(new_controllers, new_hangar, tmp_path_factory):
     """Return the controllers, what they said, and the vehicle after the flight."""
     made = new_controllers(tmp_path_factory.mktemp("px4") / "controllers", mission())
     with new_hangar() as switch_on:
-        vehicles, links = switch_on(made.program, speedup=10.0, firmware="px4")
+        vehicles, links = switch_on(made.program, speedup=20.0, firmware="px4")
         code, said = made.run("fleet.py", *links, patience=120.0)
     assert code == 0, said
     return made, said, vehicles["alpha"].autopilot

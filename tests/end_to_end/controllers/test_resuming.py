@@ -22,8 +22,6 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-pytestmark = pytest.mark.thorough
-
 LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22
 TRANSECTS = [(x, y, 12.0) for x in (20.0, 30.0, 40.0) for y in ((0.0, 60.0) if x != 30.0 else (60.0, 0.0))]
@@ -51,18 +49,10 @@ def begun(made, name: str) -> int:
     return sum((step["label"], step["move"]) == ("begin", name) for step in made.steps("alpha"))
 
 
-def await_step(made, name: str, label: str = "begin") -> None:
-    path = made.logs / "alpha.jsonl"
-    until = time.monotonic() + 60.0
-    while not (path.exists() and f'"label": "{label}", "move": "{name}"' in path.read_text("ascii")):
-        assert time.monotonic() < until, f"{name} never comes to {label}"
-        time.sleep(0.01)
-
-
 def empty(made, vehicle, links, move: str) -> str:
     """Fly until a move, find the battery low there, and come home; return what was said."""
     with made.start("fleet.py", *links) as process:
-        await_step(made, move)
+        made.await_step(move)
         time.sleep(0.15)
         vehicle.faults.set_battery(0.19)
         _, said = process.communicate(timeout=60)
@@ -92,7 +82,6 @@ def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar,
     assert made.replayed().complaints == ()
 
 
-@pytest.mark.thorough
 def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(controllers, hangar):
     other = robot_program(
         "beta",
@@ -102,7 +91,7 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
     made = controllers(program(*coverage().robots, other))
     vehicles, links = hangar(made.program, speedup=20.0)
     with made.start("fleet.py", *links) as process:
-        await_step(made, "t2")
+        made.await_step("t2")
         time.sleep(0.15)
         vehicles["alpha"].faults.set_battery(0.19)
         assert any("came home for its battery" in line for line in process.stderr)
@@ -115,12 +104,11 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
     assert made.replayed().complaints == ()
 
 
-@pytest.mark.thorough
 def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, hangar):
     made = controllers(coverage())
     vehicles, links = hangar(made.program, speedup=20.0)
     with made.start("fleet.py", *links, "--battery-patience", "60") as process:
-        await_step(made, "t1")
+        made.await_step("t1")
         vehicles["alpha"].faults.set_battery(0.19)
         assert any("came home for its battery" in line for line in process.stderr)
         vehicles["alpha"].faults.restart()
@@ -145,12 +133,11 @@ def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(control
     assert vehicles["alpha"].autopilot.energy > 0.02
 
 
-@pytest.mark.thorough
 def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, hangar):
     made = controllers(coverage(Policy("LINK_LOST", "HOLD", 60.0)))
     vehicles, links = hangar(made.program, speedup=20.0)
     with made.start("fleet.py", *links) as process:
-        await_step(made, "t2")
+        made.await_step("t2")
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=60)
     code, said = made.run("fleet.py", *links, "--resume")
@@ -160,10 +147,28 @@ def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, 
     assert made.replayed().complaints == ()
 
 
+def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(controllers, hangar):
+    down = go_to("down to work", (0.0, 60.0, 15.0), trajectory="HORIZONTAL_FIRST")
+    alpha = robot_program("alpha", [take_off("up", 40.0), down, LAND])
+    made = controllers(program(replace(alpha, policies=(Policy("LINK_LOST", "HOLD", 60.0),))))
+    vehicles, links = hangar(made.program, speedup=5.0)
+    body = vehicles["alpha"].autopilot.body
+    with made.start("fleet.py", *links) as process:
+        while body.position[0] < 40.0:
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+    assert body.position[2] > 30.0, "it flies level before it comes down"
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert made.replayed().complaints == ()
+
+
 def test_a_log_that_was_cut_off_is_gone_on_with_after_its_last_whole_line(controllers):
     made = controllers(coverage())
     with made.start("fleet.py", "--dry-run", "--speedup", "20") as process:
-        await_step(made, "t1")
+        made.await_step("t1")
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=60)
     log = made.logs / "alpha.jsonl"
@@ -197,7 +202,7 @@ def test_slots_that_were_set_before_the_break_are_set_after_it(controllers):
 def test_a_program_that_has_ended_by_a_fault_does_not_go_on(controllers):
     made = controllers(coverage())
     with made.start("fleet.py", "--dry-run", "--speedup", "20") as process:
-        await_step(made, "t1")
+        made.await_step("t1")
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     code, said = made.run("fleet.py", "--dry-run", "--resume")

@@ -156,7 +156,6 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
-@pytest.mark.thorough
 def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
     flown = fleet(Pad("a"), speedup=8.0)
     process = flown.start()
@@ -177,7 +176,6 @@ def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("move", [pytest.param("out", marks=pytest.mark.thorough), "tour 0"])
 def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     flown = fleet(
@@ -193,7 +191,6 @@ def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     assert landed(flown)
 
 
-@pytest.mark.thorough
 def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
     first = flown.start()
@@ -282,7 +279,6 @@ def test_a_vehicle_that_is_not_there_is_told_with_its_link(fleet):
     assert "no vehicle at udpin" in flown.process.said[-1]
 
 
-@pytest.mark.thorough
 def test_faults_on_purpose_are_made_and_the_mission_still_flies(fleet):
     flown = fleet(Pad("a", stay=1.0))
     assert flown.start("--inject", "loss=0.1,delay=0.02~0.01,seed=7").end(PATIENCE) == 0, flown.process.said

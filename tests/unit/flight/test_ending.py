@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from flight_crew import HOME, NORTH, in_background, until
+from flight_crew import HOME, NORTH, in_background
+from patience import until
 
 from mmrs_core.flight.faults import Fault, Stopped, Strange
 from mmrs_core.flight.orders.obedience import Ordered

@@ -7,7 +7,8 @@ import threading
 from dataclasses import replace
 
 import pytest
-from flight_crew import SPEEDUP, free_port, in_background, robot_of, until
+from flight_crew import SPEEDUP, free_port, in_background, robot_of
+from patience import until
 
 from mmrs_core.flight.crews import ENDED, SUSPENDED, WAITS, WORKS, Crews
 from mmrs_core.flight.injection import Rehearsal

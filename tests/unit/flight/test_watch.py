@@ -5,7 +5,8 @@ from __future__ import annotations
 import threading
 
 import pytest
-from flight_crew import SPEEDUP, robot_of, until
+from flight_crew import SPEEDUP, robot_of
+from patience import until
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault, Stopped
