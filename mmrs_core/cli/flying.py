@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import signal
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +25,7 @@ from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import counted, say, tell, unfailing
 from mmrs_core.errors import InvalidModelError, LinkLostError
+from mmrs_core.flight.records.blackbox import black_box_path, last_time
 from mmrs_core.pipeline import conditions_for, inputs_of, run_live
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture
@@ -131,7 +132,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     run = resumed[0].run if resumed else wishes.run
     orders = Orders(_on_stop(wishes.on_stop))
     with ExitStack() as stack:
-        clock = RealClock(wishes.speedup, max((record.time for record in resumed), default=0.0))
+        clock = RealClock(wishes.speedup, _end_of(resumed, wishes.folder))
         wrap = bus_faults(wishes.options.get("inject", ""), program, wishes.bus.shared, clock, stack)
         given = resumed if wishes.resume else None
         bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
@@ -282,6 +283,12 @@ def _resumed(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[S
         raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
+
+
+def _end_of(records: Sequence[StepRecord], folder: Path) -> float:
+    """Return how many seconds of the run have passed, as logs and black boxes tell."""
+    boxes = {black_box_path(folder / log_name(record.robot)) for record in records}
+    return max((*(record.time for record in records), *map(last_time, boxes)), default=0.0)
 
 
 def _refuse_others(program: Program, wishes: Wishes) -> None:

@@ -38,6 +38,9 @@ from ..screen import say
 LARGEST_PART = 32 * 1024 * 1024
 """Bytes after which a new file is begun."""
 
+LONGEST_END = 1 << 16
+"""Bytes at the end of a file in which its last line is looked for."""
+
 DIGITS = 9
 KEPT_AT_ONCE = frozenset({"start", "decision", "order"})
 """Kinds that are on the disk when they have been written."""
@@ -46,6 +49,26 @@ KEPT_AT_ONCE = frozenset({"start", "decision", "order"})
 def black_box_path(log: Path) -> Path:
     """Return where the black box of a robot lies, given the path of its log of steps."""
     return log.with_name(f"{log.stem}.blackbox.ndjson")
+
+
+def last_time(path: Path) -> float:
+    """Return the seconds of the run at which a black box ends; 0: it does not say."""
+    try:
+        with path.open("rb") as file:
+            file.seek(-min(LONGEST_END, file.seek(0, os.SEEK_END)), os.SEEK_END)
+            lines = file.read().splitlines()
+    except OSError:
+        return 0.0
+    return next((time for line in reversed(lines) if (time := _time_in(line))), 0.0)
+
+
+def _time_in(line: bytes) -> float:
+    try:
+        found = json.loads(line)
+    except ValueError:
+        return 0.0
+    told = found.get("time") if isinstance(found, dict) else None
+    return float(told) if isinstance(told, int | float) and isfinite(told) and told > 0 else 0.0
 
 
 class BlackBox:

@@ -6,7 +6,7 @@ from math import nan
 import pytest
 
 from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path, last_time
 
 
 @pytest.fixture
@@ -73,3 +73,15 @@ def test_a_box_that_cannot_be_written_is_said_once_and_stops_nothing(path, opene
     box.write("text", text="two")
     (line,) = said
     assert "alpha.blackbox.ndjson: the black box cannot be written" in line
+
+
+@pytest.mark.parametrize("more", ["", '{"time": 99', "rubbish\n", '{"time": "late"}\n', '{"time": NaN}\n'])
+def test_the_end_of_a_box_is_the_time_of_its_last_whole_line(path, opened, more):
+    opened().write("text", text="one")
+    with path.open("a") as file:
+        file.write(more)
+    assert last_time(path) == 1.5
+
+
+def test_a_box_that_is_not_there_has_no_end(path):
+    assert last_time(path) == 0.0
