@@ -18,9 +18,9 @@ from mmrs_core.behaviour.semantics import (
     Step,
     Waiting,
     entry,
-    fault,
     missing,
     steps,
+    told_by,
     waiting,
 )
 from mmrs_core.behaviour.steps import StepRecord
@@ -157,33 +157,17 @@ def _replayed(run: _Replay, records: tuple[StepRecord, ...]) -> Iterable[Complai
         if robot is None:
             yield _complaint(record, "no such robot in the behaviour")
             return
-        step = _matching(run, robot, record)
+        step = told_by(record, robot.program, robot.point, run.active)
         if step is None:
             yield _complaint(record, f"is {_shown(record)}, expected {_expected(run, robot)}")
             return
-        if message := _too_short(run, robot, record):
+        if message := _too_short(robot, record):
             yield _complaint(record, message)
             return
         _advance(run, robot, step, record)
 
 
-def _matching(run: _Replay, robot: _Robot, record: StepRecord) -> Step | None:
-    if record.label == "fault":
-        if robot.point.is_final or record.slot or record.move != _move_id(robot):
-            return None
-        return fault(robot.program, robot.point, record.detail)
-    for step in steps(robot.program, robot.point, run.active):
-        if (step.label, step.move, step.detail, step.slot) == (
-            record.label,
-            record.move,
-            record.detail,
-            record.slot,
-        ):
-            return step
-    return None
-
-
-def _too_short(run: _Replay, robot: _Robot, record: StepRecord) -> str:
+def _too_short(robot: _Robot, record: StepRecord) -> str:
     if record.label != "end":
         return ""
     move = robot.program.moves[robot.point.move]

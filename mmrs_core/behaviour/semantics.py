@@ -5,9 +5,9 @@ Steps of different robots interleave. Slots are latches: passing a wait leaves t
 All awaited slots are tested in one state, after the post-actions of the move. A Choice may go either
 way here; an interpreter asks its condition once, at the instant when it fires.
 
-What robots run by are `steps`, `fault` and `missing`. States of all robots together (`initial`, `enabled`,
-`apply`, `is_success`, `is_deadlock`) are the oracle that the interpreter and the check of synchronisation
-are tested against, over every interleaving.
+What robots run by are `steps`, `fault` and `missing`; `told_by` finds the step that a log tells of. States
+of all robots together (`initial`, `enabled`, `apply`, `is_success`, `is_deadlock`) are the oracle that the
+interpreter and the check of synchronisation are tested against, over every interleaving.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program, RobotProgram, SlotId
+from mmrs_core.behaviour.steps import StepRecord
 
 NOTIFY = (BEHAVIOUR, "Notify")
 
@@ -113,6 +114,16 @@ def steps(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[Step,
 def fault(robot: RobotProgram, point: Point, which: str) -> Step:
     """Return the step by which a robot that is not at a final point stops for ever."""
     return Step(robot.id, "fault", robot.moves[point.move].id, which, "", Point(point.move, Phase.FAILED))
+
+
+def told_by(record: StepRecord, robot: RobotProgram, point: Point, active: Set[SlotId]) -> Step | None:
+    """Return the step of a robot from a point that a record tells of; None: it can make no such step."""
+    if record.label == "fault":
+        may = not point.is_final and not record.slot and record.move == robot.moves[point.move].id
+        return fault(robot, point, record.detail) if may else None
+    wanted = (record.label, record.move, record.detail, record.slot)
+    possible = steps(robot, point, active)
+    return next((s for s in possible if (s.label, s.move, s.detail, s.slot) == wanted), None)
 
 
 def missing(robot: RobotProgram, point: Point, active: Set[SlotId]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from mmrs_core.behaviour.log import merge
 from mmrs_core.behaviour.program import Action, Program, RobotProgram
-from mmrs_core.behaviour.semantics import Point, Step, entry, fault, steps
+from mmrs_core.behaviour.semantics import Point, Step, entry, told_by
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.buses import CommandId
 from mmrs_core.runtime.slots import InProcessBus
@@ -21,16 +21,9 @@ def step_of(robot: RobotProgram, point: Point, record: StepRecord) -> Step:
     Raises:
         ValueError: if it is none of the program's.
     """
-    if record.label == "fault" and record.move == robot.moves[point.move].id and not point.is_final:
-        return fault(robot, point, record.detail)
-    for step in steps(robot, point, {(robot.id, name) for name in robot.slots}):
-        if (step.label, step.move, step.detail, step.slot) == (
-            record.label,
-            record.move,
-            record.detail,
-            record.slot,
-        ):
-            return step
+    step = told_by(record, robot, point, {(robot.id, name) for name in robot.slots})
+    if step is not None:
+        return step
     raise ValueError(f"robot '{robot.id}': step {record.seq} of its log is none of its program's")
 
 
