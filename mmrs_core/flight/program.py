@@ -283,6 +283,7 @@ class Robot:
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
         mission: name of it; plan: what differs where two plans of it do.
         fleet: all robots of it, this one included.
+        neighbours: homes of the others whose vehicles might be taken for this robot's, by robot.
         travel: how carefully it travels.
     """
 
@@ -309,6 +310,7 @@ class Robot:
     mission: str = field(default="", kw_only=True)
     plan: str = field(default="", kw_only=True)
     fleet: tuple[str, ...] = field(default=(), kw_only=True)
+    neighbours: tuple[tuple[str, Place], ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)
 
     def step(self, move: str) -> Step:

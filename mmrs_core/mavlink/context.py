@@ -92,6 +92,20 @@ def require_home(robot: RobotProgram) -> Position:
     return robot.home
 
 
+def neighbours_of(robot: RobotProgram, input: TargetInput) -> tuple[tuple[str, Position], ...]:
+    """Return the homes on the Earth of other robots with vehicles of the same kind, by robot."""
+    if input.program.frame.is_local:
+        return ()
+    kinds = {
+        each.id: vehicle_class(each, input.types.get(each.type_name)).name for each in input.program.robots
+    }
+    return tuple(
+        (each.id, each.home)
+        for each in input.program.robots
+        if each.id != robot.id and each.home is not None and kinds[each.id] == kinds[robot.id]
+    )
+
+
 def _points(robot: RobotProgram) -> list[Point]:
     positions = [robot.home]
     for move in robot.moves:

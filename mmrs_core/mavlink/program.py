@@ -11,7 +11,7 @@ from mmrs_core.behaviour.walk import in_order
 from mmrs_core.contributions.targets import TargetInput, TracedStep
 from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.context import RobotContext, context_of, neighbours_of
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.mavlink.escapes import escapes_of, straight_lines_are_clear
 from mmrs_core.mavlink.fencing import Fence, fences_of
@@ -63,7 +63,8 @@ def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     points = refuges(areas, clearance) if geographic else ()
     fences = fences_of(robot, input, points) if geographic else ()
     vertices: list[Point] = [vertex for fence in fences for vertex in fence.ring]
-    context = context_of(robot, input, [*vertices, *points], geographic=geographic)
+    homes = [home[:2] for _, home in neighbours_of(robot, input)]
+    context = context_of(robot, input, [*vertices, *points, *homes], geographic=geographic)
     traced = zip(_ordered(robot), trace_of(robot), strict=True)
     steps = tuple(_step(index, context, step) for index, step in traced)
     head = tuple(each for each in _head(context, input, fences, points, clearance) if each[1] != ())
@@ -184,6 +185,7 @@ def _head(
     yield "log", log_name(robot.id)
     yield "vehicle", context.vehicle.name
     yield "home", place_of(home, context)
+    yield "neighbours", tuple((name, place_of(its, context)) for name, its in neighbours_of(robot, input))
     yield "start", robot.moves[robot.start].id
     yield "slots", robot.slots
     yield "senders", senders_of(robot, program, active=True)

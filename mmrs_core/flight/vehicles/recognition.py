@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
+from math import hypot, inf
 from pathlib import Path
 
 from ..faults import Refused
 from ..links.link import Link
-from ..program import Geographic, Robot
+from ..places import offset
+from ..program import Geographic, Place, Robot
 from ..vehicles import modes, preparation
 from .ardupilot import MavlinkVehicle
 
 OURS = frozenset({modes.GUIDED, modes.AUTO, modes.HOLD, modes.LAND, modes.SURFACE})
 """Modes that programs use; a vehicle in the air in any other may have a pilot."""
+
+AT_HOME = 2.0
+"""Metres from its home within which a vehicle stands there, whatever else is near: no position is better."""
 
 
 def recognise(
@@ -38,6 +43,8 @@ def recognise(
     if system and link.system != system:
         raise Refused(f"the vehicle is system {link.system}, and the robot's was system {system}")
     preparation.check_identity(link, telemetry, robot.vehicle, robot.home, tolerance)
+    if tolerance < inf:
+        refuse_neighbours(robot, telemetry.here())
     if not telemetry.armed():
         return
     if not under_way:
@@ -47,6 +54,21 @@ def recognise(
         raise Refused(f"the vehicle's motors run, and it is in mode {mode}: a pilot may have it")
 
 
+def refuse_neighbours(robot: Robot, here: Place) -> None:
+    """Make sure that a vehicle does not stand where that of another robot belongs.
+
+    Raises:
+        Refused: another robot's home is nearer than the robot's own.
+    """
+    away = _away(robot.home, here)
+    other, name = min(((_away(home, here), name) for name, home in robot.neighbours), default=(inf, ""))
+    if away > AT_HOME and other < away:
+        raise Refused(
+            f"the vehicle is {other:.0f} m from the home of {name!a} and {away:.0f} m from that of its "
+            "program: are system ids or links swapped?"
+        )
+
+
 def system_of(box: Path) -> int:
     """Return the MAVLink system of the vehicle of a robot's black box; 0 where it does not say."""
     for path in (*sorted(box.parent.glob(f"{box.stem}.*.ndjson")), box):
@@ -54,6 +76,10 @@ def system_of(box: Path) -> int:
             if '"start"' in line and (found := _system(line)):
                 return found
     return 0
+
+
+def _away(home: Place, here: Place) -> float:
+    return hypot(*offset(home, here)[:2])
 
 
 def _system(line: str) -> int:
