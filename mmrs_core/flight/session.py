@@ -7,12 +7,8 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from math import inf
-from platform import python_version
 from traceback import format_exception
-
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .bus import begin_together
 from .conditions import Condition
@@ -29,14 +25,15 @@ from .program import Geographic, Robot
 from .records.blackbox import BlackBox, black_box_path
 from .records.log import Log
 from .records.recording import Recording
+from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
 from .steps.ending import CODES, FAILED, OK, Crew, Ending
 from .steps.pilot import Pilot
 from .steps.resuming import progress_of
 from .steps.watch import Watch
-from .vehicles.ardupilot import MavlinkVehicle
 from .vehicles.dry import DryVehicle
+from .vehicles.mavlink_vehicle import MavlinkVehicle
 from .vehicles.recognition import recognise, system_of
 from .vehicles.vehicle import Vehicle
 
@@ -195,7 +192,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         abandon=shared.abandon,
         dry=options.dry,
     )
-    box.write("start", **_facts(robot, options, link))
+    box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), link))
     obedience.begin(vehicle)
     if link is not None and isinstance(vehicle, MavlinkVehicle):
         watch.begin(link, vehicle)
@@ -268,16 +265,3 @@ def _link(robot: Robot, shared: Shared, guard: Callable[[], None], stack: ExitSt
 
 def _counts(dropped: Mapping[str, int]) -> str:
     return ", ".join(f"{reason} ({frames})" for reason, frames in sorted(dropped.items()))
-
-
-def _facts(robot: Robot, options: Options, link: Link | None) -> dict[str, object]:
-    beat = link.latest("HEARTBEAT") if link is not None else None
-    firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
-    return {
-        "link": options.reach.urls[robot.id] if link is not None else None,
-        "vehicle": robot.vehicle,
-        "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
-        "home": robot.home,
-        "system": link.system if link is not None else None,
-        "versions": {"python": python_version(), "pymavlink": version("pymavlink")},
-    }

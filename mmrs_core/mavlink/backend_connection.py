@@ -25,7 +25,7 @@ from mmrs_core.flight.objects import Locator, where_expected
 from mmrs_core.flight.program import Action, Geographic, Robot
 from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.records.recording import Recording
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.recognition import system_of
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend_equipment import Equipment

@@ -12,7 +12,7 @@ from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.records.blackbox import BlackBox
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend_ground import Ground
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import inf
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from mmrs_core.flight.program import Robot
+from mmrs_core.flight.records.start import start_of
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.equipping import equip
 from mmrs_core.flight.steps.watch import Watch
@@ -65,7 +64,7 @@ class Setup:
             vehicle.hold()
         self._lost_link.tell(self._with.say)
         equip(self._robot, vehicle, self._uploads, self._with.say)
-        self._note_start()
+        self._note("start", start_of(self._robot, self._with.url, self._with.link))
         self.is_done = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
@@ -99,15 +98,3 @@ class Setup:
         )
         if resumed and not self.is_done:
             self._way.check(self._with.passed, self._with.begun)
-
-    def _note_start(self) -> None:
-        beat = self._with.link.latest("HEARTBEAT")
-        firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
-        content = {
-            "link": self._with.url,
-            "vehicle": self._robot.vehicle,
-            "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,
-            "home": self._robot.home,
-            "system": self._with.link.system,
-        }
-        self._note("start", content)

@@ -41,7 +41,7 @@ from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.flight.steps.ending import Crew, Ending
 from mmrs_core.flight.steps.pilot import Pilot
 from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 HOME = Geographic(42.37, 13.35, 0.0)

@@ -3,14 +3,15 @@
 Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
 `time` (seconds of the run), `wall` (UTC) and `kind`; what else there is depends on the kind:
 
-``start``     link, vehicle, firmware, home, versions
+``start``     link, vehicle, firmware, home, system, versions
 ``fix``       place, speed, heading, energy, mode, armed
 ``text``      severity, text: what the vehicle said
 ``command``   name, params, result, seconds, tries
 ``upload``    what, items, seconds
 ``parameter`` name, value, was
 ``decision``  what, why, response
-``order``     order, confirmed, seconds
+``order``     order, confirmed, seconds, why
+``injected``  fault, state: what was made to go wrong on purpose
 ``wait``      slots, seconds
 ``photo``     index, place
 ``reported``  name, content

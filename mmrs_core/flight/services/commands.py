@@ -21,7 +21,7 @@ LAST_CONFIRMATION = 255
 
 
 class Unanswered(Refused):
-    """The vehicle did not answer a command at all."""
+    """The vehicle says nothing where it should: no answer to a command, no image, no value."""
 
 
 class CommandCancel(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink is not typed

@@ -21,7 +21,7 @@ from ..faults import (
 from ..links.link import Link
 from ..program import Policy, Robot
 from ..vehicles import modes
-from ..vehicles.ardupilot import MavlinkVehicle
+from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
 from .energy import COMES_DOWN, Reserve
 from .ground import WATCHED, Ground

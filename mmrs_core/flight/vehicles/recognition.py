@@ -11,7 +11,7 @@ from ..links.link import Link
 from ..places import offset
 from ..program import Geographic, Place, Robot
 from ..vehicles import modes, preparation
-from .ardupilot import MavlinkVehicle
+from .mavlink_vehicle import MavlinkVehicle
 
 OURS = frozenset({modes.GUIDED, modes.AUTO, modes.HOLD, modes.LAND, modes.SURFACE})
 """Modes that programs use; a vehicle in the air in any other may have a pilot."""

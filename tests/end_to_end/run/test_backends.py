@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -56,10 +57,10 @@ class Driven:
 
 
 @contextmanager
-def rover(*policies, **settings):
+def rover(*policies, folder=None, **settings):
     """Give a rover that is ready."""
     port = free_port()
-    clock = RealClock(SPEEDUP)
+    clock, links = RealClock(SPEEDUP), {"r": f"udpin:127.0.0.1:{port}"}
     given = BackendInput(
         replace(program(ROVER), frame=EARTH),
         replace(ROVER, policies=policies),
@@ -68,7 +69,9 @@ def rover(*policies, **settings):
         {},
         {},
         {},
-        live=Live(clock, lambda: None, lambda line: None, "run-0", links={"r": f"udpin:127.0.0.1:{port}"}),
+        live=Live(
+            clock, lambda: None, lambda line: None, "run-0", folder, links={"r": f"udpin:127.0.0.1:{port}"}
+        ),
     )
     with SimulatedVehicle(port, Settings(kind="rover", **settings), speedup=SPEEDUP) as vehicle:
         driven = Driven(MAVLINK.connect(given), clock, vehicle)
@@ -98,3 +101,13 @@ def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
         until(lambda: driven.state.position[0] > 20.0)
         driven.vehicle.faults.meet_obstacle(3.0, 0.0)
         until(lambda: driven.fault == "OBSTACLE")
+
+
+def test_a_black_box_begins_with_the_vehicle_and_the_software_as_a_controllers_does(tmp_path):
+    with rover(folder=tmp_path, system=7):
+        pass
+    (box,) = tmp_path.glob("*.blackbox.ndjson")
+    lines = map(json.loads, box.read_text().splitlines())
+    start = next(line for line in lines if line["kind"] == "start")
+    assert (start["vehicle"], start["firmware"], start["system"]) == ("rover", "ARDUPILOTMEGA", 7)
+    assert set(start["versions"]) == {"python", "pymavlink"}

@@ -10,8 +10,8 @@ from mmrs_core.flight import Geographic
 from mmrs_core.flight.faults import Fault, Refused
 from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.vehicles import modes
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
 from mmrs_core.flight.vehicles.helm import Helm
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.telemetry import Telemetry
 
 HOME = Geographic(42.37, 13.35, 0.0)
@@ -162,7 +162,7 @@ def test_an_image_that_was_promised_is_waited_for(camera, told, component):
 
 @pytest.mark.parametrize("told", [None, NO_IMAGE])
 def test_an_image_that_never_comes_is_a_silent_device(camera, monkeypatch, told):
-    monkeypatch.setattr("mmrs_core.flight.vehicles.ardupilot.IMAGE_SECONDS", 2.0)
+    monkeypatch.setattr("mmrs_core.flight.vehicles.mavlink_vehicle.IMAGE_SECONDS", 2.0)
     vehicle, wire = camera
     if told is not None:
         wire.say(told, component=100)

@@ -17,7 +17,7 @@ from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM, Radio
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
 from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 
 THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)

@@ -7,7 +7,7 @@ from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight import Geographic, Local, Look
-from mmrs_core.flight.vehicles.ardupilot import MavlinkVehicle
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 
 ROI, ROI_NONE, GIMBAL, SPEED = 195, 197, 1000, 178
 HOME = Geographic(42.37, 13.35, 0.0)
