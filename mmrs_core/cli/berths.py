@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import isfinite, remainder
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -149,7 +149,8 @@ def plain_berths(count: int, home: str, kind: str) -> list[Berth]:
     latitude, longitude = pair(home, "--home")
     if not (-90.0 <= latitude <= 90.0 and -180.0 <= longitude <= 180.0):
         raise typer.BadParameter(f"--home {home}: is no place: LATITUDE from -90 to 90, LONGITUDE to 180")
-    return [Berth(f"Vehicle{n + 1}", kind, (latitude, longitude + SPACING * n)) for n in range(count)]
+    places = [(latitude, remainder(longitude + SPACING * n, 360.0)) for n in range(count)]
+    return [Berth(f"Vehicle{n + 1}", kind, place) for n, place in enumerate(places)]
 
 
 def berths_of(settings: CliSettings, path: Path) -> list[Berth]:

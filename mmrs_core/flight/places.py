@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, degrees, hypot, radians
+from math import atan2, cos, degrees, hypot, radians, remainder
 
 from .program import Geographic, Local, Place
 
@@ -15,6 +15,15 @@ def metres_per_degree(latitude: float) -> tuple[float, float]:
     return north, east
 
 
+def wrapped(longitude: float) -> float:
+    """Return a longitude, or a difference of two, between -180 and 180 degrees, without rounding.
+
+    >>> wrapped(-179.5 - 179.5)
+    1.0
+    """
+    return remainder(longitude, 360.0)
+
+
 def offset(a: Place, b: Place) -> tuple[float, float, float]:
     """Return how far `b` is north, east and up of `a`, metres.
 
@@ -23,7 +32,7 @@ def offset(a: Place, b: Place) -> tuple[float, float, float]:
     """
     if isinstance(a, Geographic) and isinstance(b, Geographic):
         northwards, eastwards = metres_per_degree((a.latitude + b.latitude) / 2.0)
-        north, east = (b.latitude - a.latitude) * northwards, (b.longitude - a.longitude) * eastwards
+        north, east = (b.latitude - a.latitude) * northwards, wrapped(b.longitude - a.longitude) * eastwards
         return north, east, b.height - a.height
     if isinstance(a, Local) and isinstance(b, Local):
         return b.north - a.north, b.east - a.east, b.height - a.height
@@ -46,7 +55,7 @@ def between(a: Place, b: Place, part: float) -> Place:
     if isinstance(a, Geographic) and isinstance(b, Geographic):
         return Geographic(
             a.latitude + (b.latitude - a.latitude) * part,
-            a.longitude + (b.longitude - a.longitude) * part,
+            wrapped(a.longitude + wrapped(b.longitude - a.longitude) * part),
             a.height + (b.height - a.height) * part,
         )
     north, east, up = offset(a, b)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
-from math import atan2, cos, degrees, radians, sin, sqrt
+from math import atan2, cos, degrees, radians, remainder, sin, sqrt
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -164,13 +164,14 @@ class Autopilot:
         """Return latitude and longitude of a place."""
         north, east, _ = place
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
-        return self.settings.latitude + north / of_latitude, self.settings.longitude + east / of_longitude
+        longitude = remainder(self.settings.longitude + east / of_longitude, 360.0)
+        return self.settings.latitude + north / of_latitude, longitude
 
     def local(self, latitude: float, longitude: float, up: float) -> Vector:
         """Return metres north, east and up of home."""
         of_latitude, of_longitude = metres_per_degree(self.settings.latitude)
         north = (latitude - self.settings.latitude) * of_latitude
-        return (north, (longitude - self.settings.longitude) * of_longitude, up)
+        return (north, remainder(longitude - self.settings.longitude, 360.0) * of_longitude, up)
 
     def place_of(self, item: Item) -> Vector:
         """Return where an item is; one without a place, or without coordinates, is here or above here."""

@@ -6,7 +6,7 @@ import pytest
 from pyproj import Geod
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.places import bearing, distance
+from mmrs_core.flight.places import bearing, between, distance
 
 
 @pytest.mark.parametrize("latitude", [0.0, 42.37, -33.9, 65.0, 80.0])
@@ -17,3 +17,15 @@ def test_distances_and_directions_are_those_on_the_ellipsoid(latitude, north, ea
     assert distance(a, b) == pytest.approx(metres, rel=2e-6)
     assert distance(a, b) == distance(b, a)
     assert abs((bearing(a, b) - azimuth + 180.0) % 360.0 - 180.0) < 0.05
+
+
+def test_a_way_over_the_antimeridian_is_as_short_as_elsewhere():
+    a, b = Geographic(-17.0, 179.9999, 5.0), Geographic(-17.0, -179.9999, 5.0)
+    assert distance(a, b) == pytest.approx(21.3, abs=0.1)
+    assert bearing(a, b) == pytest.approx(90.0)
+    assert bearing(b, a) == pytest.approx(270.0)
+    assert between(a, b, 0.75) == Geographic(-17.0, pytest.approx(-179.99995), 5.0)
+
+
+def test_both_names_of_the_antimeridian_are_one_place():
+    assert distance(Geographic(0.0, 180.0, 0.0), Geographic(0.0, -180.0, 0.0)) == 0.0
