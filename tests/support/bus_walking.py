@@ -14,6 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from mmrs_core.behaviour.log import log_name, read_log, to_line
@@ -182,7 +183,7 @@ class GatewayBus:
         self._socket = socket.create_connection(("127.0.0.1", told["port"]))
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._lines = self._socket.makefile("rb")
-        hello = {"do": "hello", "token": told["token"]}
+        hello = {"do": "hello", "token": told["token"], "alive": 1}
         if records is not None:
             known = recorded_of(made, [id], records)[id]
             notifies = [[*slot, *value] for slot, value in known.notifies.items()]
@@ -192,6 +193,7 @@ class GatewayBus:
         if self.welcome["is"] != "welcome":
             raise OSError(self.welcome["why"])
         threading.Thread(target=self._read, daemon=True).start()
+        threading.Thread(target=self._live, daemon=True).start()
 
     def prepare(self, id, slots, active):
         delivery = GatewayDelivery(self, id.sequence, tuple(sorted({owner for owner, _ in slots})))
@@ -233,6 +235,12 @@ class GatewayBus:
         if answer["is"] == "wrong":
             raise ValueError(answer["why"])
         return answer
+
+    def _live(self):
+        with suppress(OSError):
+            while not self.over:
+                self._ask({"do": "alive"})
+                time.sleep(0.3)
 
     def _read(self):
         for line in self._lines:

@@ -26,6 +26,7 @@ FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""
 
 HELLO_SECONDS = 5.0
+LONGEST_SILENCE = 3600
 
 Enter = Callable[[Recorded | None], Node]
 
@@ -93,15 +94,16 @@ class Gateway:
         connection.settimeout(HELLO_SECONDS)
         with connection.makefile("rb") as lines:
             try:
-                recorded = self._hello(line_of(lines))
-                node = self._enter(recorded)
+                hello = self._hello(line_of(lines))
+                alive = _alive_in(hello)
+                node = self._enter(_recorded_in(hello))
             except (OSError, ValueError) as error:
                 _send(connection, {"is": "wrong", "why": str(error)})
                 say(f"{self._robot!a}: a program was turned away: {error}")
                 return
             connection.settimeout(None)
             say(f"{self._robot!a}: a program has come")
-            self._session = Session(self._robot, self._run, node, connection)
+            self._session = Session(self._robot, self._run, node, connection, alive)
             try:
                 self._session.run(lines)
             finally:
@@ -109,8 +111,8 @@ class Gateway:
                 self._session = None
             say(f"{self._robot!a}: the program has gone")
 
-    def _hello(self, line: bytes) -> Recorded | None:
-        """Return what a program's log says that was started again.
+    def _hello(self, line: bytes) -> Mapping[str, Any]:
+        """Return what a program says first.
 
         Raises:
             Unreadable: it does not say hello as it should.
@@ -120,7 +122,16 @@ class Gateway:
             raise Unreadable("says something else before hello")
         if not secrets.compare_digest(text_in(content, "token", "").encode(), self.token.encode()):
             raise Unreadable("does not know the token")
-        return _recorded_in(content)
+        return content
+
+
+def _alive_in(content: Mapping[str, Any]) -> int | None:
+    """Return after how many seconds of silence a program counts as frozen; None: never."""
+    if "alive" not in content:
+        return None
+    if not 1 <= (alive := number_in(content, "alive")) <= LONGEST_SILENCE:
+        raise Unreadable(f"alive: no whole number of seconds from 1 to {LONGEST_SILENCE}")
+    return alive
 
 
 def _recorded_in(content: Mapping[str, Any]) -> Recorded | None:

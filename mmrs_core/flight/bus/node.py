@@ -250,6 +250,14 @@ class Node:
         self.pump()
         self._tell_changed()
 
+    def hide(self, robot: str) -> None:
+        """Have a robot of this process be out of reach, as one that is frozen; its slots are kept."""
+        self._courier.vanish([robot])
+
+    def show(self, robot: str) -> None:
+        """Have a robot of this process be in reach again, unless it has ended."""
+        self._appear([robot])
+
     @property
     def lamport(self) -> int:
         """Return the latest logical time that this process knows of."""

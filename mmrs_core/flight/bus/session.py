@@ -19,6 +19,9 @@ from .words import LONGEST, MOST_SLOTS, REACH, CommandId
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""
 
+WATCHING_SECONDS = 0.2
+"""How often it is looked whether a program is still there that has said how often it speaks."""
+
 
 def line_of(lines: IO[bytes]) -> bytes:
     """Return the next line; of one that is longer than any message only so much that this is seen.
@@ -35,14 +38,25 @@ def line_of(lines: IO[bytes]) -> bytes:
 class Session:
     """Serves one program until it goes."""
 
-    def __init__(self, robot: str, run: str, node: Node, connection: socket.socket) -> None:
-        """Speak for a robot at an end of the bus."""
+    def __init__(
+        self, robot: str, run: str, node: Node, connection: socket.socket, alive: float | None = None
+    ) -> None:
+        """Speak for a robot at an end of the bus.
+
+        Args:
+            robot: whose program it is.
+            run: identifier of the run.
+            node: the end of the bus.
+            connection: to the program.
+            alive: seconds of silence after which the program counts as frozen; None: it never does.
+        """
         self._robot, self._run, self._node, self._connection = robot, run, node, connection
         self._turn = threading.Lock()
         self._deliveries: dict[int, Delivery] = {}
         self._latest = -1
         self._told: dict[int, str] = {}
         self._told_waiting = 0.0
+        self._alive, self._heard, self._frozen = alive, time.monotonic(), False
         self._look = threading.Event()
         self._changed = False
         self._over = threading.Event()
@@ -57,6 +71,7 @@ class Session:
         teller.start()
         try:
             while line := line_of(lines):
+                self._hear()
                 with self._turn:
                     self._say(self._answer(line))
                 self._look.set()
@@ -72,6 +87,18 @@ class Session:
             self._connection.shutdown(socket.SHUT_RDWR)
         except OSError:
             self._over.set()
+
+    def _hear(self) -> None:
+        self._heard = time.monotonic()
+        if self._frozen:
+            self._frozen = False
+            self._node.show(self._robot)
+
+    def _watch(self) -> None:
+        """Let the robot be out of reach while its program is silent for too long."""
+        if self._alive is not None and time.monotonic() - self._heard > self._alive:
+            self._frozen = True
+            self._node.hide(self._robot)
 
     def _answer(self, line: bytes) -> Mapping[str, object]:
         try:
@@ -124,7 +151,9 @@ class Session:
         for _, name in slots:
             if name not in self._slots:
                 raise Unreadable(f"{self._robot!a} has no slot {name!a}")
-        lamport, most = number_in(content, "lamport"), self._node.lamport + REACH
+        # A slot that was kept for a sender that is lost may be ahead of all that has happened.
+        ahead = max((self._node.state(slot).lamport for slot in slots), default=0)
+        lamport, most = number_in(content, "lamport"), max(self._node.lamport, ahead) + REACH
         if lamport > most:
             raise Unreadable(f"lamport {lamport}: far beyond all that has happened, at most {most}")
         passed = self._node.passed(slots, lamport)
@@ -146,6 +175,9 @@ class Session:
             raise Unreadable(str(error)) from None
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
 
+    def _live(self, content: Mapping[str, Any]) -> Mapping[str, object]:
+        return {"is": "alive"}
+
     def _leave(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         self._node.leave(self._robot)
         return {"is": "left"}
@@ -157,8 +189,9 @@ class Session:
     def _tell_news(self) -> None:
         net = Net()
         while not self._over.is_set():
-            self._look.wait(WAITING_SECONDS)
+            self._look.wait(WAITING_SECONDS if self._alive is None else WATCHING_SECONDS)
             self._look.clear()
+            self._watch()
             with net.under(f"telling the program of {self._robot!a} what is new"), self._turn:
                 if self._changed:
                     self._changed = False
@@ -193,6 +226,7 @@ class Session:
         "pass": _pass,
         "lost": _lost,
         "begin": _begin,
+        "alive": _live,
         "leave": _leave,
     }
 

@@ -288,6 +288,10 @@ class GatewayFleet(ProcessFleet):
         walker = self._walker(robot, die, again, pause, ["--gateway", str(folder)])
         self.processes[robot] = [walker, gateway]
 
+    def freeze(self, robot: str) -> None:
+        """Freeze the program alone: the gateway must notice."""
+        self.processes[robot][0].send_signal(signal.SIGSTOP)
+
     def ended(self, robot: str) -> bool:
         well = super().ended(robot)
         if not well:

@@ -158,6 +158,25 @@ def test_a_program_that_goes_is_a_lost_peer(client, peer, until):
     assert until(lambda: peer.lost(["a"])) < 1.0
 
 
+def test_a_program_that_hangs_is_a_lost_peer_until_it_speaks_again(gateway, peer, until):
+    told = json.loads(gateway[1].read_text())
+    client = Client(told["port"])
+    client.ask({"do": "hello", "token": told["token"], "alive": 1}, "welcome")
+    until(lambda: not peer.missing(["a"]))
+    assert 0.5 < until(lambda: peer.lost(["a"])) < 2.0
+    client.ask({"do": "alive"}, "alive")
+    until(lambda: not peer.missing(["a"]))
+    client.close()
+
+
+@pytest.mark.parametrize("alive", [0, 3601, "1", None])
+def test_a_time_to_speak_in_that_is_none_is_refused(gateway, alive):
+    told = json.loads(gateway[1].read_text())
+    client = Client(told["port"])
+    assert "alive" in client.ask({"do": "hello", "token": told["token"], "alive": alive}, "wrong")["why"]
+    client.close()
+
+
 def test_a_gateway_that_is_killed_is_a_lost_peer(gateway, client, peer, until):
     until(lambda: not peer.missing(["a"]))
     os.kill(gateway[0].pid, signal.SIGKILL)

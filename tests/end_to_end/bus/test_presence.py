@@ -72,7 +72,7 @@ def test_whoever_waits_is_woken_when_a_robot_is_killed(seen, until):
 def test_a_frozen_robot_is_noticed_within_the_lease_and_again_when_it_wakes(seen, until):
     bus, walker = seen
     os.kill(walker.pid, signal.SIGSTOP)
-    assert until(lambda: bus.lost(["a"])) < 2 * LEASE
+    assert until(lambda: bus.lost(["a"])) < 1.5 * LEASE
     os.kill(walker.pid, signal.SIGCONT)
     until(lambda: not bus.lost(["a"]))
 
