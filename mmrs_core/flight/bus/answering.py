@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .meeting import Meeting
 from .outbox import Outbox
 from .owners import Owners
 from .reading import Unreadable, request_in
+from .roster import Roster
 from .troubles import Net
 from .watching import Watching
 from .words import Answer, Begin, Leave, Meet, Request
@@ -22,7 +22,7 @@ class Answering:
         """Answer for these owners; farewells change who is there, and to whom anything is still sent."""
         self._owners, self._watching, self._outbox = owners, watching, outbox
         self._net, self._now = net, now
-        self._meeting = Meeting(now)
+        self._roster = Roster(now)
 
     def told(self, owner: str, sender: str, text: str) -> Request | Answer:
         """Return the request that a robot of another process makes in a text, or why it is refused."""
@@ -54,7 +54,7 @@ class Answering:
 
     def _answer(self, robot: str, request: Request, *, here: bool) -> Answer:
         if isinstance(request, Meet):
-            return self._meeting.answer(request, self._watching.is_gone)
+            return self._roster.answer(request, self._watching.is_gone)
         if isinstance(request, Leave):
             return self._see_off(robot, request)
         answer = self._owners.answer(robot, request, self._now(), here=here)

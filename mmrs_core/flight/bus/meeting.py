@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 PATIENCE = 300.0
 """Real seconds that robots usually wait for each other."""
 
-NOTICE_SECONDS = 1.0
-"""How long before the instant it is set, so that everybody hears of it and can measure."""
-
 GLANCE_SECONDS = 0.05
 ROUND_TRIPS = 16
 SLOWEST_SECONDS = 2.0
@@ -60,41 +57,6 @@ class Beginning:
             f"at most {self.skew * 1e3:.1f} ms from the instant: {self.late * 1e3:.1f} ms late, by clocks"
             f" {self.offset * 1e3:.1f} ms apart, known to {self.uncertainty * 1e3:.1f} ms"
         )
-
-
-class Meeting:
-    """What the first robot knows: who is ready, and when all begin."""
-
-    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        """Know of nobody."""
-        self._now = now
-        self._ready: set[str] = set()
-        self._at = 0.0
-
-    def answer(self, asked: Meet, gone: Callable[[str], bool] = lambda robot: False) -> Answer:
-        """Note that a robot is ready, or no longer; say what the time is, who is ready, and when all begin.
-
-        Args:
-            asked: by the robot.
-            gone: whether a robot that was ready has ended since, or is out of reach.
-        """
-        now = self._now()
-        if not self._at:
-            self._note(asked, gone)
-            if asked.robots and len(self._ready) >= asked.robots:
-                self._at = now + NOTICE_SECONDS
-        ready = tuple(sorted(self._ready))
-        if self._at:
-            return Answer("begin", time=now, at=self._at, ready=ready)
-        why = f"{len(ready)} of {asked.robots} are ready: {', '.join(map(ascii, ready))}"
-        return Answer("wait", time=now, why=why, ready=ready)
-
-    def _note(self, asked: Meet, gone: Callable[[str], bool]) -> None:
-        self._ready = {robot for robot in self._ready if not gone(robot)}
-        if asked.robots:
-            self._ready.add(asked.id.sender)
-        else:
-            self._ready.discard(asked.id.sender)
 
 
 def begin_together(

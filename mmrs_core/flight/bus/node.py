@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from .answering import Answering
 from .carrier import Carrier, NoCarrier
@@ -138,7 +139,7 @@ class Node:
             if robot in recorded or not self._alone
         ]
         for news in told:
-            self._send(news)
+            self._add(news)
         self.pump()
         until = self.now() + settle
         with self.lock:
@@ -184,7 +185,7 @@ class Node:
                     errand.gone(owner)
             self._outbox.add(errand)
         self.pump()
-        return Delivery(self, errand)
+        return Delivery(errand, self.lock, partial(self._send, errand), partial(self._withdraw, errand))
 
     def _take_part(self, robot: str) -> None:
         with self.lock:
@@ -193,7 +194,14 @@ class Node:
             except OSError:
                 return  # whoever watches the journal has told; a robot that cannot keep this says so
 
-    def withdraw(self, errand: Errand) -> None:
+    def _send(self, errand: Errand, lamport: int) -> None:
+        """Have the owners of a notify apply it; they are told until all have acknowledged."""
+        with self.lock:
+            errand.send(lamport, self.now())
+            self._owners.use(lamport)
+        self.pump()
+
+    def _withdraw(self, errand: Errand) -> None:
         """Give a notify up; its owners are told until they have answered."""
         with self.lock:
             if (notice := errand.withdraw()) is not None:
@@ -399,7 +407,7 @@ class Node:
         """Return what a robot's news of itself are known by."""
         return CommandId(self._run, robot, self.incarnation, 0)
 
-    def _send(self, notice: Notice) -> None:
+    def _add(self, notice: Notice) -> None:
         with self.lock:
             self._outbox.add(notice)
 

@@ -69,9 +69,7 @@ def rover(*policies, folder=None, **settings):
         {},
         {},
         {},
-        live=Live(
-            clock, lambda: None, lambda line: None, "run-0", folder, links={"r": f"udpin:127.0.0.1:{port}"}
-        ),
+        live=Live(clock, lambda: None, lambda line: None, "run-0", folder, links=links),
     )
     with SimulatedVehicle(port, Settings(kind="rover", **settings), speedup=SPEEDUP) as vehicle:
         driven = Driven(MAVLINK.connect(given), clock, vehicle)

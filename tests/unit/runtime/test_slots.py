@@ -37,8 +37,8 @@ def test_a_command_sets_all_its_slots(bus):
 
 def test_a_command_that_a_log_tells_of_again_is_applied_once(bus):
     first, second = notify(bus, 0, A), notify(bus, 1, A, active=False)
-    bus.apply(first.errand.id, (A,), True, first.lamport)
-    bus.apply(second.errand.id, (A,), False, second.lamport)
+    bus.apply(CommandId("run", "b", "0", 0), (A,), True, first.lamport)
+    bus.apply(CommandId("run", "b", "0", 1), (A,), False, second.lamport)
     assert not bus.state(A).active
     assert bus.state(A).version == 2
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from mmrs_core.flight.bus.meeting import Beginning, Meeting
+from mmrs_core.flight.bus.meeting import Beginning
+from mmrs_core.flight.bus.roster import Roster
 from mmrs_core.flight.bus.words import CommandId, Meet
 
 
@@ -11,32 +12,32 @@ def ready(robot: str, robots: int = 2) -> Meet:
 
 
 def test_all_begin_once_the_last_is_ready():
-    meeting = Meeting(lambda: 5.0)
+    meeting = Roster(lambda: 5.0)
     assert meeting.answer(ready("a")).what == "wait"
     assert meeting.answer(ready("b")).at > 5.0
 
 
 def test_the_answer_says_who_is_ready():
-    meeting = Meeting()
+    meeting = Roster()
     assert meeting.answer(ready("b", 3)).ready == ("b",)
     assert meeting.answer(ready("a", 3)).ready == ("a", "b")
 
 
 def test_a_robot_that_waits_no_longer_is_not_ready():
-    meeting = Meeting()
+    meeting = Roster()
     meeting.answer(ready("a"))
     assert meeting.answer(ready("a", 0)).ready == ()
     assert meeting.answer(ready("b")).what == "wait"
 
 
 def test_a_robot_that_is_gone_is_not_ready():
-    meeting = Meeting()
+    meeting = Roster()
     meeting.answer(ready("a"))
     assert meeting.answer(ready("b"), {"a"}.__contains__).what == "wait"
 
 
 def test_a_robot_that_gives_up_as_all_begin_is_told_so():
-    meeting = Meeting()
+    meeting = Roster()
     for robot in "ab":
         meeting.answer(ready(robot))
     assert meeting.answer(ready("a", 0)).what == "begin"
