@@ -22,6 +22,7 @@ from mmrs_core.cli.buses import BusWishes, begin_all, bus_for
 from mmrs_core.cli.figures import clock
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.observing import Observer
 from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import counted, say, tell, unfailing
 from mmrs_core.errors import InvalidModelError, LinkLostError
@@ -138,7 +139,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
         stack.callback(bus.close)
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
-        observer = _Observer(workshop, writer)
+        observer = Observer(workshop, writer, program)
         venture = Venture(
             program,
             inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
@@ -161,27 +162,6 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
-
-
-class _Observer:
-    """Writes logs, tells plug-ins, and remembers what each robot does."""
-
-    def __init__(self, workshop: Workshop, writer: LogWriter) -> None:
-        self._workshop, self._writer = workshop, writer
-        self._last: dict[str, StepRecord] = {}
-
-    def observe(self, record: StepRecord) -> None:
-        """Write a step down."""
-        self._writer.write(record)
-        self._last[record.robot] = record
-        self._workshop.plugins.observe_step(record)
-
-    def status(self, robot: str) -> Mapping[str, object]:
-        """Return what a robot did last."""
-        last = self._last.get(robot)
-        if last is None:
-            return {"state": "gets ready"}
-        return {"move": last.move, "step": last.label, "time": last.time}
 
 
 def _collected(steps: Generator[StepRecord, None, Ending], program: Program) -> Ending:

@@ -70,7 +70,7 @@ class Crews:
             "energy": state.energy,
             "place": state.place,
             "speed": round(state.speed, 2),
-        }
+        } | ({"reported": journal.reported} if journal.reported else {})
         return {name: plain(value) for name, value in found.items()}
 
     def _enter(self, robot: str, phase: str) -> None:

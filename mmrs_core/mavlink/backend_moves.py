@@ -29,6 +29,7 @@ from mmrs_core.flight.program import (
     Turn,
 )
 from mmrs_core.flight.services.commands import Unanswered
+from mmrs_core.flight.services.telling import words_of
 from mmrs_core.flight.services.uploads import Flight
 from mmrs_core.flight.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
 from mmrs_core.flight.steps.responses import policy_for
@@ -60,7 +61,7 @@ class Moves:
         """Move that vehicle; `told` is called with what was reported or measured: kind, name, content."""
         self.track: list[tuple[str, Place]] = []
         self._steps = {step.move: step for step in robot.steps}
-        self._home = robot.home
+        self._robot, self._home = robot.id, robot.home
         after = policy_for(DEVICE_SILENT, robot).after
         self._silence = SILENCE_SECONDS if after is None else after
         self._silence_of_values = VALUE_SECONDS if after is None else after
@@ -94,7 +95,7 @@ class Moves:
         if isinstance(action, Measure):
             return Job(lambda: self._measure(action), self._rest(action.seconds))
         if isinstance(action, Report):
-            return Job(lambda: self._told("reported", action.name, dict(action.pairs)))
+            return Job(lambda: self._report(action))
         if isinstance(action, NoEffect):
             return Job(lambda: self._told("text", action.name, {"text": f"no way to do it: {action.why}"}))
         return Job()
@@ -208,6 +209,10 @@ class Moves:
         except Unanswered as error:
             raise Fault(DEVICE_SILENT, f"{action.device}: {error}") from error
         self._told("measured", action.value, {"device": action.device, "result": found})
+
+    def _report(self, action: Report) -> None:
+        self._vehicle.tell_ground(words_of(self._robot, action.name, dict(action.pairs)))
+        self._told("reported", action.name, dict(action.pairs))
 
     def _rest(self, seconds: float) -> Callable[[], None]:
         left = seconds

@@ -206,6 +206,12 @@ class Link:
             observer(message, True)
         self._radio.send(message, self._roaming.sender)
 
+    def speak(self, message: Message) -> None:
+        """Send one message to everybody as a component of the vehicle, as its onboard computer does."""
+        for observer in self._observers:
+            observer(message, True)
+        self._radio.send(message, self._roaming.sender, self.system)
+
     def latest(self, kind: str) -> Message | None:
         """Return the last message of that name from the vehicle."""
         found = self._latest.get(kind)

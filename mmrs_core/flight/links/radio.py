@@ -79,7 +79,7 @@ class Radio:
         self.trouble = ""
         self._port = port
         self._signer = signer
-        self._mav = self._parser()
+        self._packers: dict[int, Any] = {}
         self._parsers: dict[Address | None, Any] = {}
         self._sending = threading.Lock()
         self._ears: tuple[Ear, ...] = ()
@@ -121,10 +121,16 @@ class Radio:
             if self._signer is not None:
                 self._signer.save(at_once=True)
 
-    def send(self, message: Message, to: Address | None) -> None:
-        """Send one message; where the port does not take it, it is lost like any on a poor link."""
+    def send(self, message: Message, to: Address | None, system: int = GROUND_SYSTEM) -> None:
+        """Send one message; where the port does not take it, it is lost like any on a poor link.
+
+        Args:
+            message: to send.
+            to: where to; None: to whoever is at the other end.
+            system: that it comes from.
+        """
         with self._sending:
-            data = self._packed(message)
+            data = self._packed(message, system)
             try:
                 self._port.write(data, to)
             except OSError as error:
@@ -134,14 +140,15 @@ class Radio:
         """Return whether some robot has that vehicle."""
         return any(ear.system == system for ear in self._ears)
 
-    def _parser(self) -> Any:
+    def _parser(self, system: int = GROUND_SYSTEM) -> Any:
         if self._signer is not None:
-            return Signed(self._signer, GROUND_SYSTEM, GROUND_COMPONENT)
-        return mavlink.MAVLink(None, srcSystem=GROUND_SYSTEM, srcComponent=GROUND_COMPONENT)
+            return Signed(self._signer, system, GROUND_COMPONENT)
+        return mavlink.MAVLink(None, srcSystem=system, srcComponent=GROUND_COMPONENT)
 
-    def _packed(self, message: Message) -> bytes:
-        data = self._mav.packed(message) if self._signer is not None else bytes(message.pack(self._mav))
-        self._mav.seq = (self._mav.seq + 1) % 256
+    def _packed(self, message: Message, system: int) -> bytes:
+        packer = self._packers.setdefault(system, self._parser(system))
+        data = packer.packed(message) if self._signer is not None else bytes(message.pack(packer))
+        packer.seq = (packer.seq + 1) % 256
         return data
 
     def _listen(self) -> None:

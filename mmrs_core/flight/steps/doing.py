@@ -7,6 +7,7 @@ from ..faults import DEVICE_SILENT, Fault
 from ..program import Action, Measure, NoEffect, Notify, Operate, Report, Robot
 from ..records.journal import Journal
 from ..services.commands import Unanswered
+from ..services.telling import words_of
 from ..vehicles.vehicle import Vehicle
 from .waits import Waits
 
@@ -80,6 +81,7 @@ class Doing:
             self._journal.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):
             self._desk.say(f"{self._robot.id!a} reports {action.name!a} {dict(action.pairs)!a}")
+            self._vehicle.tell_ground(words_of(self._robot.id, action.name, dict(action.pairs)))
             self._journal.record("reported", action.name, dict(action.pairs))
         elif isinstance(action, NoEffect):
             self._desk.say(f"{self._robot.id!a} has no way to do {action.name!a}: {action.why}")

@@ -85,6 +85,9 @@ class DryVehicle:
     def measure(self, value: str, seconds: float) -> None:
         """Measure nothing: there is nothing to measure."""
 
+    def tell_ground(self, text: str) -> None:
+        """Tell nobody: there is no link."""
+
     def hold(self) -> bool:
         """Stay."""
         self._mode = HOLD

@@ -19,6 +19,7 @@ from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import Unanswered, command, name_of
 from ..services.missions import Item, mark_of
+from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import modes, preparation, safeguards
 from .enclosure import enclose
@@ -243,6 +244,10 @@ class MavlinkVehicle:
         if found is None:
             raise Unanswered(f"{value}: no such value comes from the vehicle within {seconds:g} s")
         return float(found.value)
+
+    def tell_ground(self, text: str) -> None:
+        """Have people at ground stations read something; nobody says whether they do."""
+        tell(self._link, text)
 
     def hold(self) -> bool:
         """Halt and stay, and return when the vehicle does; on the ground, disarm.

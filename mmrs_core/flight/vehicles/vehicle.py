@@ -106,6 +106,10 @@ class Vehicle(Protocol):
         """
         ...
 
+    def tell_ground(self, text: str) -> None:
+        """Have people at ground stations read something."""
+        ...
+
     def hold(self) -> bool:
         """Halt and stay, and return when it does; say whether it must be watched from then on."""
         ...

@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import threading
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -158,6 +159,19 @@ def test_a_program_for_one_vehicle_does_not_reach_the_other(controllers, one_rad
     assert code == 1
     assert "m from the home of its program" in said
     assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)
+
+
+@pytest.mark.parametrize(("of_alpha", "of_beta"), [(2, 1), (1, 2)])
+def test_homes_a_few_metres_apart_are_told_apart(controllers, one_radio, of_alpha, of_beta):
+    beside = replace(UP_AND_DOWN.robots[0], id="beta", home=(8.0, 0.0, 0.0))
+    pair = program(UP_AND_DOWN.robots[0], beside)
+    url, vehicles = one_radio(homes_of(pair))
+    systems = ("--connect", f"alpha={url}@{of_alpha}", "--connect", f"beta={url}@{of_beta}")
+    code, said = controllers(pair).run("fleet.py", "--speedup", "20", *systems)
+    swapped = (of_alpha, of_beta) == (2, 1)
+    assert code == (1 if swapped else 0), said
+    assert ("0 m from the home of 'beta' and 8 m from that of its program" in said) is swapped
+    assert any(vehicle.autopilot.history for vehicle in vehicles) is not swapped
 
 
 def test_which_of_two_vehicles_is_meant_must_be_said(controllers, one_radio):

@@ -1,0 +1,51 @@
+"""Watches robots of this process at work: writes their logs, and remembers what each did last."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mmrs_core.behaviour.log import LogWriter
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.journey import Workshop
+
+FEEDBACK = (BEHAVIOUR, "Feedback")
+
+
+class Observer:
+    """Is told every step that a robot makes."""
+
+    def __init__(self, workshop: Workshop, writer: LogWriter, program: Program) -> None:
+        """Have seen nothing of that behaviour yet; plug-ins of the workshop are told, too."""
+        self._workshop, self._writer = workshop, writer
+        self._actions = _actions_of(program)
+        self._last: dict[str, StepRecord] = {}
+        self._reported: dict[str, Mapping[str, Mapping[str, str]]] = {}
+
+    def observe(self, record: StepRecord) -> None:
+        """Write a step down."""
+        self._writer.write(record)
+        self._last[record.robot] = record
+        action = self._actions.get((record.robot, record.move, record.detail))
+        if record.label == "act" and action is not None and action.is_a(FEEDBACK):
+            self._reported[record.robot] = {action.name: dict(action.parameters)}
+        self._workshop.plugins.observe_step(record)
+
+    def status(self, robot: str) -> Mapping[str, object]:
+        """Return what a robot did last, and what it has reported last if it has."""
+        last, reported = self._last.get(robot), self._reported.get(robot)
+        if last is None:
+            return {"state": "gets ready"}
+        done = {"move": last.move, "step": last.label, "time": last.time}
+        return done | ({} if reported is None else {"reported": reported})
+
+
+def _actions_of(program: Program) -> dict[tuple[str, str, str], Action]:
+    """Return all actions by robot, move, and what logs say of where they stand there."""
+    return {
+        (robot.id, move.id, f"{when}:{index}"): action
+        for robot in program.robots
+        for move in robot.moves
+        for when, actions in (("pre", move.before), ("post", move.after))
+        for index, action in enumerate(actions)
+    }

@@ -1,0 +1,54 @@
+"""Tells people at ground stations something, over the link to a vehicle: as STATUSTEXT.
+
+It is said in the vehicle's own system, by the component that programs have: ground stations show what a
+vehicle's system says, and pass over the words of other stations. Autopilots hand it on to wherever a
+station was heard. Nobody acknowledges it; on a link that loses frames it may be lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import count
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..links.link import Link, Message
+
+CHUNK = 50
+"""Bytes of a piece of a text."""
+
+MOST_CHUNKS = 20
+MORE = b" ..."
+_ids = count(1)
+
+
+def tell(link: Link, text: str) -> None:
+    """Send a text in as many pieces as it needs; without waiting for anything."""
+    for piece in pieces_of(text):
+        link.speak(piece)
+
+
+def words_of(robot: str, name: str, content: Mapping[str, str]) -> str:
+    """Return what a robot reports as people at ground stations read it."""
+    pairs = ", ".join(f"{key} {value}" for key, value in content.items())
+    return f"{robot}: {name}: {pairs}" if pairs else f"{robot}: {name}"
+
+
+def pieces_of(text: str) -> Iterator[Message]:
+    """Yield a text as STATUSTEXT; a longer one than a ground station would bear ends with dots.
+
+    The last of several pieces is shorter than the others, which is how stations know that it is the last.
+    """
+    data = text.encode("ascii", "backslashreplace")
+    if len(data) >= MOST_CHUNKS * CHUNK:
+        data = data[: MOST_CHUNKS * CHUNK - len(MORE) - 1] + MORE
+    if len(data) <= CHUNK:
+        yield _piece(data, 0, 0)
+        return
+    number = next(_ids) % 65_535 + 1
+    for seq, begin in enumerate(range(0, len(data) + 1, CHUNK)):
+        yield _piece(data[begin : begin + CHUNK], number, seq)
+
+
+def _piece(data: bytes, number: int, seq: int) -> Message:
+    return mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_NOTICE, data, number, seq)
