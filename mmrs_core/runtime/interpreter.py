@@ -9,7 +9,6 @@ backend, the bus or an order wakes it.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping
-from heapq import heappop, heappush
 from math import inf
 
 from mmrs_core.behaviour.program import Program
@@ -20,6 +19,7 @@ from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus, CommandId
 from mmrs_core.contributions.execution import Clock, Condition, Fault
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.runtime.agenda import Agenda
 from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.peers import Peers
@@ -113,8 +113,7 @@ class _Run:
         self._obedience = Obedience(robots, terms.orders, clock)
         self._stopping = Stopping(robots, clock, self._obedience, terms.say)
         self._made = 0
-        self._ready = list(range(len(robots)))
-        self._wakes: list[tuple[float, int]] = []
+        self._agenda = Agenda(len(robots))
         self._deadlock: tuple[Waiting, ...] = ()
         self._idle_since: float | None = None
         if terms.attention is not None:
@@ -156,19 +155,15 @@ class _Run:
 
     def _obey(self) -> None:
         for robot in self._obedience.obey():
-            heappush(self._ready, self._by_id[robot])
+            self._agenda.put(self._by_id[robot])
 
     def _settled(self) -> Iterator[StepRecord]:
         """Make every step that is due now, the program's first robot first."""
-        while self._ready and self._made < self._terms.steps:
-            order = heappop(self._ready)
-            while self._ready and self._ready[0] == order:
-                heappop(self._ready)
+        while self._agenda.is_due and self._made < self._terms.steps:
+            order = self._agenda.take()
             robot = self._robots[order]
             yield from self._advanced(robot)
-            robot.wake = self._wake_time(robot)
-            if robot.wake < inf:
-                heappush(self._wakes, (robot.wake, order))
+            self._agenda.put_at(order, self._wake_time(robot))
 
     def _advanced(self, robot: RunningRobot) -> Iterator[StepRecord]:
         while not robot.point.is_final and self._made < self._terms.steps:
@@ -240,7 +235,7 @@ class _Run:
         robot.send()
         for owner, _ in step.sets:
             if owner in self._by_id:
-                heappush(self._ready, self._by_id[owner])
+                self._agenda.put(self._by_id[owner])
 
     def _retire(self, robot: RunningRobot) -> None:
         """Note that a robot makes no further step, and have those look that may wait for it."""
@@ -250,7 +245,7 @@ class _Run:
             self._stopping.answer(robot, robot.fault or Fault("CRASHED"))
         for order, other in enumerate(self._robots):
             if other.point.phase is Phase.OUT:
-                heappush(self._ready, order)
+                self._agenda.put(order)
 
     def _wake_time(self, robot: RunningRobot) -> float:
         now = self._clock.now()
@@ -267,9 +262,7 @@ class _Run:
         looks = min(self._patience_ends(), self._next_look_at_stopped())
         if self._is_quiet() and not self._is_patient():
             return looks
-        while self._wakes and self._robots[self._wakes[0][1]].wake != self._wakes[0][0]:
-            heappop(self._wakes)
-        return min(self._wakes[0][0] if self._wakes else inf, looks)
+        return min(self._agenda.next_time, looks)
 
     def _next_look_at_stopped(self) -> float:
         if self._stopping.busy:
@@ -277,11 +270,7 @@ class _Run:
         return self._clock.now() + WATCH_PACE if self._stopping.watching else inf
 
     def _wake(self) -> None:
-        now = self._clock.now()
-        while self._wakes and self._wakes[0][0] <= now:
-            time, order = heappop(self._wakes)
-            if self._robots[order].wake == time:
-                heappush(self._ready, order)
+        self._agenda.advance(self._clock.now())
         if self._terms.attention is not None:
             self._attend(self._terms.attention.taken())
 
@@ -289,7 +278,7 @@ class _Run:
         for order, robot in enumerate(self._robots):
             affected = robot.point.phase is Phase.OUT or robot.notify.delivery or self._bus.trouble(robot.id)
             if robot.id in called or (BUS in called and affected):
-                heappush(self._ready, order)
+                self._agenda.put(order)
 
     def _is_over(self) -> bool:
         """Return whether nothing will happen any more in real time."""

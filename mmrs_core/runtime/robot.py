@@ -49,7 +49,6 @@ class RunningRobot:
         point: where it is in its program.
         lamport: its logical time.
         looked: when it was looked at last; what happens after that has yet to be seen.
-        wake: when it is worth looking at it again.
         wait: what keeps it from leaving its move.
         fault: what ended its mission; None as long as nothing did.
         notify: that owners of slots have still to answer or to acknowledge.
@@ -70,7 +69,7 @@ class RunningRobot:
         self.backend = backend
         self.point = entry(program, program.start)
         self.lamport = 0
-        self.looked = self.wake = 0.0
+        self.looked = 0.0
         self.wait = Wait(program.id)
         self.fault: Fault | None = None
         self.notify = Outgoing()

@@ -1,0 +1,55 @@
+"""Which robots are to be looked at, and when: by their place in the program, the first one first."""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush
+from math import inf
+
+
+class Agenda:
+    """Numbers that are due now, each once and in their order, and the times at which others will be."""
+
+    def __init__(self, count: int) -> None:
+        """Begin with so many, all due now."""
+        self._due = list(range(count))
+        self._later: list[tuple[float, int]] = []
+        self._times: dict[int, float] = {}
+
+    @property
+    def is_due(self) -> bool:
+        """Return whether any is due now."""
+        return bool(self._due)
+
+    def put(self, number: int) -> None:
+        """Have one be due now; when it will be due otherwise stays as it is."""
+        heappush(self._due, number)
+
+    def put_at(self, number: int, time: float) -> None:
+        """Have one be due at that time, and no longer when it was to be before; inf: never."""
+        self._times[number] = time
+        if time < inf:
+            heappush(self._later, (time, number))
+
+    def take(self) -> int:
+        """Return the first that is due; it is due no longer."""
+        number = heappop(self._due)
+        while self._due and self._due[0] == number:
+            heappop(self._due)
+        return number
+
+    @property
+    def next_time(self) -> float:
+        """Return when the next will be due; inf: none will."""
+        while self._later and self._is_outdated(self._later[0]):
+            heappop(self._later)
+        return self._later[0][0] if self._later else inf
+
+    def advance(self, now: float) -> None:
+        """Have those be due whose time has come."""
+        while self._later and self._later[0][0] <= now:
+            entry = heappop(self._later)
+            if not self._is_outdated(entry):
+                self.put(entry[1])
+
+    def _is_outdated(self, entry: tuple[float, int]) -> bool:
+        return self._times[entry[1]] != entry[0]
