@@ -106,7 +106,7 @@ OF_MISSIONS: Mapping[str, str] = {
     "GoTo.trajectory": "two waypoints",
     "TakeOff": "NAV_TAKEOFF",
     "Land": "NAV_LAND; ends the sortie",
-    "HoldPosition": "NAV_LOITER_TIME",
+    "HoldPosition": "NAV_LOITER_TIME; refused where a copter stands on the ground",
     "Recharge": "by the operator: each sortie is a mission of its own",
     "HeadTo.heading": "CONDITION_YAW; a gimbal: DO_SET_ROI_LOCATION",
     "Move.name": "in the manifest",

@@ -13,7 +13,7 @@ from mmrs_core.mavlink.movements import gimbal_of, mount_of, on_gimbal, turns_to
 from mmrs_core.mavlink.plans import items as cmd
 from mmrs_core.mavlink.plans.items import Item
 from mmrs_core.mavlink.runs import CORNER_SECONDS
-from mmrs_core.mavlink.vehicles import ROVER
+from mmrs_core.mavlink.vehicles import COPTER, ROVER
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
@@ -25,8 +25,18 @@ def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
 
     What missions cannot express is left out, but never so that a vehicle goes on where it should
     wait: a wait becomes an unlimited loiter that the operator ends, and the mission ends at a choice
-    and at a move that comes round again.
+    and at a move that comes round again. A wait on the ground needs no item: the operator begins each
+    sortie.
     """
+    return tuple(_flown(context).sorties)
+
+
+def left_out_on_the_ground(context: RobotContext) -> tuple[str, ...]:
+    """Return what is in no sortie since a vehicle that flies heeds a mission from its take-off on only."""
+    return tuple(_flown(context).left)
+
+
+def _flown(context: RobotContext) -> Flight:
     flight = Flight(context)
     robot, index, seen = context.robot, context.robot.start, set[int]()
     while index not in seen:
@@ -39,7 +49,7 @@ def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
             flight.wait(move)
         index = transition.to
     flight.end_sortie()
-    return tuple(flight.sorties)
+    return flight
 
 
 class Flight:
@@ -47,16 +57,19 @@ class Flight:
 
     Attributes:
         sorties: the finished ones.
+        left: what could not be written down, with the robot and the move.
     """
 
     def __init__(self, context: RobotContext) -> None:
         """Stand at home."""
         self.sorties: list[tuple[Item, ...]] = []
+        self.left: list[str] = []
         self._context = context
         self._position: Position = context.robot.home or ORIGIN
         self._speed: float | None = None
         self._looking, self._gimbal = False, 0
         self._items: list[Item] = []
+        self._down = context.vehicle is COPTER
 
     def perform(self, move: Move, *, fluid: bool) -> None:
         """Add a move with its actions; `fluid`: the robot does not stop at its end."""
@@ -70,13 +83,16 @@ class Flight:
 
     def wait(self, move: Move) -> None:
         """Add a wait that only the operator ends, if the robot is on its way."""
-        if self._items:
+        if self._items and not self._down:
             self._add(cmd.LOITER_UNLIMITED, move, here=True)
 
     def end_sortie(self) -> None:
         """Finish the sortie, if it leads anywhere."""
         if any(item.position is not None for item in self._items):
             self.sorties.append(tuple(self._items))
+        else:
+            labels = dict.fromkeys(self._context.label(item.move) for item in self._items)
+            self.left += (f"{label}: what it does there is in no sortie" for label in labels)
         self._items, self._speed, self._looking = [], None, False
 
     def _act(self, action: Action, move: Move) -> None:
@@ -84,25 +100,38 @@ class Flight:
         if isinstance(wiring, Wired):
             for command, params in ((wiring.command, wiring.params), *wiring.more):
                 self._add(command, move, *params)
-            if wiring.seconds and self._items:
+            took = f"no mission waits {wiring.seconds:g} s on the ground for its action '{action.name}'"
+            if wiring.seconds and not self._leaves_out(move, took):
                 self._add(cmd.LOITER_TIME, move, wiring.seconds, here=True)
+
+    def _leaves_out(self, move: Move, what: str) -> bool:
+        """Return whether the vehicle stands where no mission moves it, and note what is left out then."""
+        if self._down:
+            self.left.append(f"{self._context.label(move)}: {what}")
+        return self._down
 
     def take_off(self, move: Move, fluid: bool) -> None:
         """Climb straight up."""
+        self._down = False
         east, north, _ = self._position
         self._position = (east, north, self._context.zero + _number(move, "altitude"))
         self._add(cmd.TAKE_OFF, move, here=True)
 
     def land(self, move: Move, fluid: bool) -> None:
         """Descend straight down, which ends the sortie."""
+        if self._leaves_out(move, "lands without having taken off"):
+            return
         east, north, _ = self._position
         self._position = (east, north, self._context.zero)
         self._add(cmd.LAND, move, here=True)
         self.end_sortie()
+        self._down = self._context.vehicle is COPTER
 
     def go_to(self, move: Move, fluid: bool) -> None:
         """Go to the target, if its place is known."""
         if move.target is None or move.target.position is None:
+            return
+        if self._leaves_out(move, "goes somewhere without having taken off"):
             return
         self._pace(move)
         self._look(move)
@@ -113,16 +142,19 @@ class Flight:
             self._add(cmd.WAYPOINT, move, 0.0 if fluid and last else CORNER_SECONDS, here=True)
 
     def hold(self, move: Move, fluid: bool) -> None:
-        """Stay, if the robot is on its way."""
-        if self._items:
-            self._add(cmd.LOITER_TIME, move, _number(move, "duration"), here=True)
+        """Stay, which a vehicle that flies does only in the air."""
+        seconds = _number(move, "duration")
+        if self._down and seconds == 0.0:
+            return
+        if not self._leaves_out(move, f"no mission stays {seconds:g} s on the ground"):
+            self._add(cmd.LOITER_TIME, move, seconds, here=True)
 
     def head_to(self, move: Move, fluid: bool) -> None:
         """Turn to something, if its place is known; a gimbal turns by itself."""
         heading = move.heading
         if heading is None or self._context.vehicle is ROVER or on_gimbal(heading, self._context):
             self._look(move)
-        elif heading.target.position is not None:
+        elif heading.target.position is not None and not self._leaves_out(move, "turns on the ground"):
             aside = heading.angle_degrees + mount_of(heading, self._context)
             angle = _bearing(self._position, heading.target.position) - aside
             self._add(cmd.CONDITION_YAW, move, round(angle % 360.0, 1))

@@ -12,6 +12,7 @@ from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
 from mmrs_core.mavlink.earth import sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
+from mmrs_core.mavlink.plans.flight import left_out_on_the_ground
 from mmrs_core.mavlink.safety import explicit, policies_of
 from mmrs_core.scene import Policy
 
@@ -36,6 +37,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         yield f"robot '{robot.id}': {_described(policy)}"
     context = context_of(robot, input, geographic=False)
     yield from _coming_round(robot, context)
+    yield from left_out_on_the_ground(context)
     for index, move in enumerate(robot.moves):
         yield from losses_of(move, context)
         for description in objects_of(move):

@@ -166,7 +166,7 @@ def test_a_wait_is_refused_with_its_slots():
 
 
 def test_policies_of_a_robot_are_refused_by_name():
-    robot = replace(robot_program("alpha", [LAND]), policies=(Policy("BATTERY_LOW", "LAND"),))
+    robot = replace(robot_program("alpha", []), policies=(Policy("BATTERY_LOW", "LAND"),))
     type = replace(quad(), policies=(Policy("LINK_LOST", "HOLD", 5.0), Policy("BATTERY_LOW", "RETURN")))
     assert tuple(QGC_PLAN.refusals(target_input(program(robot), [type]))) == (
         "robot 'alpha': policy BATTERY_LOW: LAND, which only settings of the vehicle can do",
@@ -189,6 +189,57 @@ def test_a_wait_that_is_lost_becomes_a_loiter_that_the_operator_ends():
     waiting = {1: Transition(1, 2, waits=("go",))}
     files = plans(take_off("up", 20.0), LAND, transitions=waiting, allow_lossy=True)
     assert [command for command, _ in items(files["alpha.plan"])] == [22, 17, 21]
+
+
+STAYS = move("stays", "HoldPosition", duration=20.0)
+
+
+def first_that_moves(plan):
+    """Return the first command that ArduPilot flies to: its numbers are up to 95."""
+    return next(command for command, _ in items(plan) if command <= 95)
+
+
+def test_nothing_that_moves_goes_before_the_take_off():
+    shoots = replace(STAYS, before=(photo(),))
+    files = plans(shoots, take_off("up", 20.0), LAND, transitions=None, allow_lossy=True)
+    assert [command for command, _ in items(files["alpha.plan"])] == [2000, 22, 21]
+    assert first_that_moves(files["alpha.plan"]) == 22
+
+
+def test_a_stay_on_the_ground_is_refused():
+    assert refused(STAYS, take_off("up", 20.0), LAND) == (
+        "robot 'alpha', move 'stays': no mission stays 20 s on the ground",
+    )
+
+
+def test_the_seconds_of_an_action_on_the_ground_are_refused():
+    shoots = replace(move("stays", "HoldPosition"), before=(photo(),))
+    assert refused(shoots, take_off("up", 20.0), LAND) == (
+        "robot 'alpha', move 'stays': no mission waits 1 s on the ground for its action 'takePhoto'",
+    )
+
+
+def test_a_wait_on_the_ground_is_the_operators_begin():
+    waiting = {0: Transition(0, 1, waits=("go",)), 2: Transition(2, 3, waits=("more",))}
+    shoots = replace(take_off("up", 20.0), before=(photo(),))
+    files = plans(shoots, LAND, transitions=waiting, allow_lossy=True)
+    assert first_that_moves(files["alpha.plan"]) == 22
+    assert [*files] == ["alpha.plan", "qgc-plan.manifest.json"]
+
+
+def test_an_action_after_the_last_landing_is_refused_since_no_sortie_has_it():
+    shoots = replace(move("stays", "HoldPosition"), before=(photo(),))
+    assert "robot 'alpha', move 'stays': what it does there is in no sortie" in refused(
+        take_off("up", 20.0), LAND, shoots
+    )
+
+
+def test_going_and_landing_without_a_take_off_are_refused():
+    faults = refused(go_to("a", (0.0, 9.0, 20.0)), LAND)
+    assert faults == (
+        "robot 'alpha', move 'a': goes somewhere without having taken off",
+        "robot 'alpha', move 'down': lands without having taken off",
+    )
 
 
 def test_a_plan_ends_at_a_choice():

@@ -117,7 +117,7 @@ def test_every_line_is_traced_to_its_move():
 
 
 def test_a_second_sortie_is_a_second_list():
-    files = texts(take_off("up", 20.0), LAND, move("charge", "Recharge", duration=9.0), *FLIGHT[1:])
+    files = texts(take_off("up", 20.0), LAND, move("charge", "Recharge", duration=9.0), *FLIGHT)
     assert {"alpha.waypoints", "alpha.sortie-2.waypoints"} <= set(files)
 
 
