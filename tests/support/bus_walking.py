@@ -74,7 +74,30 @@ def gathering(robots: int = 3) -> Program:
     return program(first, *rest)
 
 
-BEHAVIOURS: dict[str, Callable[[int], Program]] = {"exchange": exchange, "gathering": gathering}
+def succession(size: int = 4) -> Program:
+    """Return robots of which two have ended when the last one comes, which notifies the first all the same.
+
+    The one that stays has nothing to do with the one that is notified.
+    """
+    return program(
+        robot("early", [hold("look", 0.0), hold("go", 0.0)], waits={"look": ["met"]}, slots=("met", "word")),
+        robot("other", [hold("meet", 0.0, after=(notify("early.met"),))]),
+        robot("stays", [hold("stay", 0.0), hold("leave", 0.0)], waits={"stay": ["go"]}, slots=("go",)),
+        robot(
+            "late",
+            [
+                hold("greet", 0.0, after=(notify("early.word"),)),
+                hold("free", 0.0, after=(notify("stays.go"),)),
+            ],
+        ),
+    )
+
+
+BEHAVIOURS: dict[str, Callable[[int], Program]] = {
+    "exchange": exchange,
+    "gathering": gathering,
+    "succession": succession,
+}
 
 
 class Gone(Exception):  # noqa: N818  # what has happened to the robot

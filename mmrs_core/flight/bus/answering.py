@@ -10,7 +10,7 @@ from .reading import Unreadable, request_in
 from .roster import Roster
 from .troubles import Net
 from .watching import Watching
-from .words import Answer, Begin, Leave, Meet, Request
+from .words import Answer, Begin, Ended, Leave, Meet, Request
 
 
 class Answering:
@@ -57,9 +57,11 @@ class Answering:
             return self._roster.answer(request, self._watching.is_gone)
         if isinstance(request, Leave):
             return self._see_off(robot, request)
+        if isinstance(request, Ended):
+            return self._learn(request)
         answer = self._owners.answer(robot, request, self._now(), here=here)
         if isinstance(request, Begin) and answer.what != "refused":
-            self._watching.left.discard(request.id.sender)
+            self._watching.left.pop(request.id.sender, None)
         return answer
 
     def _see_off(self, robot: str, farewell: Leave) -> Answer:
@@ -67,7 +69,14 @@ class Answering:
         # First the time: a notify that needs no answer any more must be later than all the robot did.
         self._owners.use(farewell.lamport)
         # It has ended, also where that cannot be kept: then it is told again as long as it is there.
-        self._watching.left.add(sender)
+        self._watching.left[sender] = farewell.lamport
         if sender not in self._owners:
             self._outbox.gone(sender)
         return self._owners.see_off(robot, sender, farewell.lamport)
+
+    def _learn(self, tidings: Ended) -> Answer:
+        for robot, lamport in tidings.robots:
+            if robot not in self._owners and self._watching.hear_say(robot, lamport):
+                self._owners.use(lamport)
+                self._outbox.gone(robot)
+        return Answer("done")

@@ -16,7 +16,7 @@ from .delivery import Delivery
 from .errands import Errand, Message, Notice
 from .journal import Journal, NoJournal
 from .members import Member, Recorded
-from .outbox import Outbox, farewell_of, news_of
+from .outbox import Outbox, farewell_of, news_of, tidings_of
 from .owners import Owners
 from .pacing import Pacing
 from .reading import written
@@ -42,6 +42,9 @@ LEASE_SECONDS = 1.5
 
 FAREWELL_SECONDS = 2.0
 """How long a robot that ends tries to tell those who are there."""
+
+TIDINGS_SECONDS = 10.0
+"""How long one who comes is told who has ended before, until it answers."""
 
 
 class Node:
@@ -181,7 +184,7 @@ class Node:
         errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
         with self.lock:
             for owner in parts:
-                if owner in self._watching.left and owner not in self._owners:
+                if self._watching.has_ended(owner) and owner not in self._owners:
                     errand.gone(owner)
             self._outbox.add(errand)
         self.pump()
@@ -253,7 +256,7 @@ class Node:
         with self.lock:
             if robot in self._watching.left or robot not in self._members:
                 return
-            self._watching.left.add(robot)
+            self._watching.left[robot] = self._owners.lamport
             self._outbox.bid_farewell(robot, self._farewell(robot))
         self.pump()
         self._tell_changed()
@@ -347,6 +350,8 @@ class Node:
                 self._watching.odd(robot, TWICE, here, now)
                 self._pacing.keep_going()
                 return
+            if here and not self._watching.is_here(robot):
+                self._inform(robot, now)
             self._watching.noticed(robot, here, now)
             if here:
                 self._outbox.back(robot, now)
@@ -403,6 +408,13 @@ class Node:
             if not ended:
                 self._courier.appear(robot)
 
+    def _inform(self, robot: str, now: float) -> None:
+        """Have a robot that is there now know who has ended before."""
+        ended = {each: at for each, at in self._watching.ended().items() if each != robot}
+        if ended:
+            teller = self._id_of(next(iter(self._members)))
+            self._outbox.add(tidings_of(teller, ended, robot, now + TIDINGS_SECONDS))
+
     def _id_of(self, robot: str) -> CommandId:
         """Return what a robot's news of itself are known by."""
         return CommandId(self._run, robot, self.incarnation, 0)
@@ -412,8 +424,11 @@ class Node:
             self._outbox.add(notice)
 
     def _farewell(self, robot: str) -> Notice:
-        contacts = self._members[robot].contacts - self._watching.left
+        contacts = self._members[robot].contacts - self._watching.left.keys()
         there = {each for each in contacts if each in self._owners or self._watching.is_here(each)}
+        if there != contacts:
+            # Who comes later must be told by others, since this robot will be gone by then.
+            there |= self._watching.here
         return farewell_of(self._id_of(robot), self._owners.lamport, there, self.now() + FAREWELL_SECONDS)
 
     def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:

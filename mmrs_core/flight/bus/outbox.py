@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 from .errands import Errand, Message, Notice
 from .members import Member, Recorded
 from .troubles import SORE_SECONDS, Net
-from .words import Begin, CommandId, Leave
+from .words import Begin, CommandId, Ended, Leave
 
 
 class Outbox:
@@ -81,3 +81,8 @@ def news_of(member: Member, id: CommandId, recorded: Recorded) -> Notice:
 def farewell_of(id: CommandId, lamport: int, to: Collection[str], until: float) -> Notice:
     """Return what others are told of a robot that has ended at that logical time."""
     return Notice({each: Message(id.sender, each, Leave(id, lamport)) for each in sorted(to)}, until=until)
+
+
+def tidings_of(id: CommandId, ended: Mapping[str, int], to: str, until: float) -> Notice:
+    """Return what a robot that was not there is told of those that have ended."""
+    return Notice({to: Message(id.sender, to, Ended(id, tuple(sorted(ended.items()))))}, until=until)

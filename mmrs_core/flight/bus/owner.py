@@ -102,7 +102,7 @@ class Owner:
         self._applied: set[CommandId] = set()
         self._latest, self._starts = Latest(), Starts()
         self._begun: dict[str, str] = {}
-        self._left: set[str] = set()
+        self._left: dict[str, int] = {}
         for number, line in enumerate(journal.lines(), start=1):
             try:
                 self._take_up(line)
@@ -112,9 +112,9 @@ class Owner:
             slot.pass_time(floor)
 
     @property
-    def left(self) -> frozenset[str]:
-        """Return the robots that told this one that they have ended."""
-        return frozenset(self._left)
+    def left(self) -> Mapping[str, int]:
+        """Return the robots that told this one that they have ended, with the logical time of each."""
+        return dict(self._left)
 
     def started(self, number: int) -> None:
         """Keep that this owner was started again."""
@@ -275,7 +275,7 @@ class Owner:
     def _apply_recorded(self, begun: Begin) -> None:
         sender, incarnation = begun.id.sender, begun.id.incarnation
         self._begun[sender] = incarnation
-        self._left.discard(sender)
+        self._left.pop(sender, None)
         for name, active, lamport in begun.recorded:
             self._slots[name].set(active, (lamport, sender))
         for slot in self._slots.values():
@@ -296,7 +296,7 @@ class Owner:
         self._latest.settle(id, round, for_good=id in self._applied)
 
     def _see_off(self, sender: str, lamport: int) -> None:
-        self._left.add(sender)
+        self._left[sender] = lamport
         self.lamport = max(self.lamport, lamport)
 
     def _end_if_lost(self, slot: Slot, now: float) -> None:

@@ -60,7 +60,8 @@ class Owners:
         logged = (each.lamport for each in recorded.values())
         self.lamport = max((*logged, *(owner.lamport for owner in self._owners.values())), default=0)
         self._watching, self._alone = watching, trusting
-        watching.left.update(*(owner.left for owner in self._owners.values()))
+        for owner in self._owners.values():
+            watching.left.update(owner.left)
         self._number = self._next_start(recorded)
         self.incarnation = f"{self._number:08d}-{uuid.uuid4().hex[:8]}"
 

@@ -18,6 +18,7 @@ from .words import (
     Begin,
     CommandId,
     Commit,
+    Ended,
     Leave,
     Meet,
     Prepare,
@@ -181,6 +182,20 @@ def _recorded(each: object) -> tuple[str, bool, int]:
     return text_in(content, "slot"), flag_in(content, "active"), number_in(content, "lamport")
 
 
+def _ended(id: CommandId, content: Mapping[str, Any]) -> Request:
+    found = content.get("robots")
+    if not isinstance(found, list) or len(found) > MOST_SLOTS:
+        raise Unreadable(f"robots: no list of at most {MOST_SLOTS}")
+    return Ended(id, tuple(map(_one_ended, found)))
+
+
+def _one_ended(each: object) -> tuple[str, int]:
+    if not isinstance(each, list) or len(each) != 2:
+        raise Unreadable("robots: no lists of robot and logical time")
+    content = dict(zip(("robot", "lamport"), each, strict=True))
+    return text_in(content, "robot"), number_in(content, "lamport")
+
+
 def _brief(answer: Answer) -> dict[str, object]:
     usual = Answer(answer.what)
     told = {name: getattr(answer, name) for name in ("lamport", "why", "time", "at", "ready")}
@@ -193,5 +208,6 @@ _READERS: Mapping[str, Callable[[CommandId, Mapping[str, Any]], Request]] = {
     "withdraw": lambda id, content: Withdraw(id, number_in(content, "round")),
     "begin": _begin,
     "leave": lambda id, content: Leave(id, number_in(content, "lamport")),
+    "ended": _ended,
     "meet": lambda id, content: Meet(id, number_in(content, "robots")),
 }

@@ -21,12 +21,13 @@ class Watching:
     """What is known of the robots of other processes, and of all robots that have ended.
 
     Attributes:
-        left: the robots that have ended.
+        left: the robots that have ended, by themselves, with the latest logical time of each.
     """
 
     def __init__(self, lease: float) -> None:
         """Know nobody; after `lease` seconds out of reach a robot is lost for long."""
-        self.left: set[str] = set()
+        self.left: dict[str, int] = {}
+        self._said: dict[str, int] = {}
         self._lease = lease
         self._here: set[str] = set()
         self._lost_at: dict[str, float] = {}
@@ -72,10 +73,16 @@ class Watching:
         """Take note that a robot can be reached, or no longer."""
         if here:
             self._here.add(robot)
+            self._said.pop(robot, None)
             self._lost_at.pop(robot, None)
         else:
             self._here.discard(robot)
             self._lost_at.setdefault(robot, now)
+
+    @property
+    def here(self) -> frozenset[str]:
+        """Return the robots of other processes that can be reached."""
+        return frozenset(self._here)
 
     def is_here(self, robot: str) -> bool:
         """Return whether a robot can be reached."""
@@ -91,7 +98,24 @@ class Watching:
 
     def is_gone(self, robot: str) -> bool:
         """Return whether a robot has ended, or was there and can no longer be reached."""
-        return robot in self.left or robot in self._lost_at
+        return self.has_ended(robot) or robot in self._lost_at
+
+    def has_ended(self, robot: str) -> bool:
+        """Return whether a robot has ended, as it says itself, or others say while it is not here."""
+        return robot in self.left or robot in self._said
+
+    def ended(self) -> dict[str, int]:
+        """Return the robots that have ended, each with its latest logical time."""
+        return {**self._said, **self.left}
+
+    def hear_say(self, robot: str, lamport: int) -> bool:
+        """Take note that others say that a robot has ended; return whether they are believed.
+
+        One that is here says so itself.
+        """
+        if robot not in self._here:
+            self._said[robot] = lamport
+        return robot not in self._here
 
     def long_lost_at(self, robot: str) -> float | None:
         """Return when a robot is lost for long unless it comes back; None: it is not lost."""

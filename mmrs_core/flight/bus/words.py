@@ -114,6 +114,18 @@ class Leave:
 
 
 @dataclass(frozen=True, slots=True)
+class Ended:
+    """Tells a robot that was not there which others have ended, as the sender has been told.
+
+    Attributes:
+        robots: each with its latest logical time.
+    """
+
+    id: CommandId
+    robots: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Meet:
     """Asks when all begin, and what the time is; `robots` is how many begin together, 0: not with me."""
 
@@ -121,7 +133,7 @@ class Meet:
     robots: int
 
 
-Request: TypeAlias = Prepare | Commit | Withdraw | Begin | Leave | Meet
+Request: TypeAlias = Prepare | Commit | Withdraw | Begin | Leave | Ended | Meet
 
 
 @dataclass(frozen=True, slots=True)

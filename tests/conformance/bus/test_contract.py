@@ -34,6 +34,20 @@ def test_a_late_joiner_gets_what_it_was_told_before(fleet):
     check_success(fleet)
 
 
+def test_a_late_joiner_is_told_by_those_who_are_there_who_has_ended_before_it_came(fleet):
+    fleet = fleet("succession", 4)
+    fleet.start("stays")
+    fleet.start("early")
+    time.sleep(1.5)
+    fleet.start("other")
+    assert fleet.ended("early")
+    assert fleet.ended("other")
+    fleet.start("late")
+    assert fleet.ended("late")
+    assert fleet.ended("stays")
+    check_success(fleet)
+
+
 @pytest.mark.parametrize(
     "point",
     [

@@ -16,6 +16,7 @@ from mmrs_core.flight.bus.words import (
     Begin,
     CommandId,
     Commit,
+    Ended,
     Leave,
     Meet,
     Prepare,
@@ -32,6 +33,7 @@ REQUESTS = st.one_of(
     st.builds(Withdraw, IDS, NUMBERS),
     st.builds(Begin, IDS, st.lists(st.tuples(NAMES, st.booleans(), NUMBERS), max_size=3).map(tuple)),
     st.builds(Leave, IDS, NUMBERS),
+    st.builds(Ended, IDS, st.lists(st.tuples(NAMES, NUMBERS), max_size=3).map(tuple)),
     st.builds(Meet, IDS, NUMBERS),
 )
 
