@@ -26,6 +26,8 @@ from mmrs_core.testing.programs import (
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE = 17
 LOITER = 5
+AT_HOME = 0.6
+"""Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 thorough = partial(pytest.param, marks=pytest.mark.thorough)
 """Values of a test that runs in the full counts only."""
 
@@ -74,7 +76,7 @@ def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(contr
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130, said
     assert not vehicles["alpha"].autopilot.armed
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
 
 
 def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
@@ -108,7 +110,7 @@ def test_a_low_battery_brings_the_robot_home(controllers, hangar):
     assert code == 1
     assert "BATTERY_LOW" in said
     assert not vehicles["alpha"].autopilot.armed
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
 
 
 def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):

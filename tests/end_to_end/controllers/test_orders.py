@@ -21,6 +21,8 @@ from mmrs_core.testing.programs import (
 
 LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE, GUIDED, LANDING = 17, 4, 9
+AT_HOME = 0.6
+"""Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 SPEEDUP = 20.0
 PROMPT = 1.0
 """Real seconds in which an order on loopback is confirmed."""
@@ -116,7 +118,7 @@ def test_a_robot_comes_home_or_down_when_it_is_told_to(controllers, hangar, stat
     ]
     assert not vehicles["alpha"].autopilot.armed
     if name == "return":
-        assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+        assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
     assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
 
 
@@ -173,7 +175,7 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
         order(made, "land")
         process.communicate(timeout=60)
     assert (told["phase"], told["move"], told["mode"], told["armed"]) == ("works", "stay", "guided", True)
-    assert told["place"]["height"] == pytest.approx(12.0, abs=1.0)
+    assert told["place"]["height"] == pytest.approx(12.0, abs=0.6)
 
 
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
@@ -186,7 +188,7 @@ def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controlle
         assert order(made, "return")["confirmed"]
         _, said = process.communicate(timeout=60)
     assert process.returncode == 1, said
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
     assert made.replayed(partial=True).faults == {"alpha": "DEVICE_SILENT"}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 from dataclasses import replace
+from math import hypot
 
 import pytest
 
@@ -24,8 +25,12 @@ from mmrs_core.testing.programs import (
 
 LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22
+AT_HOME = 0.6
+"""Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 TRANSECTS = [(x, y, 12.0) for x in (20.0, 30.0, 40.0) for y in ((0.0, 60.0) if x != 30.0 else (60.0, 0.0))]
 """Both ends of three lines of a coverage, flown up and down."""
+PASSED = 2.5
+"""Metres from a place of a run at which it counts as passed, and what a vehicle flies in a tick."""
 
 
 def coverage(*policies: Policy, fluid: bool = False, **robot):
@@ -40,9 +45,7 @@ def coverage(*policies: Policy, fluid: bool = False, **robot):
 def covered(vehicle) -> list[bool]:
     """Return which ends of the coverage the vehicle's own track has passed."""
     track = [(north, east) for _, north, east, _ in vehicle.autopilot.track]
-    return [
-        any(abs(north - y) < 2.5 and abs(east - x) < 2.5 for north, east in track) for x, y, _ in TRANSECTS
-    ]
+    return [any(hypot(north - y, east - x) < PASSED for north, east in track) for x, y, _ in TRANSECTS]
 
 
 def begun(made, name: str) -> int:
@@ -69,7 +72,7 @@ def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar,
     alpha = vehicles["alpha"]
     empty(made, alpha, links, "t3")
     assert not alpha.autopilot.armed
-    assert max(map(abs, alpha.autopilot.body.position)) < 1.5
+    assert max(map(abs, alpha.autopilot.body.position)) < AT_HOME
     assert not all(covered(alpha))
     before = len(alpha.autopilot.track)
     alpha.faults.set_battery(1.0)
@@ -129,7 +132,7 @@ def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(control
     assert code == 1, said
     assert "BATTERY_LOW: point of no return" in said
     assert not vehicles["alpha"].autopilot.armed
-    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < 1.5
+    assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
     assert vehicles["alpha"].autopilot.energy > 0.02
 
 
