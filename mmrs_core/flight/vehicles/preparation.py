@@ -41,13 +41,19 @@ STREAMED_BY = {
 
 
 def ask_for_messages(link: Link, *, geographic: bool) -> None:
-    """Ask for every message at its rate; a vehicle that refuses sends it as it likes, or does without."""
+    """Ask for every message at its rate; a vehicle that refuses sends it as it likes, or does without.
+
+    The position is asked for as often as anything: at the rate at which vehicles tell it otherwise, a poor
+    link makes it look lost.
+    """
+    position = "GLOBAL_POSITION_INT" if geographic else "LOCAL_POSITION_NED"
     beat = link.latest("HEARTBEAT")
     own = STREAMED_BY.get(beat.autopilot, {}) if beat is not None else {}
     for name, rate in (STREAMED | own | ({} if geographic else STREAMED_LOCAL)).items():
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
         with suppress(Refused):
-            command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=2)
+            tries = None if name == position else 2
+            command(link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate, tries=tries)
 
 
 def replace_all(link: Link, mission: Sequence[Item], fence: Sequence[Item], rally: Sequence[Item]) -> int:

@@ -230,6 +230,10 @@ def _unlocated() -> tuple[Row, ...]:
 BY_ITSELF = [("RETURN", "home"), ("LAND", "here"), ("HOLD", "holds"), ("EMERGENCY_AREA", "meadow")]
 UNHARMED = [("RETURN", "done"), ("LAND", "done")]
 WATCHED = [("RETURN", "home"), ("LAND", "here"), ("EMERGENCY_AREA", "meadow"), ("CONTINUE", "done")]
+POOR_SPEEDUP = 2.0
+"""A repetition waits for its answer in real seconds, which at a speed-up of ten are ten of the run each: what
+is lost would cost ten times as much of the time that a vehicle has for anything."""
+
 POOR = f"loss=0.1,delay=0.3~0.3,duplicate=0.1,corrupt=0.05,seed=7,cut@{INJECTED_AT}+2"
 
 DRILLS: tuple[Drill, ...] = (
@@ -293,6 +297,7 @@ DRILLS: tuple[Drill, ...] = (
             "generated": ("--tries", "12", "--inject", POOR),
             "interpreted": ("--backend-option", "tries=12", "--inject", POOR),
         },
+        speedup=POOR_SPEEDUP,
     ),
     Drill(
         "pilot's stick, then Ctrl-C",

@@ -16,7 +16,8 @@ SILENCE = 2.5
 """Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
 
 UNCONFIRMED = 6.0
-"""Real seconds in which a device has not confirmed what it was told as often as it is told."""
+"""Real seconds in which a device has not confirmed what it was told five times over. Such rounds go on for
+half a minute of the run; the last one, and the rest of the leg, come on top."""
 
 AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", "climbing"
 
@@ -275,7 +276,7 @@ def _device_rows() -> list[Row]:
             _mute_camera,
             "DEVICE_SILENT",
             ends,
-            within=10.0,
+            within=46.0,
             least=UNCONFIRMED,
             fast=response == "EMERGENCY_AREA",
         )
@@ -305,7 +306,7 @@ def _wait_rows() -> list[Row]:
             leave_alone,
             "WAIT_TOO_LONG",
             ends,
-            within=11.0,
+            within=13.0,
             program="wait",
             fast=response == "EMERGENCY_AREA",
         )

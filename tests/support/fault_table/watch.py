@@ -191,7 +191,17 @@ class Watch:
         steps = self._fleet.steps(self._robot)
         if self._row.ends == "done":
             return _complete(steps)
-        return "" in self._row.event.split("|") or (bool(steps) and steps[-1]["label"] == "fault")
+        if "" in self._row.event.split("|"):
+            return True
+        return (
+            bool(steps)
+            and steps[-1]["label"] == "fault"
+            and (not self._row.response or bool(self._fitting()))
+        )
+
+    def _fitting(self) -> list[dict[str, object]]:
+        """Return the lines of the black box that say that the row's response was decided."""
+        return [line for line in self._fleet.box(self._robot) if line.get("response") == self._row.response]
 
     def _check_hands_off(self, since: float) -> None:
         sent = talked(self._vehicle, since + HANDS_OFF_SECONDS)
