@@ -103,9 +103,10 @@ def run(
     """
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.buses import BusWishes
-    from mmrs_core.cli.flying import Wishes, carry_out
+    from mmrs_core.cli.flying import carry_out
     from mmrs_core.cli.journey import Workshop
     from mmrs_core.cli.simulation import answers, options_of
+    from mmrs_core.cli.wishes import Wishes
 
     workshop = Workshop(settings_of(call))
     given = dict(options_of(backend_option))

@@ -1,0 +1,66 @@
+"""Logs of a run that was broken off: whether they may be gone on with, and where they end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from mmrs_core.behaviour.log import SUFFIX, log_name, read_log, read_logs
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.replay import replay
+from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.figures import clock
+from mmrs_core.cli.output import counted, tell
+from mmrs_core.cli.wishes import Wishes
+from mmrs_core.errors import InvalidModelError
+from mmrs_core.flight.records.blackbox import black_box_path, last_time
+from mmrs_core.runtime.resuming import over_by
+
+
+def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:
+    """Return the steps that the robots of this process made before.
+
+    Raises:
+        typer.BadParameter: if there are logs without --resume, or none with it.
+        InvalidModelError: if they are not logs of this behaviour.
+    """
+    found = [path for robot in here if (path := wishes.folder / log_name(robot)).exists()]
+    _refuse_others(program, wishes)
+    if not wishes.resume:
+        if found:
+            raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
+        return ()
+    if not found:
+        raise typer.BadParameter(f"--resume: no logs in {wishes.folder}")
+    records = read_logs(found, partial=True)
+    result = replay(program, records, partial=True)
+    if not result.accepted and len(here) == len(program.robots):
+        raise InvalidModelError(f"{wishes.folder}: not logs of this behaviour: {result.complaints[0]}")
+    try:
+        over = over_by(program, records)
+    except ValueError as error:
+        raise InvalidModelError(f"{wishes.folder}: {error}") from error
+    for robot, why in over.items():
+        tell(f"'{robot}': {f'its program has ended by {why}' if why else 'has come to its end'}")
+    if set(over) >= set(here):
+        raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
+    tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
+    return records
+
+
+def end_of(records: Sequence[StepRecord], folder: Path) -> float:
+    """Return how many seconds of the run have passed, as logs and black boxes tell."""
+    boxes = {black_box_path(folder / log_name(record.robot)) for record in records}
+    return max((*(record.time for record in records), *map(last_time, boxes)), default=0.0)
+
+
+def _refuse_others(program: Program, wishes: Wishes) -> None:
+    """Refuse a folder with logs of another run, or of another behaviour."""
+    known = {log_name(robot.id) for robot in program.robots}
+    for path in sorted(wishes.folder.glob(f"*{SUFFIX}")) if wishes.folder.is_dir() else ():
+        records = read_log(path, partial=True)
+        strange = path.name not in known or any(each.run != wishes.run for each in records[:1])
+        if strange and not (wishes.resume and path.name in known):
+            raise typer.BadParameter(f"--log {path}: is of another run; choose another folder")

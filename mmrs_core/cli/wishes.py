@@ -1,0 +1,111 @@
+"""What the command line of ``mmrs run`` asks for, and whether it makes sense."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import typer
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.cli.buses import BusWishes
+
+ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
+_SERIAL = re.compile(r"/|COM\d+", re.IGNORECASE)
+"""How names of serial devices begin."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What the command line asks for.
+
+    Attributes:
+        folder: of the logs.
+        options: of the backend.
+        links: as in ``--connect``.
+        robots: those that this process runs; none: all.
+        patience: seconds to wait for the order to resume once nobody else works.
+        assume: fixed answers, by condition.
+        bus: what there is to say of the bus.
+    """
+
+    folder: Path
+    backend: str = "mavlink"
+    options: Mapping[str, str] = field(default_factory=dict)
+    links: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
+    resume: bool = False
+    run: str = "run-0"
+    speedup: float = 1.0
+    on_stop: str = "hold"
+    patience: float = 0.0
+    assume: Mapping[str, bool] = field(default_factory=dict)
+    bus: BusWishes = field(default_factory=BusWishes)
+
+
+def robots_of(program: Program, wanted: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the robots that this process runs, in the program's order; `wanted` empty: all.
+
+    Raises:
+        typer.BadParameter: if there is no such robot.
+    """
+    known = tuple(robot.id for robot in program.robots)
+    for robot in wanted:
+        if robot not in known:
+            raise typer.BadParameter(f"--robot {robot}: not in the behaviour, which has {', '.join(known)}")
+    return tuple(robot for robot in known if not wanted or robot in wanted)
+
+
+def stop_response(word: str) -> str:
+    """Return the response that robots give when interrupted.
+
+    Raises:
+        typer.BadParameter: if there is none of that name.
+    """
+    if word not in ON_STOP:
+        raise typer.BadParameter(f"--on-stop {word}: is none of {', '.join(ON_STOP)}")
+    return ON_STOP[word]
+
+
+def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...]) -> None:
+    """Refuse links and faults that nobody can understand.
+
+    Raises:
+        typer.BadParameter: if there are any.
+    """
+    if wishes.backend != "mavlink":
+        return
+    from mmrs_core.flight.injection import injections
+    from mmrs_core.flight.links.ports import address_of, split_system
+
+    for text in links.values():
+        try:
+            url, _ = split_system(text)
+            if address_of(url) is None and not _SERIAL.match(url):
+                raise ValueError(f"{url}: is neither udpin:, udpout: or tcp:HOST:PORT nor a serial device")
+        except ValueError as error:
+            raise typer.BadParameter(f"--connect {error}") from error
+    if inject := wishes.options.get("inject"):
+        try:
+            injections([inject], {robot: links.get(robot, "") for robot in robots})
+        except ValueError as error:
+            raise typer.BadParameter(f"--inject {error}") from error
+
+
+def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
+    """Return the links of these robots as far as they were given.
+
+    Raises:
+        typer.BadParameter: if it is not clear whose one of them is.
+    """
+    links: dict[str, str] = {}
+    for text in given:
+        robot, separator, url = text.partition("=")
+        if not separator and len(robots) > 1:
+            raise typer.BadParameter(f"--connect {text}: which robot? say ROBOT={text}")
+        if separator and robot not in robots:
+            raise typer.BadParameter(f"--connect {text}: there is no robot '{robot}' here")
+        links[robot if separator else robots[0]] = url if separator else text
+    return links
