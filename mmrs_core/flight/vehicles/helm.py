@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -13,6 +14,7 @@ from . import modes
 from .habits import ArduPilot, Habits
 from .px4 import Px4
 from .readiness import REPEATED_SECONDS
+from .requests import Requests
 from .telemetry import Telemetry
 
 MODE_SECONDS = 5.0
@@ -30,7 +32,8 @@ class Helm:
 
     Modes are believed when heartbeats show them, never by acknowledgement alone. A mode that
     nobody here asked for means that a pilot has taken over: the program then ends and leaves the
-    vehicle alone.
+    vehicle alone. One that was asked for lately is no pilot's, although something else was asked for
+    since: it is only late, or a copy of it was.
     """
 
     def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
@@ -42,6 +45,8 @@ class Helm:
         self._mode: str | None = None
         self._speed: float | None = None
         self._habits: Habits | None = None
+        self._requests = Requests(link)
+        self._asked_again = -inf
 
     @property
     def habits(self) -> Habits:
@@ -74,19 +79,23 @@ class Helm:
         if mode == modes.GUIDED:
             self.habits.begin_guiding()
         self.let_go()
+
+        def strange() -> bool:
+            number = self._telemetry.mode()
+            return number not in {before, wanted.number, *accepted} and not self._requests.own(number)
+
         for _ in range(MODE_TRIES):
+            self._requests.ask(wanted.number)
             command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
             self._link.wait(
-                lambda: (
-                    self._telemetry.mode() == wanted.number
-                    or self._telemetry.mode() not in {before, *accepted}
-                ),
+                lambda: self._telemetry.mode() == wanted.number or strange(),
                 self._link.clock.patience(MODE_SECONDS),
                 heard=True,
             )
-            if (number := self._telemetry.mode()) not in {before, wanted.number, *accepted}:
-                raise self._left(number, modes.word_of(self._link, self._kind, before))
+            if strange():
+                raise self._left(self._telemetry.mode(), modes.word_of(self._link, self._kind, before))
             if self._telemetry.mode() == wanted.number:
+                self._requests.shows(wanted.number)
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
                 if mode != modes.GUIDED:
                     self.habits.end_guiding()
@@ -106,8 +115,23 @@ class Helm:
         number = self._telemetry.mode()
         if not self._accepted or number in self._accepted:
             return
-        if self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
+        if self._requests.own(number):
+            self._ask_again()
+        elif self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
             raise self._left(number, self._mode or "take-off")
+
+    def _ask_again(self) -> None:
+        """Ask once more for the mode, in which an earlier request of the program, being late, was heeded.
+
+        Nobody waits for the acknowledgement: this is called in the middle of other waits.
+        """
+        now = self._link.clock.now()
+        if self._mode is None or now - self._asked_again < self._link.patience:
+            return
+        self._asked_again = now
+        params = [*self._modes[self._mode].params, 0.0, 0.0, 0.0, 0.0, 0.0][:7]
+        link, number = self._link, mavlink.MAV_CMD_DO_SET_MODE
+        link.send(mavlink.MAVLink_command_long_message(link.system, link.component, number, 0, *params))
 
     def _left(self, number: int, mode: str) -> Fault:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""

@@ -1,0 +1,99 @@
+"""Modes that the program has asked for itself, and that the vehicle shows late."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from mavlink_peer import acknowledged, eventually, heartbeat, linked
+
+from mmrs_core.flight import Geographic
+from mmrs_core.flight.faults import Fault, Stopped
+from mmrs_core.flight.vehicles import modes
+from mmrs_core.flight.vehicles.helm import Helm
+from mmrs_core.flight.vehicles.telemetry import Telemetry
+
+HOME = Geographic(42.37, 13.35, 0.0)
+STABILIZE, GUIDED, LOITER, LAND, BRAKE = 0, 4, 5, 9, 17
+
+
+class Late:
+    """A vehicle that shows the first mode only when another one is asked for, and that one a little later."""
+
+    def __init__(self, wire) -> None:
+        self.wire, self.asked = wire, []
+
+    def __call__(self, message):
+        if message.get_type() == "COMMAND_LONG":
+            yield acknowledged(message.command)
+            before, self.asked = self.asked[-1:], [*self.asked, int(message.param2)]
+            for mode in before:
+                self.wire.beat(mode=mode, armed=True)
+                shows = {"mode": self.asked[-1], "armed": True}
+                threading.Timer(0.2, self.wire.beat, kwargs=shows).start()
+
+
+@pytest.fixture
+def late():
+    """Return the helm of a vehicle that stands in STABILIZE, its link, its telemetry and the wire."""
+    with linked(speedup=10.0) as (link, wire):
+        wire.answer = Late(wire)
+        telemetry = Telemetry(link, HOME)
+        show(wire, telemetry, STABILIZE)
+        yield Helm(link, telemetry, "copter"), link, telemetry, wire
+
+
+def show(wire, telemetry, mode: int) -> None:
+    wire.beat(mode=mode, armed=True)
+    eventually(lambda: telemetry.mode() == mode)
+
+
+def broken_off(helm: Helm, link, wire, mode: str) -> None:
+    """Ask for a mode, and let something else come before the vehicle shows it."""
+
+    def order() -> None:
+        if wire.answer.asked:
+            raise Stopped
+
+    link.guard = order
+    with pytest.raises(Stopped):
+        helm.enter(mode)
+    link.guard = lambda: None
+
+
+def test_a_mode_that_was_asked_for_before_an_order_came_is_no_pilots(late):
+    helm, link, telemetry, wire = late
+    broken_off(helm, link, wire, modes.GUIDED)
+    helm.enter(modes.LAND)
+    assert telemetry.mode() == LAND
+    assert wire.answer.asked == [GUIDED, LAND]
+    helm.check()
+
+
+def test_a_copy_of_an_earlier_request_is_answered_by_asking_again(late):
+    helm, link, telemetry, wire = late
+    broken_off(helm, link, wire, modes.HOLD)
+    helm.enter(modes.LAND)
+    show(wire, telemetry, BRAKE)
+    helm.check()
+    assert wire.answer.asked[-1] == LAND
+    eventually(lambda: telemetry.mode() == LAND)
+    helm.check()
+
+
+def test_a_pilots_mode_is_a_pilots_however_many_requests_are_on_their_way(late):
+    helm, link, _, wire = late
+    broken_off(helm, link, wire, modes.GUIDED)
+    wire.answer = lambda message: (acknowledged(176), heartbeat(mode=LOITER, armed=True))
+    with pytest.raises(Fault, match="left mode stabilize for loiter: somebody else has taken over"):
+        helm.enter(modes.LAND)
+
+
+def test_what_was_asked_for_long_ago_is_a_pilots_again(late):
+    helm, link, telemetry, wire = late
+    broken_off(helm, link, wire, modes.HOLD)
+    helm.enter(modes.LAND)
+    threading.Event().wait(1.0)
+    show(wire, telemetry, BRAKE)
+    with pytest.raises(Fault, match="left mode land for hold: somebody else has taken over"):
+        helm.check()
