@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import pytest
 from mavlink_peer import acknowledged, eventually, heartbeat, linked
@@ -21,7 +22,7 @@ class Late:
     """A vehicle that shows the first mode only when another one is asked for, and that one a little later."""
 
     def __init__(self, wire) -> None:
-        self.wire, self.asked = wire, []
+        self.wire, self.asked, self.pause = wire, [], 0.2
 
     def __call__(self, message):
         if message.get_type() == "COMMAND_LONG":
@@ -30,7 +31,7 @@ class Late:
             for mode in before:
                 self.wire.beat(mode=mode, armed=True)
                 shows = {"mode": self.asked[-1], "armed": True}
-                threading.Timer(0.2, self.wire.beat, kwargs=shows).start()
+                threading.Timer(self.pause, self.wire.beat, kwargs=shows).start()
 
 
 @pytest.fixture
@@ -72,6 +73,8 @@ def test_a_mode_that_was_asked_for_before_an_order_came_is_no_pilots(late):
 
 def test_a_copy_of_an_earlier_request_is_answered_by_asking_again(late):
     helm, link, telemetry, wire = late
+    wire.answer.pause = 0.0
+    link.retries = replace(link.retries, answer=5.0)
     broken_off(helm, link, wire, modes.HOLD)
     helm.enter(modes.LAND)
     show(wire, telemetry, BRAKE)
