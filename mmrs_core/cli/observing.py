@@ -20,7 +20,7 @@ class Observer:
         self._workshop, self._writer = workshop, writer
         self._actions = _actions_of(program)
         self._last: dict[str, StepRecord] = {}
-        self._reported: dict[str, Mapping[str, Mapping[str, str]]] = {}
+        self._reported: dict[str, Mapping[str, object]] = {}
 
     def observe(self, record: StepRecord) -> None:
         """Write a step down."""
@@ -28,7 +28,10 @@ class Observer:
         self._last[record.robot] = record
         action = self._actions.get((record.robot, record.move, record.detail))
         if record.label == "act" and action is not None and action.is_a(FEEDBACK):
-            self._reported[record.robot] = {action.name: dict(action.parameters)}
+            self._reported[record.robot] = {
+                "name": action.name,
+                "content": dict(action.parameters),
+            }
         self._workshop.plugins.observe_step(record)
 
     def status(self, robot: str) -> Mapping[str, object]:

@@ -16,7 +16,7 @@ class Journal:
 
     Attributes:
         progress: where the robot is in its program.
-        reported: what it has reported last, by name of what; empty before it has.
+        reported: what it has reported last: `name` and `content`; empty before it has.
     """
 
     def __init__(self, robot: Robot, vehicle: Vehicle, desk: Desk) -> None:
@@ -26,7 +26,7 @@ class Journal:
             Refused: the log is of another program.
         """
         self.progress = progress_of(robot, desk.log.steps)
-        self.reported: Mapping[str, Mapping[str, object]] = {}
+        self.reported: Mapping[str, object] = {}
         self._steps = {step.move: step for step in robot.steps}
         self._vehicle = vehicle
         self._desk = desk
@@ -58,7 +58,7 @@ class Journal:
     def record(self, what: str, name: str, content: Mapping[str, object]) -> None:
         """Keep something in the black box, with place and move; `what` is ``reported`` or ``measured``."""
         if what == "reported":
-            self.reported = {name: dict(content)}
+            self.reported = {"name": name, "content": dict(content)}
         place = self._vehicle.state().place
         self._desk.box.write(what, name=name, content=dict(content), move=self.move, place=place)
 

@@ -31,7 +31,7 @@ def tell(link: Link, text: str) -> None:
 def words_of(robot: str, name: str, content: Mapping[str, str]) -> str:
     """Return what a robot reports as people at ground stations read it."""
     pairs = ", ".join(f"{key} {value}" for key, value in content.items())
-    return f"{robot}: {name}: {pairs}" if pairs else f"{robot}: {name}"
+    return ": ".join(part for part in (robot, name, pairs) if part)
 
 
 def pieces_of(text: str) -> Iterator[Message]:

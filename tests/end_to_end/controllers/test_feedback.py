@@ -63,4 +63,4 @@ def test_who_asks_is_told_what_a_robot_has_reported_last(controllers):
         made.await_step("stay")
         (told,) = give(made.logs, "status", ["alpha"])
         process.communicate(timeout=60)
-    assert told["reported"] == {"seen": {"what": LONG}}
+    assert told["reported"] == {"name": "seen", "content": {"what": LONG}}

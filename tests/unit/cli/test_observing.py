@@ -25,4 +25,4 @@ def test_what_a_robot_has_reported_last_is_part_of_how_it_is(tmp_path):
         observer.observe(photo)
         assert observer.status("alpha") == {"move": "looks", "step": "act", "time": 1.0}
         observer.observe(seen)
-        assert observer.status("alpha")["reported"] == {"seen": {"what": "a goat"}}
+        assert observer.status("alpha")["reported"] == {"name": "seen", "content": {"what": "a goat"}}

@@ -58,6 +58,7 @@ def test_several_texts_at_once_are_kept_apart():
 def test_a_report_is_told_with_its_robot_and_its_pairs():
     assert words_of("Alba", "gas", {"ppm": "412", "at": "b1"}) == "Alba: gas: ppm 412, at b1"
     assert words_of("Alba", "arrived", {}) == "Alba: arrived"
+    assert words_of("Alba", "", {"task": "east"}) == "Alba: task east"
 
 
 def test_a_report_comes_from_the_vehicles_own_system_which_ground_stations_show():
