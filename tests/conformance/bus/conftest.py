@@ -339,6 +339,11 @@ def fleet(request, tmp_path):
 def pytest_collection_modifyitems(items):
     """Leave to the thorough profile what takes seconds and differs least from what the fast one runs."""
     for item in items:
-        slow = "frozen" in item.name or "split" in item.name
-        if slow and Path(item.fspath).parent == Path(__file__).parent and "[zenoh" not in item.name:
+        if Path(item.fspath).parent == Path(__file__).parent and _differs_little(item.name):
             item.add_marker(pytest.mark.thorough)
+
+
+def _differs_little(name: str) -> bool:
+    if "frozen" in name or "split" in name:
+        return "[zenoh" not in name
+    return any(word in name for word in ("any_moment", "granted", "acknowledged")) and "[threads" not in name

@@ -48,15 +48,7 @@ def test_a_late_joiner_is_told_by_those_who_are_there_who_has_ended_before_it_ca
     check_success(fleet)
 
 
-@pytest.mark.parametrize(
-    "point",
-    [
-        "applied",
-        "logged",
-        pytest.param("granted", marks=pytest.mark.thorough),
-        pytest.param("acknowledged", marks=pytest.mark.thorough),
-    ],
-)
+@pytest.mark.parametrize("point", ["applied", "logged", "granted", "acknowledged"])
 def test_a_robot_that_is_killed_and_started_again_goes_on_exactly(fleet, point):
     fleet = fleet("exchange", 4)
     number = notifies(fleet, "a")[2]
@@ -70,7 +62,6 @@ def test_a_robot_that_is_killed_and_started_again_goes_on_exactly(fleet, point):
     check_success(fleet)
 
 
-@pytest.mark.thorough
 def test_a_robot_that_is_killed_at_any_moment_and_started_again_goes_on_exactly(fleet):
     fleet = fleet("exchange", 8)
     fleet.start("a", pause=0.01)

@@ -39,7 +39,7 @@ def test_a_vehicle_without_the_key_is_not_heard(controllers, hangar, tmp_path, t
 def test_a_ground_station_without_the_key_commands_nothing(controllers, hangar, tmp_path):
     made = controllers(UP_AND_DOWN)
     vehicles, links = hangar(UP_AND_DOWN, key=KEY)
-    code, _ = made.run("fleet.py", *links, "--patience", "2")
+    code, _ = made.run("fleet.py", *links, "--patience", "2", "--answer-seconds", "0.1")
     assert code != 0
     assert not vehicles["alpha"].autopilot.armed
     assert not vehicles["alpha"].autopilot.history
