@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmrs_core.cli.output import tell
-from mmrs_core.runtime.orders import ANSWER, Orders
+from mmrs_core.runtime.orders import Orders
 
 if TYPE_CHECKING:
     from mmrs_core.flight.orders.orders import Inbox, Receipt
@@ -41,13 +41,7 @@ def hear_orders(
 def _inbox(robot: str, orders: Orders) -> Inbox:
     from mmrs_core.flight.orders.orders import Inbox
 
-    told: dict[str, bool] = {}
-
     def arrived() -> None:
-        for question, answer in inbox.answers.items():
-            if told.get(question) is not answer:
-                told[question] = answer
-                orders.give(ANSWER, (robot,), question=question, answer=answer)
         while (receipt := inbox.take()) is not None:
             _pass_on(receipt)
 
@@ -58,7 +52,8 @@ def _inbox(robot: str, orders: Orders) -> Inbox:
             else:
                 receipt.refuse(why)
 
-        orders.give(receipt.order.name, (robot,), told=answered)
+        order = receipt.order
+        orders.give(order.name, (robot,), question=order.question, answer=order.answer, told=answered)
 
     inbox = Inbox(robot, arrived=arrived)
     return inbox

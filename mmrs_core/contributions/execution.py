@@ -24,7 +24,7 @@ class RobotState:
         charge: part of the battery that is left, 0 to 1; None where nothing is known.
         wind: metres per second; None where nothing is known.
         detected: names of what the robot has detected so far.
-        answers: what the operator has answered so far, by question.
+        answers: what the operator has answered, by question, and no choice has used up.
     """
 
     time: float

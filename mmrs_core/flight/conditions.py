@@ -39,7 +39,7 @@ class Known(Protocol):
 
     @property
     def answers(self) -> Mapping[str, bool]:
-        """Return what the operator has answered so far, by question."""
+        """Return what the operator has answered, by question, and no choice has used up."""
         ...
 
 
@@ -68,6 +68,30 @@ def is_standard(identifier: str) -> bool:
     """
     word, _, rest = identifier.partition(":")
     return word in _MAKE and bool(rest) and (word not in (BATTERY, WIND) or _is_number(rest))
+
+
+def truth(found: object) -> bool:
+    """Return what a function of the user's has decided.
+
+    Raises:
+        TypeError: it is neither True nor False, nor equal to one of them.
+
+    >>> truth(1), truth(0.0)
+    (True, False)
+    """
+    if found in (True, False):
+        return bool(found)
+    raise TypeError(f"{found!r} is neither True nor False")
+
+
+def undecided(identifier: str) -> str:
+    """Return what a robot does that cannot decide a condition yet, as people read it.
+
+    >>> undecided("answer:go on?"), undecided("wind-above:8")
+    ("waits for an answer to 'go on?'", "waits until 'wind-above:8' is known")
+    """
+    question = question_of(identifier)
+    return f"waits for an answer to {question!a}" if question else f"waits until {identifier!a} is known"
 
 
 def question_of(identifier: str) -> str:

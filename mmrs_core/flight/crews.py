@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from .orders.orders import Inbox, Receipt
+from .questions import Questions
 from .records.blackbox import plain
 from .records.journal import Journal
 from .vehicles.vehicle import State
@@ -20,12 +21,16 @@ class Crews:
     """Keeps account of the robots of one process; any thread may ask.
 
     Attributes:
-        inboxes: by robot.
+        inboxes: by robot. questions: that its choices ask, by robot.
         wake: by robot, what ends the present wait at once.
     """
 
-    def __init__(self, robots: Sequence[str]) -> None:
-        """Have all of them wait for their vehicles."""
+    def __init__(
+        self, robots: Sequence[str], conditions: Mapping[str, Collection[str]] | None = None
+    ) -> None:
+        """Have all of them wait for their vehicles; `conditions`: of their choices, by robot."""
+        asked = conditions or {}
+        self.questions = {robot: Questions(asked.get(robot, ())) for robot in robots}
         self.wake: dict[str, Callable[[], None]] = {}
         self.inboxes = {robot: self._inbox(robot) for robot in robots}
         self._phases = dict.fromkeys(robots, WAITS)
@@ -70,7 +75,11 @@ class Crews:
             "energy": state.energy,
             "place": state.place,
             "speed": round(state.speed, 2),
-        } | ({"reported": journal.reported} if journal.reported else {})
+        }
+        asked = self.questions[robot].asked
+        found |= ({"asks": asked} if asked else {}) | (
+            {"reported": journal.reported} if journal.reported else {}
+        )
         return {name: plain(value) for name, value in found.items()}
 
     def _enter(self, robot: str, phase: str) -> None:
@@ -86,4 +95,4 @@ class Crews:
             if robot in self._manned:
                 self._manned[robot][1].ordered(receipt)
 
-        return Inbox(robot, arrived=arrived, answered=answered)
+        return Inbox(robot, questions=self.questions[robot], arrived=arrived, answered=answered)

@@ -10,10 +10,10 @@ from .bus import Beginning
 from .clock import Clock
 from .conditions import Condition
 from .objects import Locator
+from .questions import Questions
 from .records.blackbox import BlackBox
 from .records.log import Log
 from .slots import Slots
-from .vehicles.vehicle import State
 
 Say = Callable[[str], None]
 Meet = Callable[[Callable[[str], None]], Beginning]
@@ -27,7 +27,7 @@ class Desk:
         conditions: by identifier; locators: by description of the object.
         stop: set when the robot is to stop.
         say: tells people what goes on.
-        know: adds to what the vehicle tells of itself what people have answered.
+        questions: that the robot's choices ask people.
         meet: returns when all robots begin, or None where they do not wait for each other.
         recognise: makes sure that the vehicle is the robot's, before it is told anything; is given
             whether its motors may run.
@@ -43,7 +43,7 @@ class Desk:
     locators: Mapping[str, Locator]
     stop: threading.Event
     say: Say
-    know: Callable[[State], State] = lambda state: state
+    questions: Questions = field(default_factory=Questions)
     meet: Meet | None = None
     recognise: Callable[[bool], None] = lambda under_way: None
     abandon: threading.Event = field(default_factory=threading.Event)

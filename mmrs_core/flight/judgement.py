@@ -21,13 +21,13 @@ class Judgement:
         """Return what is missing for these robots."""
         objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
         return [
-            *(fault for name in sorted(_asked(robots)) if (fault := self._undecided(name))),
+            *(fault for name in sorted(conditions_of(robots)) if (fault := self._undecided(name))),
             *(f"objects.py finds nothing for {name!a}" for name in sorted(objects - set(self.locators))),
         ]
 
     def decides(self, robots: Sequence[Robot]) -> dict[str, Condition]:
         """Return what decides each choice of these robots: the user's function, or a standard condition."""
-        return {name: self.conditions.get(name) or standard(name) for name in _asked(robots)}
+        return {name: self.conditions.get(name) or standard(name) for name in conditions_of(robots)}
 
     def _undecided(self, name: str) -> str:
         if name in self.conditions or is_standard(name):
@@ -35,7 +35,8 @@ class Judgement:
         return f"conditions.py decides nothing for {name!a}"
 
 
-def _asked(robots: Sequence[Robot]) -> set[str]:
+def conditions_of(robots: Sequence[Robot]) -> set[str]:
+    """Return the identifiers of the conditions that the choices of robots have."""
     return {step.then.condition for robot in robots for step in robot.steps if isinstance(step.then, Choose)}
 
 

@@ -13,7 +13,7 @@ from .conditions import Condition
 from .control import Control
 from .crews import Crews
 from .injection import Rehearsal
-from .judgement import Judgement
+from .judgement import Judgement, conditions_of
 from .links.ports import Port
 from .links.radios import Radios
 from .objects import Locator
@@ -56,7 +56,11 @@ def main(
             decides=judgement.decides(robots),
             rehearsal=rehearsal,
             radios=_radios(options, rehearsal),
-            crews=(crews := Crews([robot.id for robot in robots])),
+            crews=(
+                crews := Crews(
+                    [robot.id for robot in robots], {robot.id: conditions_of([robot]) for robot in robots}
+                )
+            ),
             stop=stop,
             abandon=abandon,
         )

@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 from traceback import format_exception
 
@@ -186,7 +186,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         locators=shared.judgement.locators,
         stop=shared.stop,
         say=say,
-        know=lambda state: replace(state, answers=inbox.answers),
+        questions=shared.crews.questions[robot.id],
         meet=_meeting(robot, shared),
         recognise=_recognition(robot, options, link, vehicle),
         abandon=shared.abandon,

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.conditions import is_standard, standard
+from mmrs_core.flight.conditions import is_standard, standard, truth
+from mmrs_core.flight.faults import CONDITION_FAILED
 
 
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
@@ -39,14 +40,11 @@ def decided(condition: Condition, know: Callable[[], RobotState]) -> bool | Faul
         state = know()
         if not condition.known(state):
             return None
-        holds = condition.holds(state)
+        return truth(condition.holds(state))
     except LinkLostError:
         raise
     except Exception as error:  # a condition is foreign code: whatever it raises is the robot's fault
-        return Fault("CONDITION", f"'{identifier}' raised {type(error).__name__}: {error}")
-    if not isinstance(holds, bool):
-        return Fault("CONDITION", f"'{identifier}' returned {holds!r}, neither True nor False")
-    return holds
+        return Fault(CONDITION_FAILED, f"condition '{identifier}' fails: {type(error).__name__}: {error}")
 
 
 def _standard(identifier: str) -> Condition:

@@ -69,7 +69,12 @@ def interpret(
         if robot.id in backends:
             live = terms.attention is not None
             rules = Rules(
-                conditions, (policies or {}).get(robot.id, ()), terms.suspends, program.reserve, live
+                conditions,
+                (policies or {}).get(robot.id, ()),
+                terms.suspends,
+                program.reserve,
+                live,
+                terms.say,
             )
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)

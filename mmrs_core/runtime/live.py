@@ -18,7 +18,7 @@ from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
-from mmrs_core.runtime.orders import ENDINGS, HOLD, RESUME, Order, Orders
+from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, Order, Orders
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.terms import Ending, Terms
 
@@ -170,6 +170,7 @@ class _EarlyOrders:
     def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
         self._venture, self._robots = venture, robots
         self._later: list[Order] = []
+        self._answers: list[Order] = []
         self._held: set[str] = set()
         self._ended: set[str] = set()
 
@@ -182,6 +183,8 @@ class _EarlyOrders:
         for order in self._venture.orders.taken():
             if order.kind in (HOLD, RESUME):
                 self._hold_or_not(order)
+            elif order.kind == ANSWER:
+                self._answers.append(order)
             else:
                 self._keep(order)
         if self._ended >= set(self._robots):
@@ -192,8 +195,10 @@ class _EarlyOrders:
         """Have the interpreter obey what was ordered, and know the answers."""
         if self._held:
             self._venture.orders.give(HOLD, sorted(self._held))
+        for order in self._answers:
+            self._venture.orders.put_back(order)
         for order in self._later:
-            self._venture.orders.give(order.kind, order.robots, question=order.question, answer=order.answer)
+            self._venture.orders.give(order.kind, order.robots)
 
     def _hold_or_not(self, order: Order) -> None:
         """Have robots stay on the ground once they are ready, or no longer."""

@@ -80,8 +80,7 @@ class Obedience:
         if robot is None:
             order.refuse(id, "no such robot here")
         elif order.kind == ANSWER:
-            robot.answers[order.question] = order.answer
-            order.confirm(id)
+            self._answer(order, robot)
         elif order.kind == HOLD and robot.response != HANDS_OFF:
             self._hold(order, robot)
         elif robot.response == HANDS_OFF:
@@ -93,6 +92,13 @@ class Obedience:
         else:
             which = STOPPED if order.kind == STOP else ORDERED
             robot.end_by(Fault(which, f"order to {order.kind}"), self._orders.response(order.kind))
+
+    def _answer(self, order: Order, robot: RunningRobot) -> None:
+        ended = "its program has ended" if robot.point.is_final else ""
+        if why := ended or robot.questions.give(order.question, order.answer):
+            order.refuse(robot.id, why)
+        else:
+            order.confirm(robot.id)
 
     def _hold(self, order: Order, robot: RunningRobot) -> None:
         if robot.point.is_final or robot.suspended:

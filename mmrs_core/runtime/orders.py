@@ -105,6 +105,11 @@ class Orders:
         self.called()
         return order
 
+    def put_back(self, order: Order) -> None:
+        """Have an order that was taken be looked at once more."""
+        self._waiting.append(order)
+        self.called()
+
     def close(self, why: str) -> None:
         """Refuse all orders that nobody has looked at, and those to come."""
         self._closed = why

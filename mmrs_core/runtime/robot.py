@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -14,6 +14,8 @@ from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
+from mmrs_core.flight.conditions import question_of, undecided
+from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
 from mmrs_core.runtime.conditions import decided
 from mmrs_core.runtime.outgoing import Outgoing
@@ -33,6 +35,7 @@ class Rules:
         suspends: whether a low battery only breaks the program off, to go on with a full one.
         reserve: part of the energy with which a program is not gone on with.
         live: whether robots are real ones: steps then tell only which fault it is, black boxes the reason.
+        say: tells people what goes on.
     """
 
     conditions: Mapping[str, Condition]
@@ -40,6 +43,7 @@ class Rules:
     suspends: bool
     reserve: float = 0.0
     live: bool = False
+    say: Callable[[str], None] = lambda words: None
 
 
 class RunningRobot:
@@ -61,7 +65,7 @@ class RunningRobot:
             be taken up again.
         stopping: whether it has still to confirm that it has stopped.
         recovering: whether it is on its way back to where its program was broken off.
-        answers: of the operator, by question.
+        questions: that its choices ask the operator.
     """
 
     def __init__(self, program: RobotProgram, backend: Backend, bus: Bus, rules: Rules) -> None:
@@ -77,7 +81,9 @@ class RunningRobot:
         self.response = ""
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.recovering = False
-        self.answers: dict[str, bool] = {}
+        conditions = (transition.condition for transition in program.transitions.values())
+        self.questions = Questions(each for each in conditions if each is not None)
+        self._chosen: bool | None = None
         self._program, self._bus, self._rules = program, bus, rules
         self._policies = (*program.policies, *rules.policies)
         self._passed: list[str] = []
@@ -207,7 +213,8 @@ class RunningRobot:
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:
-        self._begun, self.wait = False, Wait(self.id)
+        self._begun, self.wait, self._chosen = False, Wait(self.id), None
+        self.questions.asked = ""
 
     def _unkept(self) -> Fault | None:
         """Return the fault that is left where what others tell this robot cannot be kept."""
@@ -293,15 +300,29 @@ class RunningRobot:
         return self._unborne(now) or self.wait.overdue(now, self._answers(), peers)
 
     def _decision(self, now: float) -> bool | Fault | None:
-        """Return what the condition says; None as long as nobody can know."""
+        """Return what the condition says, once and for all here; None as long as nobody can know."""
+        if self._chosen is not None:
+            return self._chosen
         identifier = self._program.transitions[self.point.move].condition or ""
+        heard = self.questions.heard()
         holds = decided(
-            self._rules.conditions[identifier],
-            lambda: replace(self.backend.state(now), answers=dict(self.answers)),
+            self._rules.conditions[identifier], lambda: replace(self.backend.state(now), answers=heard)
         )
         if holds is None:
-            self.wait.question = identifier
+            self._tell_undecided(identifier)
+        elif isinstance(holds, bool):
+            self._chosen = holds
+            self.questions.use_up(heard)
         return holds
+
+    def _tell_undecided(self, identifier: str) -> None:
+        if self.wait.question == identifier:
+            return
+        self.wait.question, self.questions.asked = identifier, question_of(identifier)
+        words = undecided(identifier)
+        self._rules.say(f"'{self.id}': {words}")
+        if isinstance(self.backend, Noting):
+            self.backend.note("decision", {"what": "CHOICE", "why": identifier, "response": words})
 
     def _may_pass(self) -> bool:
         """Return whether nothing as yet keeps it from going into the next move without a stop."""

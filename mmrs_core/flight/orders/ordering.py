@@ -59,7 +59,7 @@ def give(
     Args:
         folder: of the robots' logs.
         order: one of `ORDERS`.
-        robots: to be ordered; none: all.
+        robots: to be ordered; none: all; of an answer, all that ask the question.
         question: that is answered.
         answer: to the question.
         seconds: to wait for the robots.
@@ -83,8 +83,13 @@ def give(
             for channel in found
             if (wanted := [robot for robot in channel.robots if not robots or robot in robots])
         ]
-        for call in calls:
-            yield from _replies(call)
+        replies = (reply for call in calls for reply in _replies(call))
+        yield from replies if robots or order != ANSWER else _of_those_who_ask([*replies])
+
+
+def _of_those_who_ask(replies: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return what came of an answer to all robots: it is for those that ask, if there are any."""
+    return [reply for reply in replies if reply["confirmed"]] or replies
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..questions import Questions
+
 HOLD = "hold"
 RESUME = "resume"
 RETURN = "return"
@@ -83,13 +85,14 @@ class Inbox:
     """The orders to one robot that it has not looked at yet.
 
     Attributes:
-        answers: what people have answered so far, by question.
+        questions: that its choices ask, which take answers at once; None: answers wait like other orders.
     """
 
     def __init__(
         self,
         robot: str,
         *,
+        questions: Questions | None = None,
         arrived: Callable[[], None] = lambda: None,
         answered: Callable[[Receipt], None] = lambda receipt: None,
     ) -> None:
@@ -97,11 +100,12 @@ class Inbox:
 
         Args:
             robot: whose it is.
+            questions: that its choices ask.
             arrived: called, from any thread, when there is something new.
             answered: called, from any thread, when an order was obeyed or refused.
         """
         self.robot = robot
-        self.answers: dict[str, bool] = {}
+        self.questions = questions
         self._arrived = arrived
         self._answered = answered
         self._waiting: deque[Receipt] = deque()
@@ -115,11 +119,14 @@ class Inbox:
             reply(receipt)
 
         receipt = Receipt(self.robot, order, answered)
-        if order.name == ANSWER:
-            self.answers = {**self.answers, order.question: order.answer}
-            receipt.confirm()
-        elif self._closed:
+        if self._closed:
             receipt.refuse(self._closed)
+        elif order.name == ANSWER and self.questions is not None:
+            why = self.questions.give(order.question, order.answer)
+            if why:
+                receipt.refuse(why)
+            else:
+                receipt.confirm()
         else:
             self._waiting.append(receipt)
         self._arrived()

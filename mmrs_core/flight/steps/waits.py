@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from math import inf
 
-from ..conditions import question_of
+from ..conditions import question_of, truth, undecided
 from ..desk import Desk
 from ..faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from ..program import Choose, Policy, Robot, Then
@@ -107,26 +108,34 @@ class Waits:
         """Return whether a condition holds, once that can be said."""
         begun = self._desk.clock.now()
         told = False
-        while (holds := self._asked(condition)) is None:
-            if not told:
-                told = True
-                self._tell_undecided(condition)
-            self._check_patience(condition, begun)
-            self._vehicle.rest(self._desk.clock.patience(0.0, GLANCE_SECONDS))
+        try:
+            while (holds := self._asked(condition)) is None:
+                if not told:
+                    told = True
+                    self._tell_undecided(condition)
+                self._check_patience(condition, begun)
+                self._vehicle.rest(self._desk.clock.patience(0.0, GLANCE_SECONDS))
+        finally:
+            self._desk.questions.asked = ""
         return holds
 
     def _tell_undecided(self, condition: str) -> None:
-        question = question_of(condition)
-        words = f"waits for an answer to {question!a}" if question else f"waits until {condition!a} is known"
+        words = undecided(condition)
+        self._desk.questions.asked = question_of(condition)
         self._desk.say(f"{self._robot.id!a} {words}")
         self._journal.decide("CHOICE", condition, words)
 
     def _asked(self, condition: str) -> bool | None:
+        heard = self._desk.questions.heard()
+        state = replace(self._vehicle.state(), answers=heard)
         try:
-            holds = self._desk.conditions[condition](self._desk.know(self._vehicle.state()))
+            found = self._desk.conditions[condition](state)
+            holds = None if found is None else truth(found)
         except Exception as error:
             raise Fault(CONDITION_FAILED, f"condition {condition!a} fails: {error!r}") from error
-        return None if holds is None else bool(holds)
+        if holds is not None:
+            self._desk.questions.use_up(heard)
+        return holds
 
     def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
         slots, clock = self._desk.slots, self._desk.clock

@@ -20,7 +20,7 @@ class State:
             None where the vehicle does not say.
         wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
         detected: names of what the vehicle has detected so far.
-        answers: what the operator has answered so far, by question.
+        answers: what the operator has answered, by question, and no choice has used up.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
     """

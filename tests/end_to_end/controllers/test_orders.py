@@ -192,6 +192,40 @@ def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controlle
     assert made.replayed(partial=True).faults == {"alpha": "DEVICE_SILENT"}
 
 
+def test_a_choice_that_comes_round_again_asks_again(controllers):
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), go_to("b", (0.0, 0.0, 5.0)), LAND],
+        transitions={3: Transition(3, 2, condition="answer:again", otherwise=4)},
+    )
+    made = controllers(program(robot))
+    with made.start("fleet.py", "--dry-run") as process:
+        for again in (True, True, False):
+            assert any("waits for an answer to 'again'" in line for line in process.stderr)
+            assert order(made, "answer", question="again", answer=again)["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+    chosen = [step["detail"] for step in made.steps("alpha") if step["label"] == "choose"]
+    assert chosen == ["true", "true", "false"]
+
+
+def test_an_answer_to_a_question_that_nobody_asks_is_refused(controllers):
+    robot = robot_program(
+        "alpha",
+        [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), LAND],
+        transitions={1: Transition(1, 2, condition="answer:go on?", otherwise=3)},
+    )
+    made = controllers(program(robot))
+    with made.start("fleet.py", "--dry-run") as process:
+        assert any("waits for an answer to 'go on?'" in line for line in process.stderr)
+        refused = order(made, "answer", question="go on", answer=True)
+        assert (refused["confirmed"], refused["why"]) == (False, "no choice asks 'go on'; there is 'go on?'")
+        assert order(made, "status")["asks"] == "go on?"
+        assert order(made, "answer", question="go on?", answer=True)["confirmed"]
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 0, said
+
+
 def test_an_answer_decides_a_choice_that_waited_for_it(controllers):
     robot = robot_program(
         "alpha",

@@ -13,11 +13,13 @@ import pytest
 from mmrs_core.flight.control import Control
 from mmrs_core.flight.orders.ordering import Unreachable, give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
+from mmrs_core.flight.questions import Questions
 
 
 @pytest.fixture
 def inboxes():
-    return {"alpha": Inbox("alpha"), "beta": Inbox("beta")}
+    asks = Questions(["answer:is it safe"])
+    return {"alpha": Inbox("alpha", questions=asks), "beta": Inbox("beta", questions=Questions())}
 
 
 @pytest.fixture
@@ -110,8 +112,29 @@ def test_a_robot_that_has_ended_refuses_what_it_was_told_and_what_comes(tmp_path
 def test_an_answer_is_known_to_the_robot_at_once(tmp_path, opened, inboxes):
     opened(inboxes)
     list(give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True))
-    assert inboxes["alpha"].answers == {"is it safe": True}
-    assert inboxes["beta"].answers == {}
+    assert inboxes["alpha"].questions.heard() == {"is it safe": True}
+
+
+def test_an_answer_to_a_question_that_nobody_asks_is_refused(tmp_path, opened, inboxes, capsys):
+    opened(inboxes)
+    assert main(["answer", "--question", "is it save", "--says", "yes", "--log", str(tmp_path)]) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        "'alpha': answer not confirmed (no choice asks 'is it save'; there is 'is it safe')",
+        "'beta': answer not confirmed (no choice asks 'is it save'; none asks anything)",
+    ]
+
+
+def test_an_answer_to_everybody_is_for_those_who_ask(tmp_path, opened, inboxes):
+    opened(inboxes)
+    (reply,) = give(tmp_path, "answer", question="is it safe", answer=True)
+    assert (reply["robot"], reply["confirmed"]) == ("alpha", True)
+
+
+def test_a_robot_that_has_ended_takes_no_answer(tmp_path, opened, inboxes):
+    opened(inboxes)
+    inboxes["alpha"].close("its program has ended")
+    (reply,) = give(tmp_path, "answer", ["alpha"], question="is it safe", answer=True)
+    assert (reply["confirmed"], reply["why"]) == (False, "its program has ended")
 
 
 def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):

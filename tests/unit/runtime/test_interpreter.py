@@ -97,7 +97,7 @@ def test_a_condition_that_throws_is_a_fault_never_false(fly, answer):
     behaviour = program(robot("r", [hold("h"), hold("x")], choices={"h": ("c", "x", "stop")}))
     run = fly(behaviour, conditions={"c": Condition("c", answer)})
     assert run.ending.outcome is Outcome.FAILED
-    assert run.ending.faults["r"].which == "CONDITION"
+    assert run.ending.faults["r"].which == "CONDITION_FAILED"
     assert run.records[-1].label == "fault"
 
 

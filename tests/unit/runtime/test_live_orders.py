@@ -158,6 +158,30 @@ def test_a_question_waits_for_the_operators_answer(live):
     assert "r choose h false" in run.shown()
 
 
+def test_a_choice_that_comes_round_again_asks_again(live):
+    behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:again", "h", "x")}))
+    run = live(behaviour, Script(), conditions=standard_conditions(["answer:again"]))
+    for lap in (1, 2):
+        run.wait_for(lambda lap=lap: run.said.count("'r': waits for an answer to 'again'") == lap)
+        assert run.shown().count("r choose h true") == lap - 1
+        run.orders.give("answer", ["r"], question="again", answer=True)
+    run.wait_for(lambda: run.said.count("'r': waits for an answer to 'again'") == 3)
+    run.orders.give("answer", ["r"], question="again", answer=False)
+    assert run.end().outcome is Outcome.SUCCESS
+    assert run.shown().count("r choose h true") == 2
+
+
+def test_an_answer_to_a_question_that_no_choice_asks_is_refused(live):
+    behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:go on?", "x", "stop")}))
+    run = live(behaviour, Script(), conditions=standard_conditions(["answer:go on?"]))
+    run.wait_for_step("r end h")
+    order = run.orders.give("answer", ["r"], question="go on", answer=True)
+    assert order.settled.wait(20.0)
+    assert order.refused == {"r": "no choice asks 'go on'; there is 'go on?'"}
+    run.orders.give("answer", ["r"], question="go on?", answer=True)
+    assert run.end().outcome is Outcome.SUCCESS
+
+
 def test_a_question_nobody_answers_ends_by_the_policy_of_long_waits(live):
     policy = Policy("WAIT_TOO_LONG", "LAND", 0.2)
     behaviour = program(
