@@ -36,6 +36,9 @@ LEAST_SECONDS = 0.5
 LATE_FRAMES = 64
 """How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
 
+OVERTAKEN_SECONDS = 1.0
+"""For how long: frames are counted to 255 only, and after a gap what is new may look as if it were late."""
+
 GAP_SECONDS, LEAST_GAP_SECONDS = 2.0, 0.5
 """Silence of the vehicle, of the run and real, after which ground stations had no chance to be heard."""
 
@@ -126,6 +129,7 @@ class Link:
         self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
         self._newest: int | None = None
+        self._newest_at = 0.0
         self._ended = ""
         radio.join(self)
 
@@ -367,7 +371,9 @@ class Link:
     def _is_late(self, message: Message) -> bool:
         """Return whether messages that the vehicle sent after this one have come before it."""
         seq = message.get_seq()
-        if self._newest is not None and 0 < (self._newest - seq) % 256 <= LATE_FRAMES:
+        now, before = self.clock.now(), self._newest
+        recent = now - self._newest_at <= self.clock.patience(OVERTAKEN_SECONDS, LEAST_SECONDS)
+        if before is not None and recent and 0 < (before - seq) % 256 <= LATE_FRAMES:
             return True
-        self._newest = seq
+        self._newest, self._newest_at = seq, now
         return False

@@ -216,6 +216,15 @@ def test_a_message_that_was_overtaken_is_no_news():
         assert link.latest("MISSION_CURRENT").seq == 5
 
 
+def test_what_comes_after_a_gap_is_news_whatever_its_number():
+    with linked() as (link, wire):
+        wire.say(mavlink.MAVLink_mission_current_message(5), seq=20)
+        assert link.wait(lambda: link.latest("MISSION_CURRENT"), 5.0)
+        threading.Event().wait(1.2)
+        wire.say(mavlink.MAVLink_mission_current_message(6), seq=220)
+        assert link.wait(lambda: link.latest("MISSION_CURRENT").seq == 6, 5.0)
+
+
 def test_time_in_the_guard_does_not_count():
     with linked() as (link, _):
         held = threading.Event()
