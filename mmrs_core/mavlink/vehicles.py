@@ -85,6 +85,13 @@ ROVER = VehicleClass(
     alone=frozenset({"CONTINUE", "RETURN", "EMERGENCY_AREA", "HOLD", "LAND", "STOP_THRUST"}),
 )
 
+AUTOPILOT = "mavlink.autopilot"
+"""The property of a device that says which autopilot it is."""
+
+ARDUPILOT, PX4 = "ardupilot", "px4"
+AUTOPILOTS: Mapping[str, int] = {ARDUPILOT: 3, PX4: 12}
+"""Numbers of MAV_AUTOPILOT."""
+
 CLASSES: Mapping[Name, VehicleClass] = {
     ("urn:mmrs:multicopter:1.0", "Drone"): COPTER,
     ("urn:mmrs:auv:1.0", "AUVMovement"): SUB,
@@ -107,6 +114,31 @@ def class_of_type(type: RobotType) -> VehicleClass:
         if found is not None and CLASSES[found] is not ROVER:
             return CLASSES[found]
     return ROVER
+
+
+def autopilots_in(type: RobotType | None) -> tuple[str, ...]:
+    """Return what the devices of a robot type say of its autopilot (``mavlink.autopilot``), sorted."""
+    devices = type.devices.values() if type is not None else ()
+    return tuple(
+        sorted({device.properties[AUTOPILOT] for device in devices if AUTOPILOT in device.properties})
+    )
+
+
+def autopilot_of(type: RobotType | None) -> str:
+    """Return which autopilot robots of a type have; ArduPilot where the type does not say, or not clearly."""
+    found = autopilots_in(type)
+    return found[0] if len(found) == 1 and found[0] in AUTOPILOTS else ARDUPILOT
+
+
+def autopilot_fault(type: RobotType | None) -> str:
+    """Return what is wrong with what a type says of its autopilot; empty: nothing."""
+    found = autopilots_in(type)
+    shown = ", ".join(map(repr, found))
+    if len(found) > 1:
+        return f"{AUTOPILOT} is {shown}: which one it is nobody knows"
+    if found and found[0] not in AUTOPILOTS:
+        return f"{AUTOPILOT} is {shown}; known are {' and '.join(AUTOPILOTS)}"
+    return ""
 
 
 def capability_of(robot: RobotProgram, type: RobotType) -> Capability | None:

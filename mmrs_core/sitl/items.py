@@ -8,7 +8,7 @@ from math import isnan
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.sitl.settings import PX4
+from mmrs_core.sitl.settings import ARDUPILOT, PX4
 
 MISSION, FENCE, RALLY = 0, 1, 2
 
@@ -16,6 +16,9 @@ ABOVE_SEA = frozenset({0, 5})
 GIVEN_BACK: Mapping[int, int] = {5: 0, 6: 3, 11: 10}
 POSITIONAL_FRAMES = frozenset({0, 3, 5, 6, 10, 11})
 WITH_FREE_HEADING = frozenset({16, 17, 21, 22})
+FREE_ON_PX4 = WITH_FREE_HEADING | {19}
+NOT_ON_PX4 = frozenset({82, 115, 181, 182, 183, 184, 207})
+"""What an ArduPilot's mission may hold and a PX4's may not."""
 
 MOVING = frozenset({16, 17, 18, 19, 21, 22, 82})
 FENCES = frozenset({5001, 5002, 5003, 5004})
@@ -52,13 +55,15 @@ class Item:
         return self.frame in ABOVE_SEA
 
 
-def fault_of(item: Item, kind: int = MISSION) -> int:
+def fault_of(item: Item, kind: int = MISSION, firmware: str = ARDUPILOT) -> int:
     """Return why an item is refused, as a MAV_MISSION_RESULT; 0 if it is not."""
-    if item.command not in KNOWN.get(kind, frozenset()):
+    refused = NOT_ON_PX4 if firmware == PX4 else frozenset()
+    if item.command not in KNOWN.get(kind, frozenset()) - refused:
         return int(mavlink.MAV_MISSION_UNSUPPORTED)
     if item.command in PLACED and item.frame not in POSITIONAL_FRAMES:
         return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
-    free = 3 if item.command in WITH_FREE_HEADING else 4
+    headed = FREE_ON_PX4 if firmware == PX4 else WITH_FREE_HEADING
+    free = 3 if item.command in headed else 4
     for index, value in enumerate(item.params[:free]):
         if isnan(value):
             return int(mavlink.MAV_MISSION_INVALID_PARAM1) + index

@@ -104,7 +104,7 @@ class MissionProtocol:
         if message.seq != len(self._incoming) or not self._expected:
             self._repeat(message.seq)
             return
-        fault = fault_of(item, self._kind)
+        fault = fault_of(item, self._kind, self._firmware)
         if fault:
             self._expected = 0
             self._acknowledge(fault, self._kind)

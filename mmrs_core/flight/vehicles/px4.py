@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from math import nan, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -35,6 +36,7 @@ AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
 
 TAKING_OFF = (4, 2)
+HEADED = frozenset({mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_UNLIM})
 
 
 class Stream:
@@ -154,8 +156,8 @@ class Px4:
         return level + height
 
     def mission(self, items: Sequence[Item]) -> Sequence[Item]:
-        """Return the items without home."""
-        return items[1:]
+        """Return the items without home, with headings left to the vehicle: 0 would be north."""
+        return [_unheaded(item) for item in items[1:]]
 
     def number(self, seq: int) -> int:
         """Return the number without home."""
@@ -172,3 +174,7 @@ class Px4:
 
     def enable_fence(self) -> None:
         """Do nothing: a PX4 heeds the fence that it has (GF_ACTION)."""
+
+
+def _unheaded(item: Item) -> Item:
+    return replace(item, params=(*item.params[:3], nan)) if item.command in HEADED else item

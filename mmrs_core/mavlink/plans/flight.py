@@ -12,8 +12,9 @@ from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.movements import gimbal_of, mount_of, on_gimbal, turns_to
 from mmrs_core.mavlink.plans import items as cmd
 from mmrs_core.mavlink.plans.items import Item
+from mmrs_core.mavlink.plans.px4 import unknown_in
 from mmrs_core.mavlink.runs import CORNER_SECONDS
-from mmrs_core.mavlink.vehicles import COPTER, ROVER
+from mmrs_core.mavlink.vehicles import COPTER, MANNERS, PX4, ROVER, autopilot_of
 from mmrs_core.scene import Name, Position
 
 MULTICOPTER = "urn:mmrs:multicopter:1.0"
@@ -70,6 +71,7 @@ class Flight:
         self._looking, self._gimbal = False, 0
         self._items: list[Item] = []
         self._down = context.vehicle is COPTER
+        self._px4 = autopilot_of(context.type) == PX4
 
     def perform(self, move: Move, *, fluid: bool) -> None:
         """Add a move with its actions; `fluid`: the robot does not stop at its end."""
@@ -97,7 +99,7 @@ class Flight:
 
     def _act(self, action: Action, move: Move) -> None:
         wiring = self._context.wiring(action) if action.is_a(DEVICE_ACTION) else None
-        if isinstance(wiring, Wired):
+        if isinstance(wiring, Wired) and not (self._px4 and unknown_in(wiring)):
             for command, params in ((wiring.command, wiring.params), *wiring.more):
                 self._add(command, move, *params)
             took = f"no mission waits {wiring.seconds:g} s on the ground for its action '{action.name}'"
@@ -157,7 +159,15 @@ class Flight:
         elif heading.target.position is not None and not self._leaves_out(move, "turns on the ground"):
             aside = heading.angle_degrees + mount_of(heading, self._context)
             angle = _bearing(self._position, heading.target.position) - aside
-            self._add(cmd.CONDITION_YAW, move, round(angle % 360.0, 1))
+            self._turn(move, round(angle % 360.0, 1))
+
+    def _turn(self, move: Move, angle: float) -> None:
+        """Turn on the spot; a PX4 does so only at a place that it goes to."""
+        if self._px4:
+            radius = MANNERS[self._context.robot.travel_mode].radius
+            self._add(cmd.WAYPOINT, move, CORNER_SECONDS, radius, 0.0, angle, here=True)
+        else:
+            self._add(cmd.CONDITION_YAW, move, angle)
 
     def _pace(self, move: Move) -> None:
         speed = self._context.speed(move)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import nan
 
 from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.mavlink.vehicles import MANNERS, PX4, autopilot_of
 from mmrs_core.scene import Position
 
 WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF = 16, 17, 19, 21, 22
@@ -16,6 +18,10 @@ CONDITION_YAW, CHANGE_SPEED, ROI_LOCATION, ROI_NONE = 115, 178, 195, 197
 FENCE_EXCLUSION, RALLY_POINT = 5002, 5100
 ABSOLUTE, NO_FRAME, RELATIVE = 0, 2, 3
 PARAMETERS = 7
+RADIUS, HEADING = 1, 3
+"""Places of these among the parameters of what has a place."""
+
+HEADED = frozenset({WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LAND, TAKE_OFF})
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +76,23 @@ def _row(number: int, item: Item, context: RobotContext, degrees: Iterator[tuple
     if item.position is not None:
         place = (*next(degrees), context.height(item.position))
     filled = [0.0] * (PARAMETERS - len(place) - len(item.params))
+    if autopilot_of(context.type) == PX4:
+        filled = _as_px4_has_it(item, filled, context)
     move = item.move
     step = TracedStep(f"item {number}", context.robot.id, move.id, move.task, move.rule)
     frame = RELATIVE if place else NO_FRAME
     return Row(number, frame, item.command, (*item.params, *filled, *place), step)
+
+
+def _as_px4_has_it(item: Item, filled: list[float], context: RobotContext) -> list[float]:
+    """Return the parameters behind those that an item has, which mean something to a PX4 where they are 0.
+
+    A heading of 0 is north, and none at all is what the vehicle chooses; a radius of 0 is NAV_ACC_RAD,
+    which is 10 m at first.
+    """
+    before = len(item.params)
+    if item.command in HEADED and before <= HEADING:
+        filled[HEADING - before] = nan
+    if item.command == WAYPOINT and before <= RADIUS:
+        filled[RADIUS - before] = MANNERS[context.robot.travel_mode].radius
+    return filled

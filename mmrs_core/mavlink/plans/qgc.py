@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isnan
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.mavlink.capabilities import OF_MISSIONS
@@ -10,11 +11,10 @@ from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.plans.items import Row
 from mmrs_core.mavlink.plans.refusals import refusals
 from mmrs_core.mavlink.plans.surroundings import Mission, missions_of
-from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.mavlink.vehicles import AUTOPILOTS, autopilot_of, capability_of
 from mmrs_core.resources import shipped
 
 TEMPLATES = shipped("codegen_templates") / "qgc-plan"
-ARDUPILOT = 3
 HEIGHT_ABOVE_HOME = 1
 DEFAULT_SPEED = 5.0
 
@@ -33,7 +33,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
 def view_of(mission: Mission) -> dict[str, object]:
     """Return what the template sees; heights are above home."""
     return {
-        "firmware": ARDUPILOT,
+        "firmware": AUTOPILOTS[autopilot_of(mission.context.type)],
         "vehicle": mission.context.vehicle.mav_type,
         "speed": _usual_speed(mission.context),
         "height_above_home": HEIGHT_ABOVE_HOME,
@@ -51,7 +51,8 @@ def _simple(row: Row) -> dict[str, object]:
         "command": row.command,
         "doJumpId": row.number,
         "frame": row.frame,
-        "params": list(row.params),
+        # What is left to the vehicle is no number, which JSON has no form for but null.
+        "params": [None if isnan(param) else param for param in row.params],
     }
     if row.has_place:
         height = {"Altitude": row.params[-1], "AltitudeMode": HEIGHT_ABOVE_HOME, "AMSLAltAboveTerrain": None}

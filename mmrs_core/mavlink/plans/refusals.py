@@ -13,7 +13,9 @@ from mmrs_core.mavlink.context import RobotContext, context_of, homeless
 from mmrs_core.mavlink.earth import sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
 from mmrs_core.mavlink.plans.flight import left_out_on_the_ground
+from mmrs_core.mavlink.plans.px4 import unknown_in
 from mmrs_core.mavlink.safety import explicit, policies_of
+from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
 from mmrs_core.scene import Policy
 
 
@@ -33,6 +35,8 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
             " above mean sea level, or the geoid separation"
         )
+    if fault := autopilot_fault(input.types.get(robot.type_name)):
+        yield f"robot '{robot.id}': {fault}"
     for policy in _declared(robot, input):
         yield f"robot '{robot.id}': {_described(policy)}"
     context = context_of(robot, input, geographic=False)
@@ -87,6 +91,9 @@ def _of_action(action: Action, move: Move, context: RobotContext) -> Iterator[st
         yield f"{context.label(move)}: action '{action.name}': {wiring.reason}"
     elif isinstance(wiring, Sampled):
         yield f"{context.label(move)}: action '{action.name}': a plan cannot record '{wiring.value}'"
+    elif autopilot_of(context.type) == PX4 and (unknown := unknown_in(wiring)):
+        shown = ", ".join(map(str, unknown))
+        yield f"{context.label(move)}: action '{action.name}': no mission of a PX4 has command {shown}"
 
 
 def _of_heading(move: Move, context: RobotContext) -> Iterator[str]:

@@ -9,7 +9,7 @@ beside the mission. Whether other ground stations read those two is not known.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
+from math import isinf
 
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.mavlink.capabilities import OF_LISTS
@@ -49,11 +49,13 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
 def line(value: object) -> str:
     """Return a row as a line: twelve fields with tabs between them, reals with eight decimals.
 
+    What is left to the vehicle is written ``nan``.
+
     Raises:
-        ValueError: it is no row, or holds a number that is not finite.
+        ValueError: it is no row, or holds a number without end.
     """
-    if not isinstance(value, Row) or not all(map(isfinite, value.params)):
-        raise ValueError(f"{value!r} is no row of finite numbers")
+    if not isinstance(value, Row) or any(map(isinf, value.params)):
+        raise ValueError(f"{value!r} is no row of numbers that end")
     current = int(value.number == 0 and value.command == WAYPOINT)
     head = (value.number, current, value.frame, value.command)
     return "\t".join([*map(str, head), *(f"{param:.8f}" for param in value.params), "1"])

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from array import array
+from math import isnan
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.mavlink.plans.wpl import WPL
-from mmrs_core.testing.programs import target_input, two_drones
+from mmrs_core.testing.programs import quad, target_input, two_drones
 
 IMPORTER = Path(__file__).parents[2] / "peers" / "mavsdk_import.py"
 
@@ -33,10 +34,15 @@ def imported(folder, new_hangar):
     """Return what MAVSDK made of each file, by the file's name."""
     paths = sorted([*folder.glob("*.plan"), folder / "alpha.waypoints", folder / "beta.waypoints"])
     with new_hangar() as switch_on:
-        _, links = switch_on(two_drones(), speedup=1.0)
-        port = re.search(r"127\.0\.0\.1:(\d+)", links[-1]).group(1)
-        command = [sys.executable, str(IMPORTER), port, *map(str, paths)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+        return handed_over(paths, switch_on(two_drones(), speedup=1.0)[1])
+
+
+def handed_over(paths, links):
+    """Return what MAVSDK made of each file, by the file's name, for the last of some vehicles."""
+    port = re.search(r"127\.0\.0\.1:(\d+)", links[-1]).group(1)
+    command = [sys.executable, str(IMPORTER), port, *map(str, paths)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
     told = [json.loads(line[5:]) for line in done.stdout.splitlines() if line.startswith("peer ")]
     return dict(zip([path.name for path in paths], told, strict=True))
 
@@ -84,3 +90,15 @@ def test_a_vehicle_gives_back_the_mission_that_mavsdk_has_uploaded(imported, nam
     (_, *kept), (_, *sent) = (imported[name][what] for what in ("downloaded", "mission"))
     assert [[item[0], *item[2:5]] for item in kept] == [[item[0], *item[2:5]] for item in sent]
     assert {item[1] for item in kept} <= {0, 3}
+
+
+def test_mavsdk_hands_what_is_left_to_a_px4_over_as_no_number(tmp_path, hangar):
+    given = target_input(two_drones(), [quad(**{"mavlink.autopilot": "px4"})])
+    write(render(QGC_PLAN, given, allow_lossy=True), tmp_path)
+    path = tmp_path / "alpha.plan"
+    headings = [item["params"][3] for item in json.loads(path.read_text("utf-8"))["mission"]["items"]]
+    assert None in headings
+    found = handed_over([path], hangar(two_drones(), speedup=1.0, firmware="px4")[1])["alpha.plan"]
+    for items in (found["mission"], found["downloaded"]):
+        told = [item[9] for item in items[len(items) - len(headings) :]]
+        assert [isnan(each) for each in told] == [each is None for each in headings]

@@ -166,8 +166,17 @@ def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_
 def test_a_mission_has_no_home(px4):
     items = [Item(16, x=n) for n in range(3)]
     habits = px4[0].habits
-    assert list(habits.mission(items)) == items[1:]
+    assert [item.x for item in habits.mission(items)] == [1, 2]
     assert habits.number(1) == 0
+
+
+def test_a_mission_leaves_headings_to_the_vehicle_since_nought_is_north(px4):
+    items = [Item(16), Item(178, (1.0, 5.0, -1.0, 0.0)), Item(16, (1.0, 0.0, 0.0, 0.0)), Item(17)]
+    speed, waypoint, wait = px4[0].habits.mission(items)
+    assert speed == items[1]
+    assert waypoint.params[:3] == (1.0, 0.0, 0.0)
+    assert isnan(waypoint.params[3])
+    assert isnan(wait.params[3])
 
 
 def test_no_speed_is_commanded_where_set_points_have_it(px4):

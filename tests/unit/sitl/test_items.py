@@ -51,3 +51,10 @@ def test_holds_are_whole_seconds_and_heights_centimetres():
 def test_fences_have_no_height_and_rally_points_whole_metres():
     assert (kept(item(5002), FENCE, "ardupilot").frame, kept(item(5002), FENCE, "ardupilot").z) == (0, 0.0)
     assert kept(item(5100, z=12.9), RALLY, "ardupilot").z == 12.0
+
+
+def test_a_px4_leaves_more_headings_free_and_refuses_what_its_missions_do_not_know():
+    stays = item(command=19, params=(5.0, 0.0, 0.0, nan))
+    assert (fault_of(stays), fault_of(stays, firmware="px4")) == (9, 0)
+    turns = item(command=115, frame=2)
+    assert (fault_of(turns), fault_of(turns, firmware="px4")) == (0, UNSUPPORTED)
