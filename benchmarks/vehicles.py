@@ -225,9 +225,8 @@ def generate(folder: Path, count: int) -> None:
     from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
     from mmrs_core.scene import Frame
     from mmrs_core.testing.programs import (
-        MULTICOPTER,
+        LAND,
         go_to,
-        move,
         program,
         robot_program,
         take_off,
@@ -240,7 +239,7 @@ def generate(folder: Path, count: int) -> None:
         east = number * STEP
         moves = [take_off("up", 10.0)]
         moves += [go_to(f"leg{n}", (east, NORTH + 20.0 * n, 10.0 + n)) for n in range(1, 5)]
-        moves += [go_to("back", (east, NORTH, 10.0)), move("down", "Land", uri=MULTICOPTER)]
+        moves += [go_to("back", (east, NORTH, 10.0)), LAND]
         robots.append(robot_program(f"Vehicle{number + 1}", moves, home=(east, NORTH, 0.0)))
     write(render(MAVLINK_PYTHON, target_input(program(*robots, frame=frame))), folder)
 

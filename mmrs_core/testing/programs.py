@@ -53,6 +53,10 @@ def take_off(id: str, altitude: float) -> Move:
     return move(id, "TakeOff", uri=MULTICOPTER, altitude=altitude)
 
 
+LAND = move("down", "Land", uri=MULTICOPTER)
+"""A landing where the robot is, as the end of a flight."""
+
+
 def go_to(
     id: str,
     position: Position,
@@ -120,7 +124,7 @@ def two_drones() -> Program:
             go_to("a3", (30.0, 30.0, 20.0), task="photos"),
             replace(go_to("a4", (30.0, 0.0, 20.0), task="photos"), after=(photo(), notify(("beta", "go")))),
             go_to("back", (0.0, 0.0, 20.0)),
-            move("down", "Land", uri=MULTICOPTER),
+            LAND,
         ],
         transitions={index: Transition(index, index + 1, fluid=True) for index in (2, 3, 4)},
     )
@@ -136,7 +140,7 @@ def two_drones() -> Program:
             move("wait", "HoldPosition", task="look", duration=5.0),
             replace(move("turn", "HeadTo"), heading=Heading(Target((0.0, 0.0, 0.0)))),
             go_to("back", (60.0, 0.0, 15.0)),
-            move("down", "Land", uri=MULTICOPTER),
+            LAND,
         ],
         home=(60.0, 0.0, 0.0),
         slots=("go",),

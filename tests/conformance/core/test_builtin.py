@@ -15,7 +15,7 @@ from mmrs_core.testing.conformance import (
     TargetConformance,
 )
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     program,
@@ -36,7 +36,7 @@ MOVES = {
     "HeadTo": replace(move("head", "HeadTo"), heading=Heading(PLACE)),
     "GoTo": replace(move("go", "GoTo"), target=PLACE, distance=3.0, speed=4.0),
 }
-FLIGHT = [take_off("up", 20.0), go_to("out", (0.0, 30.0, 20.0)), move("down", "Land", uri=MULTICOPTER)]
+FLIGHT = [take_off("up", 20.0), go_to("out", (0.0, 30.0, 20.0)), LAND]
 ONE_DRONE = target_input(program(robot_program("alpha", FLIGHT)))
 
 

@@ -6,9 +6,8 @@ import time
 from dataclasses import replace
 
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, move, program, robot_program, take_off
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 TAKE_OFF = 22
 
 

@@ -17,7 +17,7 @@ from mmrs_core.behaviour.program import Transition
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     move,
     notify,
     program,
@@ -25,8 +25,6 @@ from mmrs_core.testing.programs import (
     take_off,
     two_drones,
 )
-
-LAND = move("down", "Land", uri=MULTICOPTER)
 
 
 @pytest.fixture

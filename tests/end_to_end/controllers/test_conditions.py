@@ -9,9 +9,7 @@ import pytest
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Policy
-from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
-
-LAND = move("down", "Land", uri=MULTICOPTER)
+from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
 
 def choosing(condition, *policies):

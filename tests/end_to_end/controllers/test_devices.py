@@ -11,9 +11,8 @@ from mmrs_core.generation.render import render
 from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Device, DeviceAction, Policy
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
-    move,
     photo,
     program,
     quad,
@@ -22,7 +21,6 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 ACTS = replace(go_to("a", (0.0, 12.0, 5.0)), after=(photo("device", "act"),))
 MADE = program(robot_program("alpha", [take_off("up", 5.0), ACTS, LAND]))
 REEL = DeviceWiring(

@@ -13,7 +13,7 @@ from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.sitl.commands import obey
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     notify,
@@ -23,7 +23,6 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE = 17
 LOITER = 5
 AT_HOME = 0.6

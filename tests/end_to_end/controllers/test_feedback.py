@@ -11,11 +11,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.orders.ordering import give
 from mmrs_core.sitl import Settings, SimulatedVehicle
-from mmrs_core.testing.programs import MULTICOPTER, feedback, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, feedback, move, program, robot_program, take_off
 
 LONG = "a word that is longer than one frame of MAVLink can carry"
 STAYS = replace(move("stay", "HoldPosition", duration=40.0), before=(feedback("seen", ("what", LONG)),))
-REPORTS = program(robot_program("alpha", [take_off("up", 5.0), STAYS, move("down", "Land", uri=MULTICOPTER)]))
+REPORTS = program(robot_program("alpha", [take_off("up", 5.0), STAYS, LAND]))
 STATION = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3)
 
 

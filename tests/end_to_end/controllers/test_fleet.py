@@ -9,9 +9,8 @@ from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.scene import Device, DeviceAction, Frame
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
-    move,
     photo,
     program,
     quad,
@@ -23,7 +22,6 @@ from mmrs_core.testing.programs import (
 PHOTO = 2000
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
-LAND = move("down", "Land", uri=MULTICOPTER)
 
 
 def commands(vehicle, number):
@@ -174,7 +172,8 @@ def test_one_of_several_robots_does_not_start_alone(controllers):
     [
         (["--connect", "gamma=udpin:127.0.0.1:1"], "there is no robot 'gamma'"),
         (["--connect", "udpin:127.0.0.1:1"], "which robot"),
-        (["--speedup", "-1"], "must be positive"),
+        (["--speedup", "-1"], "is no positive number"),
+        (["--home-tolerance", "nan"], "is no positive number"),
     ],
 )
 def test_a_wrong_command_line_is_a_usage_error(controllers, arguments, complaint):

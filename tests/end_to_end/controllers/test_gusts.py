@@ -11,9 +11,8 @@ from mmrs_core.generation.render import render
 from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Area, AreaUse
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
-    move,
     program,
     robot_program,
     take_off,
@@ -33,7 +32,7 @@ def passing(east: float, *, back: bool = True):
     """Return a robot that flies along the yard to the north, and back."""
     legs = [go_to("out", (east, -20.0, 10.0)), go_to("north", (east, 60.0, 10.0))]
     legs += [go_to("south", (east, -20.0, 10.0))] if back else []
-    moves = [take_off("up", 10.0), *legs, move("down", "Land", uri=MULTICOPTER)]
+    moves = [take_off("up", 10.0), *legs, LAND]
     return replace(program(robot_program("alpha", moves)), position_error=ERROR)
 
 

@@ -16,9 +16,9 @@ from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import NOTHING, open_port
 from mmrs_core.mavlink.earth import degrees_of
 from mmrs_core.sitl import Settings, SimulatedVehicle
-from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off, two_drones
+from mmrs_core.testing.programs import LAND, program, robot_program, take_off, two_drones
 
-UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
+UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 TWO = two_drones()
 NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise"
 

@@ -11,9 +11,8 @@ import pytest
 
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     feedback,
-    move,
     photo,
     program,
     quad,
@@ -21,7 +20,6 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 
 

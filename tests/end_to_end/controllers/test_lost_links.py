@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.vehicles.modes import LINK_LOST
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     notify,
@@ -21,7 +21,6 @@ from mmrs_core.testing.programs import (
     take_off,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 ARM = 400
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
 AUTO, BRAKE = 3, 17
 PLACES = [(0.0, 60.0, 20.0), (60.0, 60.0, 20.0), (60.0, 0.0, 20.0), (30.0, -30.0, 20.0), (0.0, -60.0, 20.0)]
@@ -16,7 +16,7 @@ PLACES = [(0.0, 60.0, 20.0), (60.0, 60.0, 20.0), (60.0, 0.0, 20.0), (30.0, -30.0
 
 def mission():
     moves = [take_off("up", 20.0), *(go_to(f"p{n}", place) for n, place in enumerate(PLACES))]
-    moves.append(move("down", "Land", uri=MULTICOPTER))
+    moves.append(LAND)
     fluid = {n: Transition(n, n + 1, fluid=True) for n in range(2, 6)}
     return program(robot_program("alpha", moves, transitions=fluid))
 

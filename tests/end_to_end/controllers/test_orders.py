@@ -9,17 +9,8 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.orders.ordering import Unreachable, give
-from mmrs_core.testing.programs import (
-    MULTICOPTER,
-    go_to,
-    move,
-    photo,
-    program,
-    robot_program,
-    take_off,
-)
+from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_program, take_off
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 BRAKE, GUIDED, LANDING = 17, 4, 9
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""

@@ -7,9 +7,9 @@ from math import dist
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
-OFFBOARD, TAKE_OFF, MISSION, LAND = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
+OFFBOARD, TAKE_OFF, MISSION, LANDING = 0x6_0000, 0x204_0000, 0x404_0000, 0x604_0000
 PASSED = 2.5
 """Metres from a place of a run at which it counts as passed, and what a vehicle flies in a tick."""
 ROUND = [(0.0, 60.0, 20.0), (0.0, 120.0, 20.0), (0.0, 180.0, 20.0), (60.0, 180.0, 20.0)]
@@ -18,7 +18,7 @@ ROUND = [(0.0, 60.0, 20.0), (0.0, 120.0, 20.0), (0.0, 180.0, 20.0), (60.0, 180.0
 def mission():
     """Return a robot that steps to a first place, flies a run of three, and steps back."""
     moves = [take_off("up", 20.0), *(go_to(f"p{n}", place) for n, place in enumerate(ROUND))]
-    moves += [go_to("back", (0.0, 0.0, 20.0)), move("down", "Land", uri=MULTICOPTER)]
+    moves += [go_to("back", (0.0, 0.0, 20.0)), LAND]
     fluid = {n: Transition(n, n + 1, fluid=True) for n in (3, 4)}
     return program(robot_program("alpha", moves, transitions=fluid))
 
@@ -37,8 +37,8 @@ def flown(new_controllers, new_hangar, tmp_path_factory):
 def test_a_controller_steps_in_offboard_and_flies_runs_as_missions(flown):
     made, _, autopilot = flown
     assert made.replayed().complaints == ()
-    modes = [mode for _, mode in autopilot.modes if mode in (OFFBOARD, MISSION, TAKE_OFF, LAND)]
-    assert modes == [TAKE_OFF, OFFBOARD, MISSION, OFFBOARD, LAND]
+    modes = [mode for _, mode in autopilot.modes if mode in (OFFBOARD, MISSION, TAKE_OFF, LANDING)]
+    assert modes == [TAKE_OFF, OFFBOARD, MISSION, OFFBOARD, LANDING]
 
 
 def test_every_place_is_passed(flown):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.testing.programs import MULTICOPTER, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, program, robot_program, take_off
 
 KEY = bytes(range(32))
-UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), move("down", "Land", uri=MULTICOPTER)]))
+UP_AND_DOWN = program(robot_program("alpha", [take_off("up", 5.0), LAND]))
 
 
 def key_file(folder, content=KEY, mode=0o600):

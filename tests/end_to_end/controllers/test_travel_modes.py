@@ -12,7 +12,7 @@ from mmrs_core.flight.links.ports import open_port
 from mmrs_core.flight.program import Travel
 from mmrs_core.flight.vehicles.travel import set_up
 from mmrs_core.sitl import Settings, SimulatedVehicle
-from mmrs_core.testing.programs import MULTICOPTER, go_to, move, program, robot_program, take_off
+from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
 SAFE = Travel("SAFE", radius=1.0, margin=4.0)
 AGGRESSIVE = Travel("AGGRESSIVE", radius=2.0, margin=0.0)
@@ -69,7 +69,7 @@ def test_the_radius_has_another_name_in_other_firmware(told, kind, settings, nam
 
 
 def test_a_controller_sets_its_vehicle_up_before_take_off(controllers, hangar):
-    land = move("down", "Land", uri=MULTICOPTER)
+    land = LAND
     drone = robot_program("alpha", [take_off("up", 5.0), go_to("a", (0.0, 12.0, 5.0)), land])
     made = program(replace(drone, travel_mode="SAFE"))
     vehicles, links = hangar(made)

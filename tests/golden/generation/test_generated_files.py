@@ -15,10 +15,9 @@ from mmrs_core.generation.render import render
 from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     feedback,
     go_to,
-    move,
     program,
     robot_program,
     take_off,
@@ -40,7 +39,7 @@ def choosing():
         [
             take_off("up", 5.0),
             replace(buoy, after=(feedback("seen"),)),
-            move("down", "Land", uri=MULTICOPTER),
+            LAND,
         ],
         transitions={1: Transition(1, 2, condition="calm", otherwise=3)},
     )

@@ -17,9 +17,8 @@ from mmrs_core.generation.render import render
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
-    move,
     photo,
     program,
     robot_program,
@@ -46,7 +45,7 @@ def flights(draw):
     """Return what a target gets for one drone."""
     count = draw(st.integers(1, 6))
     moves = [take_off("up", draw(heights)), *(draw(legs(number)) for number in range(count))]
-    moves.append(move("down", "Land", uri=MULTICOPTER))
+    moves.append(LAND)
     fluid = draw(st.sets(st.integers(2, count + 1)))
     transitions = {index: Transition(index, index + 1, fluid=True) for index in fluid}
     home = (draw(lengths), draw(lengths), draw(st.floats(-50.0, 50.0)))

@@ -15,6 +15,7 @@ from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_recovery import WayBack, sortie_of
 from mmrs_core.mavlink.built import robot_of
 from mmrs_core.testing.programs import (
+    LAND,
     MULTICOPTER,
     go_to,
     move,
@@ -36,7 +37,7 @@ BEHAVIOUR = program(
             go_to("s3", (0.0, 60.0, 20.0)),
             go_to("s4", (0.0, 70.0, 20.0)),
             go_to("back", (0.0, 0.0, 20.0)),
-            move("down", "Land", uri=MULTICOPTER),
+            LAND,
             move("charge", "Recharge", duration=10.0),
             take_off("again", 15.0),
             go_to("far", (80.0, 0.0, 15.0), trajectory="HORIZONTAL_FIRST"),

@@ -19,7 +19,7 @@ from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, DeviceAction, Frame, Policy
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     feedback,
     go_to,
     move,
@@ -33,7 +33,6 @@ from mmrs_core.testing.programs import (
     two_drones,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 HOSTILE = [
     '"; import os; os.mkdir("canary"); "',
     "a\nimport os\nos.mkdir('canary')\n#",

@@ -5,7 +5,7 @@ from dataclasses import replace
 from mmrs_core.mavlink.program import robot_view
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     program,
@@ -13,8 +13,6 @@ from mmrs_core.testing.programs import (
     take_off,
     target_input,
 )
-
-LAND = move("down", "Land", uri=MULTICOPTER)
 
 
 def escapes(*moves) -> list[str]:

@@ -13,7 +13,7 @@ from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.scene import Device, Frame, Policy
 from mmrs_core.testing.programs import (
     L_AQUILA,
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     photo,
@@ -24,8 +24,6 @@ from mmrs_core.testing.programs import (
     target_input,
     two_drones,
 )
-
-LAND = move("down", "Land", uri=MULTICOPTER)
 
 
 def plans(*moves, allow_lossy=False, transitions=None, frame=L_AQUILA, home=(0.0, 0.0, 0.0)):

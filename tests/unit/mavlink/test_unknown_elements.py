@@ -13,9 +13,8 @@ from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
-    move,
     photo,
     program,
     robot_program,
@@ -23,7 +22,6 @@ from mmrs_core.testing.programs import (
     target_input,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 STRANGE = replace(photo(), metaclasses=(("urn:x:1.0", "Sing"), (BEHAVIOUR, "Action")))
 SPIRAL = replace(go_to("a", (0.0, 9.0, 20.0)), metaclasses=(("urn:x:1.0", "Spiral"), (BEHAVIOUR, "GoTo")))
 

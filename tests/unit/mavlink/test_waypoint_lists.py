@@ -15,7 +15,7 @@ from mmrs_core.mavlink.plans.qgc import QGC_PLAN
 from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.scene import Device, Frame
 from mmrs_core.testing.programs import (
-    MULTICOPTER,
+    LAND,
     go_to,
     move,
     photo,
@@ -27,7 +27,6 @@ from mmrs_core.testing.programs import (
     two_drones,
 )
 
-LAND = move("down", "Land", uri=MULTICOPTER)
 FLIGHT = (
     take_off("up", 20.0),
     replace(go_to("a", (-40.0, 30.0, 25.5)), after=(photo(),)),
