@@ -80,13 +80,17 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
     from mmrs_core.flight.injection import injections
     from mmrs_core.flight.links.ports import address_of, split_system
 
-    for text in links.values():
+    _refuse_options(wishes.options)
+    reached: dict[tuple[str, int], str] = {}
+    for robot, text in links.items():
         try:
-            url, _ = split_system(text)
+            url, system = split_system(text)
             if address_of(url) is None and not _SERIAL.match(url):
                 raise ValueError(f"{url}: is neither udpin:, udpout: or tcp:HOST:PORT nor a serial device")
         except ValueError as error:
             raise typer.BadParameter(f"--connect {error}") from error
+        if system and (other := reached.setdefault((url, system), robot)) != robot:
+            raise typer.BadParameter(f"--connect {text}: is given to '{other}' and to '{robot}'")
     if inject := wishes.options.get("inject"):
         try:
             injections([inject], {robot: links.get(robot, "") for robot in robots})
@@ -94,11 +98,21 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
             raise typer.BadParameter(f"--inject {error}") from error
 
 
+def _refuse_options(given: Mapping[str, str]) -> None:
+    from mmrs_core.errors import UnsupportedError
+    from mmrs_core.mavlink.backend_options import link_options
+
+    try:
+        link_options(given)
+    except UnsupportedError as error:
+        raise typer.BadParameter(f"--backend-option {error}") from error
+
+
 def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
     """Return the links of these robots as far as they were given.
 
     Raises:
-        typer.BadParameter: if it is not clear whose one of them is.
+        typer.BadParameter: if it is not clear whose one of them is, or one robot has two.
     """
     links: dict[str, str] = {}
     for text in given:
@@ -107,5 +121,8 @@ def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
             raise typer.BadParameter(f"--connect {text}: which robot? say ROBOT={text}")
         if separator and robot not in robots:
             raise typer.BadParameter(f"--connect {text}: there is no robot '{robot}' here")
-        links[robot if separator else robots[0]] = url if separator else text
+        name, reached = (robot, url) if separator else (robots[0], text)
+        if name in links:
+            raise typer.BadParameter(f"--connect {text}: '{name}' is reached by {links[name]} already")
+        links[name] = reached
     return links

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -116,15 +117,24 @@ def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     add("--run", help=f"identifier of this run, in the logs; default {FIRST_RUN}")
     add("--resume", action="store_true", help="go on where the logs in --log end, as with a new battery")
     add("--dry-run", action="store_true", help="no link: go through the program with a vehicle made up")
-    add("--speedup", type=float, default=None, help="how much faster than real time the vehicles run")
+    add("--speedup", type=_positive, default=None, help="how much faster than real time the vehicles run")
     add("--on-stop", choices=("hold", "return", "land"), default="hold", help="what to do when interrupted")
-    add("--battery-patience", type=float, default=0.0, metavar="SECONDS", help=_PATIENCE)
+    add("--battery-patience", type=_not_negative, default=0.0, metavar="SECONDS", help=_PATIENCE)
     add("--no-fence", action="store_true", help="do not upload the fence")
-    add("--acceptance", type=float, help="metres from a place that count as there; else by the travel mode")
-    add("--home-tolerance", type=float, default=20.0, help="metres a vehicle may be from its home at first")
+    add(
+        "--acceptance",
+        type=_positive,
+        help="metres from a place that count as there; else by the travel mode",
+    )
+    add(
+        "--home-tolerance",
+        type=_positive,
+        default=20.0,
+        help="metres a vehicle may be from its home at first",
+    )
     add("--inject", action="append", default=[], metavar="FAULTS", help=HELP)
     add("--sync", action="store_true", help="begin at one instant, when all robots of the mission are ready")
-    add("--sync-patience", type=float, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
+    add("--sync-patience", type=_positive, default=PATIENCE, metavar="SECONDS", help=_SYNC_PATIENCE)
     add("--bus", action="store_true", help="keep slots with robots in other processes, by Zenoh")
     add("--bus-listen", action="append", default=[], metavar="ENDPOINT", help="such as tcp/0.0.0.0:7447")
     add("--bus-connect", action="append", default=[], metavar="ENDPOINT", help="such as tcp/10.0.0.2:7447")
@@ -145,8 +155,6 @@ def options_of(
     given = parser.parse_args(arguments)
     run, start = _run(parser, robots, given)
     speedup = given.speedup or (DRY_SPEEDUP if given.dry_run else 1.0)
-    if speedup <= 0:
-        parser.error("--speedup must be positive")
     reach = _reach(parser, robots, given)
     return Options(
         log=given.log,
@@ -160,7 +168,7 @@ def options_of(
         tolerances=Tolerances(given.acceptance, given.home_tolerance),
         reach=reach,
         bus=_bus(given),
-        sync=_sync(parser, given),
+        sync=given.sync_patience if given.sync else None,
         inject=_inject(parser, reach, given),
     )
 
@@ -174,6 +182,32 @@ _PATIENCE = (
 )
 
 
+def _positive(text: str) -> float:
+    """Return a number above 0, which is not infinite either."""
+    if not 0.0 < (number := _number(text)) < inf:
+        raise argparse.ArgumentTypeError(f"{text}: is no positive number")
+    return number
+
+
+def _not_negative(text: str) -> float:
+    if not (number := _number(text)) >= 0.0:
+        raise argparse.ArgumentTypeError(f"{text}: is no number from 0 on")
+    return number
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: is no whole number from 1 on")
+    return int(text)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text}: is no number") from None
+
+
 def _add_reach(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
@@ -185,10 +219,12 @@ def _add_reach(parser: argparse.ArgumentParser) -> None:
         " system, without which it is whichever speaks first; robots may share a URL;"
         f" default udpin:127.0.0.1:{FIRST_PORT} for the first robot, {PORT_STEP} more for each further one",
     )
-    add("--patience", type=float, default=30.0, help="real seconds to wait for a vehicle's first sign")
-    add("--tries", type=int, default=TRIES, help="how often to send at most what a vehicle does not answer")
-    add("--answer-seconds", type=float, default=ANSWER_SECONDS, help="to wait for an answer each time")
-    add("--item-seconds", type=float, default=ITEM_SECONDS, help="to wait for an item of a mission")
+    add("--patience", type=_positive, default=30.0, help="real seconds to wait for a vehicle's first sign")
+    add(
+        "--tries", type=_count, default=TRIES, help="how often to send at most what a vehicle does not answer"
+    )
+    add("--answer-seconds", type=_positive, default=ANSWER_SECONDS, help="to wait for an answer each time")
+    add("--item-seconds", type=_positive, default=ITEM_SECONDS, help="to wait for an item of a mission")
     add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
 
 
@@ -212,10 +248,6 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
 
 
 def _reach(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> Reach:
-    if given.tries < 1:
-        parser.error("--tries must be at least 1")
-    if min(given.answer_seconds, given.item_seconds) <= 0:
-        parser.error("--answer-seconds and --item-seconds must be positive")
     links, signer = _links(parser, robots, given.connect), _signer(parser, given.signing_key)
     return Reach(
         {robot: url for robot, (url, _) in links.items()},
@@ -233,13 +265,18 @@ def _links(
         robot.id: (f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * index}", 0)
         for index, robot in enumerate(robots)
     }
+    given: dict[str, str] = {}
     for text in texts:
         robot, separator, reached = text.rpartition("=")
         if separator and robot not in links:
             parser.error(f"--connect {text}: there is no robot {robot!a}")
         if not separator and len(robots) > 1:
             parser.error(f"--connect {text}: which robot? say ROBOT={text}")
-        links[robot or robots[0].id] = _link(parser, reached)
+        name = robot or robots[0].id
+        if name in given:
+            parser.error(f"--connect {text}: {name!a} is reached by {given[name]} already")
+        given[name] = reached
+        links[name] = _link(parser, reached)
     taken = [each for each in links.values() if each[1]]
     for url, system in taken:
         if taken.count((url, system)) > 1:
@@ -271,12 +308,6 @@ def _inject(parser: argparse.ArgumentParser, reach: Reach, given: Any) -> Inject
         return injections(given.inject, reach.urls, dry=given.dry_run, alone=alone)
     except ValueError as error:
         parser.error(f"--inject {error}")
-
-
-def _sync(parser: argparse.ArgumentParser, given: Any) -> float | None:
-    if given.sync_patience <= 0:
-        parser.error("--sync-patience must be positive")
-    return float(given.sync_patience) if given.sync else None
 
 
 def _bus(given: Any) -> Bus:

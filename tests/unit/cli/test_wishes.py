@@ -1,0 +1,36 @@
+"""The command line of ``mmrs run``: what makes no sense is wrong usage."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import typer
+
+from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of
+
+LINK = "udpin:127.0.0.1:14550"
+
+
+@pytest.mark.parametrize(
+    "options", [{"tries": "x"}, {"nosuch": "1"}, {"fence": "maybe"}, {"home-tolerance": "nan"}]
+)
+def test_an_option_of_the_backend_that_makes_no_sense_is_wrong_usage(options):
+    (name,) = options
+    with pytest.raises(typer.BadParameter, match=f"--backend-option option '{name}'"):
+        check_mavlink(Wishes(Path("logs"), options=options), {}, ("alpha",))
+
+
+def test_two_robots_with_one_system_at_one_link_are_wrong_usage():
+    links = {"alpha": f"{LINK}@3", "beta": f"{LINK}@3"}
+    with pytest.raises(typer.BadParameter, match="is given to 'alpha' and to 'beta'"):
+        check_mavlink(Wishes(Path("logs")), links, ("alpha", "beta"))
+
+
+def test_two_robots_may_share_a_link():
+    check_mavlink(Wishes(Path("logs")), {"alpha": f"{LINK}@3", "beta": f"{LINK}@4"}, ("alpha", "beta"))
+
+
+def test_one_robot_has_one_link():
+    with pytest.raises(typer.BadParameter, match=r"'alpha' is reached by udpin:.* already"):
+        links_of((f"alpha={LINK}", "alpha=udpin:127.0.0.1:14560"), ("alpha", "beta"))

@@ -1,0 +1,62 @@
+"""The command line of controllers: what makes no sense is refused before anything moves."""
+
+from __future__ import annotations
+
+import pytest
+from flight_crew import robot_of
+
+from mmrs_core.flight.options import options_of, parser_for
+
+
+@pytest.fixture
+def asked(tmp_path):
+    """Return the options that a command line of two robots asks for."""
+
+    def ask(*arguments: str):
+        robots = [robot_of(id=id) for id in ("alpha", "beta")]
+        return options_of(parser_for(robots), robots, ["--log", str(tmp_path), *arguments])
+
+    return ask
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        "--home-tolerance",
+        "--acceptance",
+        "--speedup",
+        "--patience",
+        "--answer-seconds",
+        "--item-seconds",
+        "--sync-patience",
+    ],
+)
+@pytest.mark.parametrize("value", ["nan", "inf", "-1", "0", "near"])
+def test_a_length_or_time_that_is_none_is_refused(asked, capsys, option, value):
+    with pytest.raises(SystemExit) as exit:
+        asked(f"{option}={value}")
+    assert exit.value.code == 2
+    assert f"argument {option}: {value}: is no" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("--tries", "0"), ("--tries", "1.5"), ("--battery-patience", "nan")]
+)
+def test_a_number_that_is_none_is_refused(asked, capsys, option, value):
+    with pytest.raises(SystemExit) as exit:
+        asked(option, value)
+    assert exit.value.code == 2
+    assert f"argument {option}: {value}: is no" in capsys.readouterr().err
+
+
+def test_nobody_needs_to_wait_for_a_battery(asked):
+    assert asked("--battery-patience", "0").battery_patience == 0.0
+
+
+def test_one_robot_has_one_link(asked, capsys):
+    first, second = ("alpha=udpin:127.0.0.1:14550", "alpha=udpin:127.0.0.1:14560")
+    with pytest.raises(SystemExit):
+        asked("--connect", first, "--connect", second)
+    assert (
+        f"--connect {second}: 'alpha' is reached by udpin:127.0.0.1:14550 already" in capsys.readouterr().err
+    )
