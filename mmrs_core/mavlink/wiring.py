@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from math import isfinite
+from math import inf
 
 from mmrs_core.behaviour.program import Action
 from mmrs_core.contributions.wiring import DeviceWiring, Sampled, Unwired, Wired, Wiring, Wirings
+from mmrs_core.errors import PluginError
 from mmrs_core.mavlink import payloads
 from mmrs_core.mavlink.words import number_in, said, unsaid
 from mmrs_core.scene import Device, RobotType
@@ -17,6 +18,10 @@ __all__ = ["Sampled", "Unwired", "Wired", "wiring_of"]
 
 IMAGE_START_CAPTURE, DIGICAM_CONTROL, SET_SERVO, SET_RELAY, GRIPPER = 2000, 203, 183, 181, 211
 REPEAT_RELAY = 182
+LAST_COMMAND = 65_535
+LARGEST = 3.4028234e38
+"""Commands are 16 bits wide, parameters are numbers of single precision."""
+
 LONGEST_VALUE_NAME = 10
 MOST_PARAMETERS = 7
 
@@ -28,6 +33,9 @@ def wiring_of(action: Action, type: RobotType | None, wirings: Wirings | None = 
         action: of a device.
         type: None where it was not given.
         wirings: those of plug-ins, beside the core's own.
+
+    Raises:
+        PluginError: a plug-in's wiring returns something else.
     """
     if type is None:
         return Unwired("the robot's type is not given")
@@ -42,7 +50,7 @@ def _chosen(action: Action, device: Device, wirings: Wirings) -> Wiring:
     present = [each for name, each in sorted(wirings.items()) if name in device.properties]
     special = [each for name, each in sorted(wirings.items()) if f"{name}.{action.name}" in device.properties]
     for some in (special, present):
-        found = [(each, wiring) for each in some if (wiring := each.wire(action, device)) is not None]
+        found = [(each, wiring) for each in some if (wiring := _wired(each, action, device)) is not None]
         if len(found) > 1:
             names = " and ".join(each.property for each, _ in found)
             return Unwired(f"device {device.id!r}: {action.name!r} is wired by {names}, which is ambiguous")
@@ -54,19 +62,64 @@ def _chosen(action: Action, device: Device, wirings: Wirings) -> Wiring:
     return Unwired(f"device {device.id!r} has no property that says how it is wired, such as mavlink.camera")
 
 
+def _wired(each: DeviceWiring, action: Action, device: Device) -> Wiring | None:
+    found: object = each.wire(action, device)
+    if found is None or _is_wiring(found):
+        return found  # type: ignore[return-value]
+    blamed = getattr(each.wire, "blamed", f"wiring '{each.property}'")
+    raise PluginError(f"{blamed}: returns {found!r} for action '{action.name}', which is no wiring")
+
+
+def _is_wiring(found: object) -> bool:
+    """Return whether something is a wiring, with values of the types that it promises."""
+    if isinstance(found, Unwired):
+        return isinstance(found.reason, str)
+    if not (isinstance(found, Wired | Sampled) and (found.seconds is None or _is_number(found.seconds))):
+        return False
+    if isinstance(found, Sampled):
+        return isinstance(found.value, str)
+    pairs = [(found.command, found.params)]
+    try:
+        pairs += [(command, params) for command, params in found.more]
+        return all(type(command) is int and all(map(_is_number, params)) for command, params in pairs)
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def _finished(wiring: Wiring, action: Action, device: Device) -> Wiring:
     """Return a wiring with its seconds, if its numbers are such as vehicles take."""
     if isinstance(wiring, Unwired):
         return wiring
-    for _, params in _commands(wiring):
-        if len(params) > MOST_PARAMETERS:
-            return Unwired(f"device {device.id!r}: {action.name!r} has more than seven parameters")
-        if not all(map(isfinite, params)):
-            return Unwired(f"device {device.id!r}: {action.name!r} has a parameter that is not finite")
+    if why := _unfit(wiring):
+        return Unwired(f"device {device.id!r}: {action.name!r} {why}")
     if wiring.seconds is not None:
         return wiring
     known = device.actions.get(action.name)
     return replace(wiring, seconds=known.duration if known else 0.0)
+
+
+def _unfit(wiring: Wired | Sampled) -> str:
+    """Return why a wiring cannot be sent to any vehicle; empty where it can."""
+    if wiring.seconds is not None and not 0.0 <= wiring.seconds < inf:
+        return f"takes {wiring.seconds:g} s, which is no time"
+    if isinstance(wiring, Sampled) and not _is_value_name(wiring.value):
+        return f"reads {wiring.value!r}, and names of values are one to ten ASCII characters"
+    for command, params in _commands(wiring):
+        if not 0 <= command <= LAST_COMMAND:
+            return f"is command {command}, and MAVLink's are 0 to {LAST_COMMAND}"
+        if len(params) > MOST_PARAMETERS:
+            return "has more than seven parameters"
+        if not all(abs(param) <= LARGEST for param in params):
+            return "has a parameter that is no number of single precision"
+    return ""
+
+
+def _is_value_name(name: str) -> bool:
+    return name.isascii() and name.isprintable() and 0 < len(name) <= LONGEST_VALUE_NAME
 
 
 def _commands(wiring: Wired | Sampled) -> Iterator[tuple[int, tuple[float, ...]]]:
@@ -88,7 +141,7 @@ def _explicit(action: Action, device: Device) -> Wiring | None:
 
 def _sampled(action: Action, device: Device) -> Wiring | None:
     name = device.properties.get("mavlink.value", "")
-    if not (name.isascii() and name.isprintable() and 0 < len(name) <= LONGEST_VALUE_NAME):
+    if not _is_value_name(name):
         return Unwired(f"device {device.id!r}: mavlink.value is not one to ten ASCII characters")
     return Sampled(name)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.contributions.wiring import DeviceWiring, Sampled, Unwired, Wired
+from mmrs_core.errors import PluginError
 from mmrs_core.mavlink.wiring import wiring_of
 from mmrs_core.scene import Device, DeviceAction
 from mmrs_core.testing.programs import photo, quad
@@ -181,6 +182,51 @@ def test_an_action_that_no_wiring_of_the_device_knows_is_not_wired():
     device = Device("d", {}, {"kites.reel": "9"})
     found = wiring_of(photo("d", "push"), replace(quad(), devices={"d": device}), REEL)
     assert found == Unwired("device 'd': kites.reel does not say what 'push' is")
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ("70000 1", "is command 70000, and MAVLink's are 0 to 65535"),
+        ("-5 1", "is command -5"),
+        ("183 1e300", "no number of single precision"),
+        ("183 nan", "no number of single precision"),
+    ],
+)
+def test_a_command_whose_numbers_no_frame_holds_is_not_wired(words, why):
+    found = wired("ping", **{"mavlink.command.ping": words})
+    assert isinstance(found, Unwired)
+    assert why in found.reason
+
+
+@pytest.mark.parametrize(
+    "found",
+    [
+        "photo",
+        (183, (1.0,)),
+        Wired("x", (1.0,)),
+        Wired(183, ("1",)),
+        Wired(183, 1.0),
+        Wired(183, (), more=(184,)),
+        Wired(183, (), seconds="1"),
+        Sampled(5),
+    ],
+)
+def test_a_plugin_that_returns_no_wiring_is_named(found):
+    wirings = {"k.reel": DeviceWiring("k.reel", "wrong", lambda action, device: found)}
+    device = Device("d", {}, {"k.reel": ""})
+    with pytest.raises(PluginError, match=r"k.reel.*returns .* for action 'takePhoto', which is no wiring"):
+        wiring_of(photo("d"), replace(quad(), devices={"d": device}), wirings)
+
+
+@pytest.mark.parametrize(
+    "found",
+    [Wired(70_000, ()), Wired(183, (), more=((-1, ()),)), Wired(183, (), -1.0), Sampled("too long name")],
+)
+def test_a_plugins_wiring_that_no_vehicle_takes_is_not_wired(found):
+    wirings = {"k": DeviceWiring("k", "wrong", lambda action, device: found)}
+    device = Device("d", {}, {"k": ""})
+    assert isinstance(wiring_of(photo("d"), replace(quad(), devices={"d": device}), wirings), Unwired)
 
 
 @pytest.mark.parametrize("params", [(float("nan"),), (float("inf"),), (0.0,) * 8])
