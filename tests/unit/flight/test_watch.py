@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from flight_crew import SPEEDUP, robot_of
+from flight_crew import SPEEDUP, in_background, robot_of
 from patience import until
 
 from mmrs_core.flight.clock import Clock
@@ -88,6 +88,22 @@ def test_a_landing_that_the_vehicle_began_by_itself_is_told_with_its_cause(in_th
     until(lambda: made.mode == "land")
     assert made.caught().event == "POSITION_LOST"
     assert not made.crew.watch.taken
+
+
+def test_a_cause_that_is_told_after_the_change_of_mode_is_waited_for(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
+    made.simulated.faults.take_stick("land")
+    until(lambda: made.crew.vehicle.state().mode == "land")
+    caught = in_background(made.caught)
+    until(lambda: made.crew.watch.looking)
+    made.simulated.faults.lose_position()
+    assert caught.result(20.0).event == "POSITION_LOST"
+
+
+def test_a_landing_for_which_no_cause_is_told_is_a_pilots(in_the_air):
+    made = in_the_air()
+    made.simulated.faults.take_stick("land")
+    assert made.caught().event == "TAKEN_OVER"
 
 
 def test_seconds_without_a_position_count_only_as_long_as_they_last(in_the_air):
