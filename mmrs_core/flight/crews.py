@@ -14,6 +14,7 @@ from .vehicles.vehicle import State
 WAITS = "waits for its vehicle"
 WORKS = "works"
 SUSPENDED = "waits for its battery"
+LOST = "has ended by a lost link"
 ENDED = "has ended"
 
 
@@ -49,6 +50,10 @@ class Crews:
     def suspend(self, robot: str) -> None:
         """Have a robot wait for its battery."""
         self._enter(robot, SUSPENDED)
+
+    def lose(self, robot: str) -> None:
+        """Have a robot that is out of reach wait for orders, without counting as one that works."""
+        self._enter(robot, LOST)
 
     def dismiss(self, robot: str) -> None:
         """Have a robot work no more; whatever it is told is refused."""

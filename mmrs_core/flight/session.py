@@ -21,6 +21,7 @@ from .links.link import Link
 from .links.radios import Radios
 from .options import Options
 from .orders.obedience import Obedience, Ordered
+from .orders.orders import RESUME, RETURN
 from .program import Geographic, Robot
 from .records.blackbox import BlackBox, black_box_path
 from .records.log import Log
@@ -28,7 +29,8 @@ from .records.recording import Recording
 from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
-from .steps.ending import CODES, FAILED, OK, Crew, Ending
+from .steps.ending import CODES, FAILED, HEARD_SECONDS, LEAST_HEARD_SECONDS, OK, Crew, Ending
+from .steps.obeying import astray
 from .steps.pilot import Pilot
 from .steps.resuming import progress_of
 from .steps.watch import Watch
@@ -71,7 +73,10 @@ def run_robot(robot: Robot, shared: Shared) -> int:
             return code
     except Ordered as order:
         shared.slots.leave(robot.id)
-        order.receipt.confirm("there was no vehicle yet")
+        if shared.options.resume:
+            order.receipt.refuse("its vehicle was not heard, and was told nothing")
+        else:
+            order.receipt.confirm("there was no vehicle yet")
         say(f"{robot.id!a}: {order}")
         return CODES[order.event]
     except Fault as fault:
@@ -94,11 +99,12 @@ class Session:
         Returns:
             The exit code, and whether the program is over: one that is only suspended is not.
         """
-        crew = self._crew
+        crew, down = self._crew, False
         while True:
-            ending = Ending(crew, lambda: self._shared.slots.leave(crew.robot.id))
+            ending = Ending(crew, lambda: self._shared.slots.leave(crew.robot.id), self._lose, down=down)
             code = self._carry_out(ending)
-            if not (ending.suspended and ending.down) or not self._goes_on(ending.where):
+            down = ending.suspended and ending.down
+            if not down or not self._goes_on():
                 break
         if crew.link is not None and crew.link.dropped:
             crew.desk.box.write("counted", frames=crew.link.dropped)
@@ -119,18 +125,26 @@ class Session:
         self._crew.say("done")
         return OK
 
-    def _goes_on(self, where: str) -> bool:
+    def _lose(self) -> bool:
+        """Have it known that the robot's link is lost; return whether others still work."""
+        self._shared.crews.lose(self._crew.robot.id)
+        return self._shared.crews.others_work(self._crew.robot.id)
+
+    def _goes_on(self) -> bool:
         """Return whether the robot, which came down for its battery, was told to go on; if so, let it."""
         crew, shared = self._crew, self._shared
         crew.watch.silence, crew.obedience.hands_off = True, True
         crew.watch.let_go()
         shared.crews.suspend(crew.robot.id)
         patience = time.monotonic() + shared.options.battery_patience
-        crew.say(f"came {where} for its battery: change it, then order resume, or start again with --resume")
+        away = self._astray()
+        where = f"down for its battery, {away}: carry it home" if away else "home for its battery"
+        crew.say(f"came {where}; change it, then order resume, or start again with --resume")
         while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
             try:
-                if crew.obedience.awaits_resume(crew.pilot.lacks_energy):
+                if (resumed := crew.obedience.awaits_resume(self._hindrance)) is not None:
                     crew.obedience.hands_off = False
+                    crew.obedience.expect(resumed, lambda: crew.vehicle.state().armed)
                     crew.watch.tighten()
                     shared.crews.engage(crew.robot.id)
                     return True
@@ -140,6 +154,20 @@ class Session:
             if shared.stop.wait(GLANCE_SECONDS):
                 return False
         return False
+
+    def _hindrance(self, order: str) -> str:
+        """Return what keeps a robot that came down for its battery from obeying; empty: nothing does."""
+        if order not in (RESUME, RETURN):
+            return ""
+        crew, clock = self._crew, self._shared.options.clock
+        if crew.link is not None and crew.link.silent_for() > clock.patience(
+            HEARD_SECONDS, LEAST_HEARD_SECONDS
+        ):
+            return "its vehicle is not heard"
+        return self._astray() or (crew.pilot.lacks_energy() if order == RESUME else "")
+
+    def _astray(self) -> str:
+        return astray(self._crew.robot, self._crew.vehicle, self._shared.options.tolerances.home)
 
 
 def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
@@ -170,6 +198,8 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch = Watch(robot, options.clock, shared.stop)
     obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!a}: {line}"))
 
+    stack.callback(obedience.close, "its program has ended")
+
     def guard() -> None:
         watch.check()
         if not watch.looking:
@@ -188,12 +218,11 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         say=say,
         questions=shared.crews.questions[robot.id],
         meet=_meeting(robot, shared),
-        recognise=_recognition(robot, options, link, vehicle),
+        recognise=_recognition(robot, options, link, vehicle, obedience),
         abandon=shared.abandon,
         dry=options.dry,
     )
     box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), link))
-    obedience.begin(vehicle)
     if link is not None and isinstance(vehicle, MavlinkVehicle):
         watch.begin(link, vehicle)
         geographic = isinstance(robot.home, Geographic)
@@ -218,14 +247,17 @@ def _meeting(robot: Robot, shared: Shared) -> Meet | None:
 
 
 def _recognition(
-    robot: Robot, options: Options, link: Link | None, vehicle: Vehicle
+    robot: Robot, options: Options, link: Link | None, vehicle: Vehicle, obedience: Obedience
 ) -> Callable[[bool], None]:
+    """Return what makes sure that the vehicle is the robot's, before anybody may tell it anything."""
     system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
 
     def look(under_way: bool) -> None:
+        obedience.begin(None)
         if link is not None and isinstance(vehicle, MavlinkVehicle):
             near = inf if under_way and vehicle.state().armed else options.tolerances.home
             recognise(link, vehicle, robot, near, under_way=under_way, system=system)
+        obedience.begin(vehicle)
 
     return look
 

@@ -63,14 +63,20 @@ class Obedience:
         self._stop = stop
         self._say = say
         self._vehicle: Vehicle | None = None
+        self._early: list[Receipt] = []
         self._pending: Receipt | None = None
         self._obeyed: Callable[[], bool] = lambda: False
         self._held = False
         self._moving = False
 
-    def begin(self, vehicle: Vehicle) -> None:
-        """Obey with a vehicle."""
+    def begin(self, vehicle: Vehicle | None) -> None:
+        """Obey with a vehicle; None: there is none that may be told anything."""
         self._vehicle = vehicle
+
+    @property
+    def has_vehicle(self) -> bool:
+        """Return whether there is a vehicle that may be told something."""
+        return self._vehicle is not None
 
     def check(self) -> None:
         """Obey what was ordered since.
@@ -82,6 +88,9 @@ class Obedience:
         self._confirm_what_is_seen()
         if self._held or self.hands_off:
             return
+        if self._early and self._vehicle is not None:
+            early, self._early = self._early, []
+            self._hold(*early)
         if (receipt := self._inbox.take()) is not None:
             self._obey(receipt)
 
@@ -107,29 +116,33 @@ class Obedience:
         elif pending is not None:
             pending.confirm()
 
-    def awaits_resume(self, why_not: Callable[[], str]) -> bool:
-        """Return whether the robot is to go on, having looked into the inbox once.
+    def awaits_resume(self, why_not: Callable[[str], str]) -> Receipt | None:
+        """Return the order by which a robot on the ground is to go on, having looked into the inbox once.
 
         Args:
-            why_not: tells what still keeps it from going on; empty where nothing does.
+            why_not: tells what still keeps it from what was ordered; empty where nothing does.
 
         Raises:
-            Ordered: the program is to end.
+            Ordered: nobody is to wait for it any longer.
         """
         receipt = self._inbox.take()
         if receipt is None:
-            return False
+            return None
         name = receipt.order.name
-        if name == RESUME and (why := why_not()):
-            receipt.refuse(why)
-            return False
-        if name == RESUME:
-            receipt.confirm()
-            return True
         if name == STOP:
             raise Ordered(receipt)
-        receipt.confirm("it stands on the ground")
-        return False
+        if why := why_not(name):
+            receipt.refuse(why)
+        elif name == RESUME:
+            return receipt
+        else:
+            receipt.confirm("it stands on the ground")
+        return None
+
+    def close(self, why: str) -> None:
+        """Refuse what was taken and will not be obeyed any more."""
+        self.settle(why)
+        self._forget_early(why)
 
     def refuse_all(self, why: str) -> None:
         """Refuse what was ordered since."""
@@ -145,16 +158,24 @@ class Obedience:
         if name == HOLD:
             self._hold(receipt)
         elif name != RESUME:
+            self._forget_early("something else was ordered since")
             raise Ordered(receipt)
-        elif self._over:
-            receipt.refuse("its program has ended")
+        elif self._early:
+            self._forget_early("it is to go on")
+            receipt.confirm("it goes on once there is a vehicle")
         else:
-            receipt.confirm("it was not held")
+            receipt.refuse("its program has ended" if self._over else "it is not held")
 
-    def _hold(self, receipt: Receipt) -> None:
+    def _forget_early(self, why: str) -> None:
+        while self._early:
+            self._early.pop().refuse(why)
+
+    def _hold(self, receipt: Receipt, *others: Receipt) -> None:
+        """Halt until something else is ordered; without a vehicle, as soon as there is one."""
         vehicle = self._vehicle
         if vehicle is None:
-            receipt.confirm("there is no vehicle yet")
+            self._say("will hold as soon as there is a vehicle")
+            self._early.append(receipt)
             return
         self._held, moving = True, self._moving
         try:
@@ -162,16 +183,20 @@ class Obedience:
             self.expect(receipt, lambda: evidence.in_mode(OBEYED_IN[HOLD]))
             vehicle.hold()
             self.settle()
+            for other in others:
+                other.confirm()
             if self._over:
                 return
             self._say("is held; waits for an order")
-            resumed = self._await_resume(vehicle)
+            self.expect(self._await_resume(vehicle), lambda: False)
             vehicle.carry_on()
-            resumed.confirm()
+            self.settle()
             self._say("goes on")
         finally:
             self._held = False
             self.settle("something else has happened")
+            for other in others:
+                other.refuse("something else has happened")
         if moving:
             raise Again
 

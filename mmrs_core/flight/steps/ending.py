@@ -24,13 +24,18 @@ from ..orders.obedience import Obedience, Ordered
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .energy import COMES_DOWN
-from .obeying import obeying
+from .obeying import obeying, undone
 from .pilot import Pilot
-from .responses import HOLD, NOTHING, RETURN, respond, response_to
+from .responses import HOLD, NOTHING, respond, response_to
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
+GLANCE_SECONDS = 0.1
+LISTEN_SECONDS, LEAST_LISTEN_SECONDS = 30.0, 2.0
+"""How long a vehicle is listened for whose link is lost, of the run and real, when nobody else works."""
+
+HEARD_SECONDS, LEAST_HEARD_SECONDS = 3.0, 1.0
 KEPT_UP = (
     "is not ours: heartbeats go on until its motors are off; interrupted again, they end, and the vehicle"
     " does what it does about a lost link, whoever has it"
@@ -68,17 +73,30 @@ class Ending:
 
     Attributes:
         suspended: whether the program may go on when the battery has been changed.
-        where: for people, ``home`` or ``down``, when it is there.
         down: whether what was to be done is done, so that the battery can be changed.
     """
 
-    def __init__(self, crew: Crew, leave: Callable[[], None]) -> None:
-        """End nothing yet; `leave` tells the others that the robot sets no more slots."""
+    def __init__(
+        self,
+        crew: Crew,
+        leave: Callable[[], None],
+        lose: Callable[[], bool] = lambda: False,
+        *,
+        down: bool = False,
+    ) -> None:
+        """End nothing yet.
+
+        Args:
+            crew: whose program it is.
+            leave: tells the others that the robot sets no more slots.
+            lose: tells that its link is lost; returns whether other robots of the process still work.
+            down: whether it came down for its battery before, and may wait for what it lacks.
+        """
         self.suspended = False
-        self.down = False
-        self.where = ""
+        self.down = down
         self._crew = crew
         self._leave = leave
+        self._lose = lose
         self._handled: set[str] = set()
 
     def end(self, fault: Fault) -> int:
@@ -88,14 +106,19 @@ class Ending:
         self._tell(fault, response)
         if not self.suspended:
             self._log(fault)
+        crew.obedience.settle(str(fault))
+        self.down = False
         first = fault
         while True:
             try:
                 self._carry_out(fault, response)
                 break
             except Fault as other:
+                crew.obedience.settle(str(other))
                 if isinstance(other, Ordered):
                     first = other if self.suspended else first
+                elif other.event == LINK_LOST:
+                    self._tell_undone(other, response)
                 elif other.event not in OVERTAKES or other.event in self._handled:
                     return self._give_up(other, response)
                 fault, response = other, self._response_to(other)
@@ -103,9 +126,9 @@ class Ending:
                 if self.suspended and fault.event != BATTERY_LOW:
                     self.suspended = False
                     self._log(fault)
-        self.down, self.where = True, "home" if response == RETURN else "down"
+        self.down = True
         crew.say("stopped" if first.event == STOPPED else "ended early")
-        return CODES.get(first.event, FAILED)
+        return LINK if LINK_LOST in self._handled else CODES.get(first.event, FAILED)
 
     def refuse(self, fault: Strange | Alone) -> int:
         """Leave a vehicle alone that is not the robot's, or robots that have not come; return the exit code.
@@ -113,6 +136,10 @@ class Ending:
         A log that others will go on with, or which can still begin, is left as it is.
         """
         self._tell(fault, NOTHING)
+        self._crew.obedience.settle(str(fault))
+        if self.down:
+            self.suspended = True
+            return FAILED
         waits = isinstance(fault, Alone)
         self.suspended = waits or bool(self._crew.desk.log.steps)
         if not self.suspended:
@@ -125,7 +152,11 @@ class Ending:
         self._handled.add(fault.event)
         crew.watch.relax(self._handled, response)
         crew.obedience.ended = not self.suspended
+        if not crew.obedience.has_vehicle:
+            self._leave_untouched(fault)
+            return
         if fault.event == LINK_LOST:
+            self._await_link()
             return
         if response == NOTHING:
             self._stand_back()
@@ -135,7 +166,7 @@ class Ending:
             seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
             crew.obedience.expect(fault.receipt, seen)
         holds = respond(response, crew.robot, crew.vehicle, crew.pilot.track, crew.obedience.repeat)
-        crew.obedience.settle()
+        crew.obedience.settle(undone(response, crew.robot, crew.vehicle))
         crew.watch.moving = holds
         if holds and fault.event == STOPPED:
             self._leave_it_holding()
@@ -161,10 +192,57 @@ class Ending:
             self._crew.say(f"the fault is not in the log: {error}")
         self._leave()
 
+    def _leave_untouched(self, fault: Fault) -> None:
+        """End where no vehicle was known to be the robot's: none is told anything."""
+        self._crew.say("was told nothing: nobody knew yet whether the vehicle is the robot's")
+        if not isinstance(fault, Ordered):
+            return
+        if self._crew.desk.log.steps[:-1]:
+            fault.receipt.refuse("its vehicle was not known yet, and was told nothing")
+        else:
+            fault.receipt.confirm("nothing had begun")
+
+    def _await_link(self) -> None:
+        """Stay with a vehicle that is out of reach: once it is heard again, it can be given orders.
+
+        That lasts while others work, or for some time, and then until its motors are off.
+
+        Raises:
+            Fault: somebody has ordered something, or a pilot has taken it over.
+        """
+        crew, clock = self._crew, self._crew.desk.clock
+        if crew.link is None:
+            return
+        limit, told = clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS), False
+        until = clock.now() + limit
+        try:
+            while crew.link.listening and not crew.desk.stop.is_set():
+                heard = crew.link.silent_for() < clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
+                if heard and not told:
+                    crew.watch.accept()
+                    crew.say(f"is heard again, in mode {crew.vehicle.state().mode}: orders are obeyed")
+                elif not heard:
+                    crew.watch.lose()
+                    crew.obedience.refuse_all("its link is lost")
+                told, crew.obedience.hands_off = heard, not heard
+                until = clock.now() + limit if heard else until
+                others_work = self._lose()
+                over = clock.now() > until and not others_work
+                if over or (heard and not crew.vehicle.state().armed):
+                    return
+                crew.link.wait(lambda: None, clock.patience(0.0, GLANCE_SECONDS))
+        finally:
+            crew.obedience.hands_off = False
+            crew.watch.find()
+
+    def _tell_undone(self, fault: Fault, response: str) -> None:
+        why = f"{response} cannot be carried out: {fault}"
+        self._crew.pilot.journal.decide(fault.event, why, NOTHING)
+        self._crew.say(f"cannot carry out {response}: {fault}; take over by hand")
+
     def _give_up(self, fault: Fault, response: str) -> int:
         crew = self._crew
         crew.pilot.journal.decide(fault.event, f"{response} cannot be carried out: {fault}", NOTHING)
-        crew.obedience.settle(str(fault))
         if fault.event == TAKEN_OVER or self._acts_by_itself():
             crew.say(f"{fault}")
             self._stand_back()

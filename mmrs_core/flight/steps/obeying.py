@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import hypot
 
 from ..orders.obedience import OBEYED_IN
 from ..orders.orders import HOLD, LAND
+from ..places import offset
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .energy import COMES_DOWN
 from .ways import Track, way_back
 
 STOP_THRUST = "STOP_THRUST"
+RETURN = "RETURN"
+AT_HOME = 20.0
+"""Metres from home within which a robot has come home, as far as positions tell."""
 
 
 def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Callable[[], bool]:
@@ -31,3 +36,18 @@ def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Call
         wanted = OBEYED_IN[LAND if response in COMES_DOWN else HOLD]
         return lambda: evidence.in_mode(wanted)
     return lambda: evidence.bound_for(goal, robot.cruise)
+
+
+def undone(response: str, robot: Robot, vehicle: Vehicle) -> str:
+    """Return why a vehicle has not done what it was told to, although nothing is left to do; or nothing.
+
+    One whose motors are off elsewhere than at home does not return.
+    """
+    away = astray(robot, vehicle, AT_HOME)
+    return away if response == RETURN and not vehicle.state().armed else ""
+
+
+def astray(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
+    """Return that a vehicle on the ground is further than so many metres from home; empty where it is not."""
+    away = hypot(*offset(robot.home, vehicle.state().place)[:2])
+    return f"it stands {away:.0f} m from its home" if away > tolerance else ""

@@ -149,13 +149,14 @@ class Pilot:
         step = self._steps[self.journal.move]
         self._desk.say(f"{self._robot.id!a}: goes on with {step.move!a}")
         self.journal.decide("resume", f"its log ends at {step.move}", "goes the way it came")
-        if not self.track or self._is_down(step):
-            return
-        self._watch.moving = True
-        for place in self._way_to_work():
-            self._go(place, self._robot.cruise, None, through=False)
-        for action in still_on(self._robot, records):
-            self._doing.operate(action)
+        if self.track and not self._is_down(step):
+            self._watch.moving = True
+            for place in self._way_to_work():
+                self._go(place, self._robot.cruise, None, through=False)
+            for action in still_on(self._robot, records):
+                self._doing.operate(action)
+
+        self._obedience.settle()
 
     def lacks_energy(self) -> str:
         """Return why the battery is not to be flown with; empty where it is, or nobody knows."""

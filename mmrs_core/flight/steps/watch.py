@@ -118,6 +118,25 @@ class Watch:
         """Heed nothing but the link from now on: somebody else has the vehicle."""
         self._heeded, self._hands_off = frozenset(), True
 
+    def lose(self) -> None:
+        """Heed nothing at all: the vehicle is out of reach, and what it did last is known."""
+        self.silence = self._hands_off = True
+
+    def accept(self) -> None:
+        """Take a vehicle that was out of reach as it is, in whatever mode its own answer has put it.
+
+        Raises:
+            Fault: a pilot has it.
+        """
+        self.check_hands()
+        if self._vehicle is not None:
+            self._vehicle.accept_own_modes()
+        self._hands_off = False
+
+    def find(self) -> None:
+        """Heed the link, and who has the vehicle, again."""
+        self.silence = self._hands_off = False
+
     def tighten(self) -> None:
         """Heed everything again: the robot goes on with its program."""
         self._heeded, self._hands_off, self.silence = None, False, False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -105,6 +105,10 @@ class Helm:
     def let_go(self) -> None:
         """Accept whatever mode the vehicle goes into, as after landing."""
         self._mode, self._accepted = None, frozenset()
+
+    def accept(self, own: Collection[int]) -> None:
+        """Accept that the vehicle is in a mode by itself: one of these, or the present one."""
+        self._mode, self._accepted = None, frozenset({*own, self._telemetry.mode()})
 
     def check(self) -> None:
         """Make sure that nobody else has taken over.

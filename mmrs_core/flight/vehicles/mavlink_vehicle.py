@@ -283,6 +283,10 @@ class MavlinkVehicle:
         except Fault:
             self._helm.let_go()
 
+    def accept_own_modes(self) -> None:
+        """Accept, until it is told something, that it is in a mode into which it goes by itself."""
+        self._helm.accept(modes.of_failsafes(self._link, self._kind))
+
     def surface(self) -> None:
         """Come up to the water surface."""
         self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -12,7 +13,10 @@ from mmrs_core.flight.faults import Fault, Stopped, Strange
 from mmrs_core.flight.orders.obedience import Ordered
 from mmrs_core.flight.orders.orders import Order, Receipt
 from mmrs_core.flight.places import distance
-from mmrs_core.flight.program import Policy
+from mmrs_core.flight.program import Geographic, Policy
+
+FAR = Geographic(42.3710, 13.35, 0.0)
+"""111 metres north of home."""
 
 
 @pytest.fixture
@@ -54,7 +58,7 @@ def test_what_brings_a_robot_down_for_its_battery_is_no_fault_and_nobody_is_told
     made = robot()
     ending = made.ending()
     assert ending.end(Fault("BATTERY_LOW", "too little is left")) == 1
-    assert (ending.suspended, ending.down, ending.where) == (True, True, "home")
+    assert (ending.suspended, ending.down) == (True, True)
     assert made.events() == []
     assert made.left == 0
 
@@ -150,6 +154,103 @@ def test_a_link_that_is_lost_on_the_way_back_is_told_with_what_was_not_done(robo
     made.simulated.mute()
     assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 5
     assert any("cannot carry out RETURN: the vehicle has been silent" in line for line in made.said)
+
+
+@pytest.mark.parametrize("name", ["return", "land", "hold"])
+def test_a_robot_whose_link_comes_back_obeys_again(robot, name):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0), cruise=1.0)
+    made.simulated.mute()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.events() == ["LINK_LOST"])
+    early = made.inbox.give(Order("land"))
+    until(lambda: early.confirmed is not None)
+    assert (early.confirmed, early.why) == (False, "its link is lost")
+    made.simulated.unmute()
+    until(lambda: any("is heard again" in line for line in made.said))
+    later = made.inbox.give(Order(name))
+    until(lambda: later.confirmed is not None)
+    assert later.confirmed, later.why
+    if name == "hold":
+        assert made.mode == "brake"
+        assert not code.done()
+        made.inbox.give(Order("land"))
+    assert code.result(30.0) == 5
+    assert not made.simulated.autopilot.armed
+    assert (away(made, HOME) < 1.5) is (name == "return")
+
+
+def test_a_robot_whose_link_comes_back_is_listened_to_until_its_motors_are_off(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.crew.vehicle.answer_lost_link("RETURN", 5.0)
+    made.simulated.faults.cut_link()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.mode not in ("guided", "brake"))
+    made.simulated.faults.mend_link()
+    until(lambda: any("is heard again, in mode" in line for line in made.said))
+    assert code.result(30.0) == 5
+    assert not made.simulated.autopilot.armed
+    assert made.said[-1] == "'alpha': ended early"
+
+
+def test_a_pilot_who_takes_a_vehicle_while_nobody_hears_it_is_left_alone(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.simulated.mute()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.events() == ["LINK_LOST"])
+    made.simulated.faults.take_stick("loiter")
+    made.simulated.unmute()
+    until(lambda: any("hands off until its motors are off" in line for line in made.said))
+    order = made.inbox.give(Order("land"))
+    until(lambda: order.confirmed is not None)
+    assert (order.confirmed, order.why) == (False, "somebody else has the vehicle")
+    made.crew.desk.abandon.set()
+    assert code.result(20.0) != 0
+    assert made.mode == "loiter"
+
+
+def test_an_order_that_another_fault_overtakes_before_it_is_seen_is_not_confirmed(robot):
+    made = robot(Policy("POSITION_LOST", "LAND"), cruise=1.0)
+    fault, receipt = ordered(made, "return")
+    made.crew.vehicle.evidence = lambda: Unseen()
+    code = in_background(lambda: made.ending().end(fault))
+    until(lambda: made.said)
+    made.simulated.faults.lose_position()
+    assert code.result(20.0) == 130
+    assert receipt.confirmed is False
+    assert receipt.why
+
+
+class Unseen:
+    """Shows nothing, as a vehicle that tells no target."""
+
+    def in_mode(self, wanted):
+        return False
+
+    def bound_for(self, place, speed):
+        return False
+
+
+def test_a_return_from_where_it_has_landed_is_refused(robot):
+    made = robot()
+    made.crew.vehicle.land()
+    fault, receipt = ordered(made, "return")
+    made.crew.vehicle.state = lambda state=made.crew.vehicle.state: replace(state(), place=FAR)
+    assert made.ending().end(fault) == 130
+    assert receipt.confirmed is False
+    assert receipt.why.endswith("m from its home")
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_an_order_while_nobody_knows_whose_the_vehicle_is_tells_it_nothing(robot, begun):
+    made = robot()
+    if begun:
+        made.crew.pilot.journal.write("begin")
+    made.crew.obedience.begin(None)
+    fault, receipt = ordered(made, "land")
+    assert made.ending().end(fault) == 130
+    assert receipt.confirmed is not begun
+    assert made.simulated.autopilot.armed
+    assert made.mode == "guided"
 
 
 def test_nothing_is_sent_to_a_vehicle_that_a_pilot_has_until_its_motors_are_off(robot):

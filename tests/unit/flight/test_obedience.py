@@ -83,10 +83,10 @@ def test_a_stop_ends_a_hold(robot):
         done.result(20.0)
 
 
-def test_a_robot_that_was_not_held_has_nothing_to_resume_but_is_no_worse_for_it(robot):
+def test_a_robot_that_is_not_held_has_nothing_to_resume(robot):
     resumed = robot.inbox.give(Order("resume"))
     robot.crew.vehicle.rest(1.0)
-    assert (resumed.confirmed, resumed.why) == (True, "it was not held")
+    assert (resumed.confirmed, resumed.why) == (False, "it is not held")
 
 
 def test_a_hold_in_a_wait_needs_no_movement_again(robot):
@@ -135,29 +135,54 @@ def alone():
     return Obedience(inbox, Clock(), threading.Event(), lambda line: None), inbox
 
 
-def test_a_hold_before_there_is_a_vehicle_is_nothing(alone):
+def test_a_hold_before_there_is_a_vehicle_is_obeyed_and_confirmed_once_there_is_one(robot):
+    obedience, vehicle = robot.crew.obedience, robot.crew.vehicle
+    obedience.begin(None)
+    held, again = robot.inbox.give(Order("hold")), robot.inbox.give(Order("hold"))
+    obedience.check()
+    obedience.check()
+    assert (held.confirmed, again.confirmed) == (None, None)
+    obedience.begin(vehicle)
+    waits = in_background(lambda: vehicle.rest(1.0))
+    until(lambda: held.confirmed and again.confirmed)
+    assert robot.mode == "brake"
+    assert not waits.done()
+    robot.inbox.give(Order("resume"))
+    waits.result(20.0)
+
+
+def test_a_hold_before_there_is_a_vehicle_can_be_taken_back(alone):
+    obedience, inbox = alone
+    held, resumed = inbox.give(Order("hold")), inbox.give(Order("resume"))
+    obedience.check()
+    obedience.check()
+    assert (held.confirmed, resumed.confirmed) == (False, True)
+
+
+def test_a_hold_before_there_is_a_vehicle_is_refused_where_none_comes(alone):
     obedience, inbox = alone
     held = inbox.give(Order("hold"))
     obedience.check()
-    assert (held.confirmed, held.why) == (True, "there is no vehicle yet")
+    obedience.close("its program has ended")
+    assert (held.confirmed, held.why) == (False, "its program has ended")
 
 
 def test_a_robot_waits_for_its_battery_until_it_is_told_to_go_on(alone):
     obedience, inbox = alone
-    assert not obedience.awaits_resume(lambda: "")
+    assert obedience.awaits_resume(lambda order: "") is None
     early, landed = inbox.give(Order("resume")), inbox.give(Order("land"))
-    assert not obedience.awaits_resume(lambda: "the battery is still at 10%")
+    assert obedience.awaits_resume(lambda order: "the battery is still at 10%") is None
     assert (early.confirmed, early.why) == (False, "the battery is still at 10%")
-    assert not obedience.awaits_resume(lambda: "")
+    assert obedience.awaits_resume(lambda order: "") is None
     assert (landed.confirmed, landed.why) == (True, "it stands on the ground")
     late = inbox.give(Order("resume"))
-    assert obedience.awaits_resume(lambda: "")
-    assert late.confirmed
+    assert obedience.awaits_resume(lambda order: "") is late
+    assert late.confirmed is None, "only the vehicle shows that it goes on"
 
 
 def test_a_robot_that_waits_for_its_battery_can_be_stopped(alone):
     obedience, inbox = alone
     inbox.give(Order("stop"))
     with pytest.raises(Ordered) as ordered:
-        obedience.awaits_resume(lambda: "")
+        obedience.awaits_resume(lambda order: "")
     assert ordered.value.event == "STOPPED"

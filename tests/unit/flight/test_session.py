@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import threading
+import time
 from dataclasses import replace
 
 import pytest
@@ -179,6 +180,59 @@ def test_another_battery_lets_it_go_on_and_be_watched_as_before(process, vehicle
     shared.abandon.set()
     assert code.result(30.0) == 1
     assert labels(tmp_path)[-1] == "fault"
+
+
+def test_a_robot_that_came_down_elsewhere_goes_on_only_once_it_stands_at_home(process, vehicle, capsys):
+    simulated, port = vehicle
+    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
+    inbox = shared.crews.inboxes["alpha"]
+    code = in_background(lambda: run_robot(robot_of(Policy("BATTERY_LOW", "LAND")), shared))
+    until(lambda: shared.crews.status("alpha").get("move") == "stay")
+    simulated.faults.set_battery(0.05)
+    until(lambda: phase(shared) == SUSPENDED)
+    assert "m from its home: carry it home; change it, then order resume" in capsys.readouterr().err
+    simulated.faults.set_battery(1.0)
+    for order in ("resume", "return"):
+        refused = inbox.give(Order(order))
+        until(lambda: refused.confirmed is not None)  # noqa: B023
+        assert not refused.confirmed
+        assert re.fullmatch(r"it stands 2\d m from its home", refused.why)
+    with simulated.lock:
+        simulated.autopilot.body.position = (0.0, 0.0, 0.0)
+
+    def resumed():
+        again = inbox.give(Order("resume"))
+        until(lambda: again.confirmed is not None)
+        return again.confirmed
+
+    until(resumed)
+    assert simulated.autopilot.armed
+    assert code.result(30.0) == 0
+
+
+def test_a_hold_before_the_vehicle_speaks_keeps_the_robot_on_the_ground(process):
+    port = free_port()
+    shared = process(robot_of(), port=port)
+    code = in_background(lambda: run_robot(robot_of(), shared))
+    held = shared.crews.inboxes["alpha"].give(Order("hold"))
+    with SimulatedVehicle(port, Settings(), speedup=SPEEDUP) as simulated:
+        until(lambda: held.confirmed is not None)
+        assert held.confirmed, held.why
+        time.sleep(1.0)
+        assert not simulated.autopilot.armed
+        assert shared.crews.inboxes["alpha"].give(Order("resume"))
+        assert code.result(30.0) == 0
+
+
+def test_an_order_to_a_resumed_robot_whose_vehicle_is_not_heard_is_not_confirmed(process, vehicle, tmp_path):
+    simulated, port = vehicle
+    shared = process(robot_of(), port=port)
+    assert empty(shared, simulated).result(30.0) == 1
+    again = process(robot_of(), port=free_port(), words=["--resume"])
+    code = in_background(lambda: run_robot(robot_of(), again))
+    receipt = again.crews.inboxes["alpha"].give(Order("land"))
+    assert code.result(20.0) == 130
+    assert (receipt.confirmed, receipt.why) == (False, "its vehicle was not heard, and was told nothing")
 
 
 @pytest.mark.parametrize("by", ["order", "signal", "others"])
