@@ -6,7 +6,8 @@ import json
 from contextlib import contextmanager
 from dataclasses import replace
 
-from flight_crew import SPEEDUP, free_port, until
+from flight_crew import SPEEDUP, free_port
+from patience import until
 
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.mavlink.backend import MAVLINK

@@ -284,7 +284,8 @@ def test_a_vehicle_that_is_not_there_is_told_with_its_link(fleet):
 
 def test_faults_on_purpose_are_made_and_the_mission_still_flies(fleet):
     flown = fleet(Pad("a", stay=1.0), speedup=10.0)
-    assert flown.start("--inject", "loss=0.1,delay=0.02~0.01,seed=7").end(PATIENCE) == 0, flown.process.said[-6:]
+    process = flown.start("--inject", "loss=0.1,delay=0.02~0.01,seed=7")
+    assert process.end(PATIENCE) == 0, process.said[-6:]
     assert judged(flown) is Outcome.SUCCESS
     assert any(line["kind"] == "injected" for line in flown.box("a"))
 
