@@ -71,12 +71,12 @@ def generate(
         ]
         raise typer.BadParameter(f"missing: {', '.join(missing)}")
     order = _Order(target, output, context, robot_files(robots), templates, allow_lossy, force)
-    written, manifest = _generate(workshop, behaviour_file(behaviour), order)
+    written, manifest, asks = _generate(workshop, behaviour_file(behaviour), order)
     if json:
-        left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides)}
+        left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides), "asks": asks}
         say_json({"target": target, "files": written, **left_out})
     else:
-        _tell_written(written, manifest)
+        _tell_written(written, manifest, asks)
     return 0
 
 
@@ -93,13 +93,14 @@ class _Order:
     force: bool
 
 
-def _tell_written(written: tuple[Path, ...], manifest: Manifest) -> None:
+def _tell_written(written: tuple[Path, ...], manifest: Manifest, asks: tuple[str, ...]) -> None:
     say(f"{manifest.target}: {counted(len(written), 'file')} written")
     for path in written:
         say(f"  {path}")
     for sort, names in (
         ("with a file of yours in place of the target's own", sorted(manifest.overrides)),
         ("left out, since the target cannot express it", manifest.losses),
+        ("left for you to write before it works", asks),
     ):
         if names:
             say(f"{sort}:")
@@ -107,7 +108,9 @@ def _tell_written(written: tuple[Path, ...], manifest: Manifest) -> None:
             say(f"  {name}")
 
 
-def _generate(workshop: Workshop, file: Path, order: _Order) -> tuple[tuple[Path, ...], Manifest]:
+def _generate(
+    workshop: Workshop, file: Path, order: _Order
+) -> tuple[tuple[Path, ...], Manifest, tuple[str, ...]]:
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import require_safe, verdicts_of
     from mmrs_core.cli.protection import refuse_inputs
@@ -131,7 +134,10 @@ def _generate(workshop: Workshop, file: Path, order: _Order) -> tuple[tuple[Path
         ),
     )
     refuse_inputs((order.output / file.path for file in files), workshop.inputs)
-    return write(files, order.output, force=order.force), manifest_in(files[-1].content)
+    written = write(files, order.output, force=order.force)
+    new = (file for file in files if order.output / file.path in written)
+    asks = tuple(f"{file.path}: {each}" for file in new for each in file.asks)
+    return written, manifest_in(files[-1].content), asks
 
 
 def _list_targets(workshop: Workshop, json: bool) -> int:

@@ -20,11 +20,13 @@ class GeneratedFile:
         path: relative, with forward slashes.
         content: its bytes.
         once: whether the file is the user's after it was first written: it is never overwritten.
+        asks: what it leaves to the user, each for people.
     """
 
     path: str
     content: bytes
     once: bool = False
+    asks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,7 @@ class FileSpec:
         source: a file outside that folder that is copied instead of the template; None: the template.
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.
-        once: as in `GeneratedFile`.
+        once, asks: as in `GeneratedFile`.
     """
 
     path: str
@@ -82,6 +84,7 @@ class FileSpec:
     trace: tuple[TracedStep, ...] = ()
     once: bool = False
     source: Path | None = None
+    asks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ its end, and ``options.py`` is the command line.
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from .conditions import standard
+from .conditions import standard, undecided
 from .program import (
     Choose,
     Geographic,
@@ -43,7 +43,7 @@ from .program import (
 if TYPE_CHECKING:
     from .conditions import Condition
     from .main import main
-    from .objects import Locator, where_expected
+    from .objects import Locator, not_looked_for, where_expected
     from .vehicles.vehicle import State
 
 __all__ = [
@@ -77,7 +77,9 @@ __all__ = [
     "Travel",
     "Turn",
     "main",
+    "not_looked_for",
     "standard",
+    "undecided",
     "where_expected",
 ]
 
@@ -86,6 +88,7 @@ _NEED_A_LINK = {
     "Locator": "objects",
     "State": "vehicles.vehicle",
     "main": "main",
+    "not_looked_for": "objects",
     "where_expected": "objects",
 }
 

@@ -84,10 +84,19 @@ def truth(found: object) -> bool:
     raise TypeError(f"{found!r} is neither True nor False")
 
 
-def undecided(identifier: str) -> str:
+def undecided(state: State) -> bool | None:
+    """Decide nothing: stands in conditions.py until somebody writes what decides a choice.
+
+    Raises:
+        NotImplementedError: always; programs whose choices have this are not begun.
+    """
+    raise NotImplementedError("nobody has said yet when this condition holds")
+
+
+def awaiting(identifier: str) -> str:
     """Return what a robot does that cannot decide a condition yet, as people read it.
 
-    >>> undecided("answer:go on?"), undecided("wind-above:8")
+    >>> awaiting("answer:go on?"), awaiting("wind-above:8")
     ("waits for an answer to 'go on?'", "waits until 'wind-above:8' is known")
     """
     question = question_of(identifier)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from .conditions import Condition, is_standard, standard
-from .objects import Locator
+from .conditions import Condition, is_standard, standard, undecided
+from .objects import Locator, not_looked_for
 from .program import Choose, GoTo, Movement, Object, Robot, Turn
 
 
@@ -22,7 +22,7 @@ class Judgement:
         objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
         return [
             *(fault for name in sorted(conditions_of(robots)) if (fault := self._undecided(name))),
-            *(f"objects.py finds nothing for {name!a}" for name in sorted(objects - set(self.locators))),
+            *(fault for name in sorted(objects) if (fault := self._not_found(name))),
         ]
 
     def decides(self, robots: Sequence[Robot]) -> dict[str, Condition]:
@@ -30,9 +30,16 @@ class Judgement:
         return {name: self.conditions.get(name) or standard(name) for name in conditions_of(robots)}
 
     def _undecided(self, name: str) -> str:
+        if self.conditions.get(name) is undecided:
+            return f"conditions.py: nobody has said yet when {name!a} holds"
         if name in self.conditions or is_standard(name):
             return ""
         return f"conditions.py decides nothing for {name!a}"
+
+    def _not_found(self, name: str) -> str:
+        if self.locators.get(name) is not_looked_for:
+            return f"objects.py: nobody has said yet how {name!a} is found"
+        return "" if name in self.locators else f"objects.py finds nothing for {name!a}"
 
 
 def conditions_of(robots: Sequence[Robot]) -> set[str]:

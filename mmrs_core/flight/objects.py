@@ -24,6 +24,15 @@ def where_expected(state: State, expected: Place | None) -> Place:
     return expected
 
 
+def not_looked_for(state: State, expected: Place | None) -> Place:
+    """Find nothing: stands in objects.py until somebody writes how an object is found.
+
+    Raises:
+        NotImplementedError: always; programs with objects that have this are not begun.
+    """
+    raise NotImplementedError("nobody has said yet how this object is found")
+
+
 def place_of(target: Place | Object, locators: Mapping[str, Locator], state: State) -> Place:
     """Return where a target is.
 

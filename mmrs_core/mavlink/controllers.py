@@ -66,9 +66,11 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     yield FileSpec("fleet.py", "fleet.py.jinja", common)
     yield FileSpec("README.md", "README.md.jinja", common)
     if conditions:
-        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True)
+        asks = tuple(f"when '{name}' holds" for name in conditions if not is_standard(name))
+        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True, asks=asks)
     if objects:
-        yield FileSpec("objects.py", "objects.py.jinja", common, once=True)
+        asks = tuple(f"how '{name}' is found" for name in objects)
+        yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
     for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
         yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
 

@@ -14,7 +14,7 @@ from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.conditions import question_of, undecided
+from mmrs_core.flight.conditions import awaiting, question_of
 from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
 from mmrs_core.runtime.conditions import decided
@@ -319,7 +319,7 @@ class RunningRobot:
         if self.wait.question == identifier:
             return
         self.wait.question, self.questions.asked = identifier, question_of(identifier)
-        words = undecided(identifier)
+        words = awaiting(identifier)
         self._rules.say(f"'{self.id}': {words}")
         if isinstance(self.backend, Noting):
             self.backend.note("decision", {"what": "CHOICE", "why": identifier, "response": words})

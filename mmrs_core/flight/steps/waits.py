@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from math import inf
 
-from ..conditions import question_of, truth, undecided
+from ..conditions import awaiting, question_of, truth
 from ..desk import Desk
 from ..faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from ..program import Choose, Policy, Robot, Then
@@ -120,7 +120,7 @@ class Waits:
         return holds
 
     def _tell_undecided(self, condition: str) -> None:
-        words = undecided(condition)
+        words = awaiting(condition)
         self._desk.questions.asked = question_of(condition)
         self._desk.say(f"{self._robot.id!a} {words}")
         self._journal.decide("CHOICE", condition, words)

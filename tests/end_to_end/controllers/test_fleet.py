@@ -147,9 +147,9 @@ def test_a_choice_is_decided_by_the_users_own_conditions(controllers):
     )
     made = controllers(program(robot))
     code, said = made.run("fleet.py", "--dry-run")
-    assert code == 1
-    assert "nobody has said yet" in said
-    assert made.replayed(partial=True).faults == {"alpha": "CONDITION_FAILED"}
+    assert code == 2
+    assert "nobody has said yet when 'it is \"windy\"' holds" in said
+    assert not made.logs.exists()
 
     conditions = made.folder / "conditions.py"
     decided = conditions.read_text("ascii").replace(": undecided,", ": lambda state: False,")
@@ -195,11 +195,20 @@ def find_buoy(made, place: str) -> None:
     path.write_text(path.read_text("ascii").replace(": not_looked_for,", found), "ascii")
 
 
-def test_an_object_that_nobody_finds_is_a_fault(controllers):
+def test_an_object_that_nobody_looks_for_is_refused_before_anything_moves(controllers):
     made = controllers(buoy(2.0))
     code, said = made.run("fleet.py", "--dry-run")
+    assert code == 2
+    assert "nobody has said yet how 'a buoy' is found" in said
+    assert not made.logs.exists()
+
+
+def test_an_object_that_nobody_finds_is_a_fault(controllers):
+    made = controllers(buoy(2.0))
+    find_buoy(made, "1 / 0")
+    code, said = made.run("fleet.py", "--dry-run")
     assert code == 1
-    assert "nobody has said yet" in said
+    assert "object 'a buoy': ZeroDivisionError" in said
     assert made.replayed(partial=True).faults == {"alpha": "OBJECT_NOT_FOUND"}
 
 

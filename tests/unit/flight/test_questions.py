@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.conditions import truth, undecided
+from mmrs_core.flight.conditions import awaiting, truth
 from mmrs_core.flight.questions import Questions
 
 
@@ -54,5 +54,5 @@ def test_what_is_neither_true_nor_false_decides_nothing(found):
 
 
 def test_people_are_told_what_a_choice_waits_for():
-    assert undecided("answer:go on?") == "waits for an answer to 'go on?'"
-    assert undecided("wind-above:8") == "waits until 'wind-above:8' is known"
+    assert awaiting("answer:go on?") == "waits for an answer to 'go on?'"
+    assert awaiting("wind-above:8") == "waits until 'wind-above:8' is known"
