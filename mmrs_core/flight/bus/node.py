@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+from .announcing import FAREWELL_SECONDS, Announcing
 from .answering import Answering
 from .carrier import Carrier, NoCarrier
 from .carrying import Courier
@@ -16,7 +17,7 @@ from .delivery import Delivery
 from .errands import Errand, Message, Notice
 from .journal import Journal, NoJournal
 from .members import Member, Recorded
-from .outbox import Outbox, farewell_of, news_of, tidings_of
+from .outbox import Outbox
 from .owners import Owners
 from .pacing import Pacing
 from .reading import written
@@ -39,12 +40,6 @@ from .words import (
 
 LEASE_SECONDS = 1.5
 """How long a robot may be out of reach before slots are no longer kept for it."""
-
-FAREWELL_SECONDS = 2.0
-"""How long a robot that ends tries to tell those who are there."""
-
-TIDINGS_SECONDS = 10.0
-"""How long one who comes is told who has ended before, until it answers."""
 
 
 class Node:
@@ -111,6 +106,9 @@ class Node:
             trusting=self._alone,
         )
         self._outbox = Outbox(self._net)
+        self._announcing = Announcing(
+            self._run, self._members, self._owners, self._watching, self._outbox, now
+        )
         self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now)
         self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
         self._callbacks: list[Callable[[], None]] = []
@@ -136,13 +134,12 @@ class Node:
 
     def _introduce(self, recorded: Mapping[str, Recorded], settle: float) -> None:
         """Tell all that robots have to do with that they start, and wait for those who are there."""
-        told = [
-            news_of(member, self._id_of(robot), recorded.get(robot, Recorded()))
-            for robot, member in self._members.items()
-            if robot in recorded or not self._alone
-        ]
-        for news in told:
-            self._add(news)
+        with self.lock:
+            told = [
+                self._announcing.introduce(robot, recorded.get(robot, Recorded()))
+                for robot in self._members
+                if robot in recorded or not self._alone
+            ]
         self.pump()
         until = self.now() + settle
         with self.lock:
@@ -257,7 +254,7 @@ class Node:
             if robot in self._watching.left or robot not in self._members:
                 return
             self._watching.left[robot] = self._owners.lamport
-            self._outbox.bid_farewell(robot, self._farewell(robot))
+            self._announcing.bid_farewell(robot)
         self.pump()
         self._tell_changed()
 
@@ -351,7 +348,7 @@ class Node:
                 self._pacing.keep_going()
                 return
             if here and not self._watching.is_here(robot):
-                self._inform(robot, now)
+                self._announcing.inform(robot)
             self._watching.noticed(robot, here, now)
             if here:
                 self._outbox.back(robot, now)
@@ -407,29 +404,6 @@ class Node:
                 ended = self._pacing.is_over or robot in self._watching.left
             if not ended:
                 self._courier.appear(robot)
-
-    def _inform(self, robot: str, now: float) -> None:
-        """Have a robot that is there now know who has ended before."""
-        ended = {each: at for each, at in self._watching.ended().items() if each != robot}
-        if ended:
-            teller = self._id_of(next(iter(self._members)))
-            self._outbox.add(tidings_of(teller, ended, robot, now + TIDINGS_SECONDS))
-
-    def _id_of(self, robot: str) -> CommandId:
-        """Return what a robot's news of itself are known by."""
-        return CommandId(self._run, robot, self.incarnation, 0)
-
-    def _add(self, notice: Notice) -> None:
-        with self.lock:
-            self._outbox.add(notice)
-
-    def _farewell(self, robot: str) -> Notice:
-        contacts = self._members[robot].contacts - self._watching.left.keys()
-        there = {each for each in contacts if each in self._owners or self._watching.is_here(each)}
-        if there != contacts:
-            # Who comes later must be told by others, since this robot will be gone by then.
-            there |= self._watching.here
-        return farewell_of(self._id_of(robot), self._owners.lamport, there, self.now() + FAREWELL_SECONDS)
 
     def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:
         with self.lock:

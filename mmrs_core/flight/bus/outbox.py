@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable
 
 from .errands import Errand, Message, Notice
-from .members import Member, Recorded
 from .troubles import SORE_SECONDS, Net
-from .words import Begin, CommandId, Ended, Leave
 
 
 class Outbox:
@@ -66,23 +64,3 @@ class Outbox:
             return errand.tick(now)
         errand.due = now + SORE_SECONDS
         return ()
-
-
-def news_of(member: Member, id: CommandId, recorded: Recorded) -> Notice:
-    """Return what all contacts of a robot that is started again must be told: what its log says."""
-    robot = member.owned.robot
-    requests: dict[str, Message] = {}
-    for owner in sorted(member.contacts | {robot}):
-        known = [(slot, *value) for (r, slot), value in recorded.notifies.items() if r == owner]
-        requests[owner] = Message(robot, owner, Begin(id, tuple(known)))
-    return Notice(requests)
-
-
-def farewell_of(id: CommandId, lamport: int, to: Collection[str], until: float) -> Notice:
-    """Return what others are told of a robot that has ended at that logical time."""
-    return Notice({each: Message(id.sender, each, Leave(id, lamport)) for each in sorted(to)}, until=until)
-
-
-def tidings_of(id: CommandId, ended: Mapping[str, int], to: str, until: float) -> Notice:
-    """Return what a robot that was not there is told of those that have ended."""
-    return Notice({to: Message(id.sender, to, Ended(id, tuple(sorted(ended.items()))))}, until=until)
