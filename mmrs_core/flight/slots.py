@@ -45,6 +45,10 @@ class Slots(Protocol):
         """Record that the robot goes on if all its slots of these names are active; say whether."""
         ...
 
+    def active(self, robot: str, names: Iterable[str]) -> bool:
+        """Return whether all of a robot's slots of these names are active now."""
+        ...
+
     def await_change(self, seconds: float) -> None:
         """Wait until a slot may have changed, but no longer than so many real seconds."""
         ...
@@ -117,6 +121,10 @@ class BusSlots:
             return False
         record(lamport)
         return True
+
+    def active(self, robot: str, names: Iterable[str]) -> bool:
+        """Return whether all of a robot's slots of these names are active now."""
+        return all(self.node.state((robot, name)).active for name in names)
 
     def await_change(self, seconds: float) -> None:
         """Wait until something changes, but no longer than so many real seconds."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from math import hypot
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -11,6 +13,7 @@ from ..clock import Clock
 from ..links.link import Message
 from ..program import Geographic, Local, Place
 from ..services.missions import NAMES
+from ..vehicles.telemetry import NO_HEADING
 from ..vehicles.vehicle import State
 from .blackbox import BlackBox
 
@@ -160,7 +163,9 @@ class Recording:
         ) != self._geographic or now - self._fixed < FIX_SECONDS:
             return
         self._fixed = now
-        fix(self._box, self._state(), _place(message))
+        # The link keeps a message once everybody has seen it: the state is still that of the one before.
+        state = replace(self._state(), place=_place(message), speed=_speed(message))
+        fix(self._box, state if (north := _heading(message)) is None else replace(state, heading=north))
 
     def _on_text(self, message: Message) -> None:
         severity = _word("MAV_SEVERITY", message.severity)
@@ -213,6 +218,17 @@ def _place(message: Message) -> Place:
     if message.get_type() == "GLOBAL_POSITION_INT":
         return Geographic(message.lat * 1e-7, message.lon * 1e-7, message.relative_alt * 1e-3)
     return Local(message.x, message.y, -message.z)
+
+
+def _speed(message: Message) -> float:
+    unit = 0.01 if message.get_type() == "GLOBAL_POSITION_INT" else 1.0
+    return unit * hypot(message.vx, message.vy, message.vz)
+
+
+def _heading(message: Message) -> float | None:
+    if message.get_type() != "GLOBAL_POSITION_INT" or message.hdg == NO_HEADING:
+        return None
+    return float(message.hdg) / 100.0
 
 
 def _fields(message: Message) -> dict[str, object]:

@@ -252,10 +252,15 @@ class Pilot:
         target = place_of(movement.at, self._desk.locators, self._vehicle.state())
         look = self._look(movement.look)
         ends = ends_of(here, target, movement.legs, movement.distance)
-        through = goes_through(step, self._following(step), here)
+        through = self._may_go_on(step) and goes_through(step, self._following(step), here)
         for place in ends:
             self._go(place, movement.speed, look, through=through and place == ends[-1])
             self._passed(place)
+
+    def _may_go_on(self, step: Step) -> bool:
+        """Return whether no slot keeps the robot from its next move, as far as is known now."""
+        waits = step.then.waits if isinstance(step.then, Then) else ()
+        return self._desk.slots.active(self._robot.id, waits)
 
     def _following(self, step: Step) -> Step | None:
         return self._steps[step.then.move] if isinstance(step.then, Then) else None

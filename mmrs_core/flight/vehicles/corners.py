@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import acos, degrees, hypot
 
 from ..places import distance, ends_of, offset
-from ..program import GoTo, Object, Place, Step, Then
+from ..program import GoTo, Notify, Object, Place, Step, Then
 
 STRAIGHT_DEGREES = 10.0
 """Up to where a turn is none: as in runs that are uploaded."""
@@ -14,7 +14,8 @@ STRAIGHT_DEGREES = 10.0
 def goes_through(step: Step, following: Step | None, here: Place) -> bool:
     """Return whether a vehicle goes through the end of a move without a stop.
 
-    It does where the behaviour says so, and the way goes straight on there.
+    It does where the behaviour says so, nothing is to be done there but to notify, and the way goes
+    straight on. Whoever calls knows whether slots keep it from going on.
 
     Args:
         step: of the move.
@@ -23,6 +24,8 @@ def goes_through(step: Step, following: Step | None, here: Place) -> bool:
     """
     fluid = isinstance(step.then, Then) and step.then.fluid
     if not fluid or following is None:
+        return False
+    if not all(isinstance(action, Notify) for action in (*step.after, *following.before)):
         return False
     now, then = step.movement, following.movement
     if not (isinstance(now, GoTo) and isinstance(then, GoTo)):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from mmrs_core.flight import GoTo, Hold, Local, Object, Step, Then
+from mmrs_core.flight import GoTo, Hold, Local, Notify, Object, Operate, Step, Then
 from mmrs_core.flight.vehicles.corners import goes_through, turn
 
 HERE = Local(0.0, 0.0, 10.0)
@@ -34,6 +36,17 @@ def test_a_climb_is_a_corner_too():
 
 def test_a_transition_that_is_not_fluid_is_a_stop():
     assert not goes_through(step(fluid=False), next_to(200.0, 0.0), HERE)
+
+
+def test_an_action_at_the_end_of_a_move_is_a_stop():
+    photo = Operate("camera", "takePhoto", 2000, (0.0, 0.0, 1.0), 1.0)
+    assert not goes_through(replace(step(), after=(photo,)), next_to(200.0, 0.0), HERE)
+    assert not goes_through(step(), replace(next_to(200.0, 0.0), before=(photo,)), HERE)
+
+
+def test_robots_are_notified_on_the_way():
+    notify = Notify((("beta", "go"),))
+    assert goes_through(replace(step(), after=(notify,)), next_to(200.0, 0.0), HERE)
 
 
 def test_legs_that_begin_upwards_begin_with_a_corner():

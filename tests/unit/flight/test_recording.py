@@ -1,0 +1,61 @@
+"""What goes over a link, as the black box keeps it."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.program import Geographic
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.records.recording import Recording
+from mmrs_core.flight.vehicles.vehicle import State
+
+BEFORE = State(0.0, Geographic(42.0, 13.0, 5.0), 9.0, 90.0, 0.5, "guided", True)
+
+
+@pytest.fixture
+def fixes(tmp_path):
+    """Return a function that records a message, and returns the fixes in the box."""
+    path = black_box_path(tmp_path / "alpha.jsonl")
+    box = BlackBox(path, "run-0", "alpha", lambda: 1.5)
+
+    def record(message, *, geographic: bool):
+        Recording(box, Clock(), lambda: BEFORE, geographic=geographic)(message, False)
+        text = path.read_text("ascii") if path.exists() else ""
+        lines = (json.loads(line) for line in text.splitlines())
+        return [line for line in lines if line["kind"] == "fix"]
+
+    yield record
+    box.close()
+
+
+def test_a_fix_has_place_speed_and_heading_of_one_message(fixes):
+    message = mavlink.MAVLink_global_position_int_message(
+        0, 420000100, 130000200, 725_000, 6_000, 30, 40, 0, 18_000
+    )
+    (fix,) = fixes(message, geographic=True)
+    assert fix["place"] == {"latitude": 42.00001, "longitude": 13.00002, "height": 6.0}
+    assert (fix["speed"], fix["heading"]) == (0.5, 180.0)
+    assert (fix["energy"], fix["mode"], fix["armed"]) == (0.5, "guided", True)
+
+
+def test_a_heading_that_a_message_does_not_tell_stays_as_it_was(fixes):
+    message = mavlink.MAVLink_global_position_int_message(0, 420000100, 130000200, 0, 0, 0, 0, 0, 65_535)
+    (fix,) = fixes(message, geographic=True)
+    assert fix["heading"] == BEFORE.heading
+
+
+def test_a_local_fix_has_the_speed_of_its_message(fixes):
+    (fix,) = fixes(
+        mavlink.MAVLink_local_position_ned_message(0, 1.0, 2.0, -3.0, 0.6, 0.0, -0.8), geographic=False
+    )
+    assert fix["place"] == {"north": 1.0, "east": 2.0, "height": 3.0}
+    assert fix["speed"] == 1.0
+
+
+def test_places_are_taken_from_messages_of_the_programs_frame_only(fixes):
+    message = mavlink.MAVLink_local_position_ned_message(0, 1.0, 2.0, -3.0, 0.6, 0.0, -0.8)
+    assert fixes(message, geographic=True) == []
