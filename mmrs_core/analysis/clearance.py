@@ -2,19 +2,20 @@
 
 Every leg of every move counts, launching and landing included, and so does where a robot begins and
 ends. What must be kept is the area's safety distance, half the robot's diagonal and the position
-error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid the robot is
-taken to pass the corner itself: what it cuts off is part of the position error.
+error, in all three dimensions. Emergency areas forbid nothing. Where a transition is fluid and the way
+turns, the robot may be off the corner by as much as it cuts it (`corners.py`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
 import numpy as np
 
+from mmrs_core.analysis.corners import Cut, cuts
 from mmrs_core.analysis.distance import Floats, prism_distances
 from mmrs_core.analysis.figures import MissingFigureError, half_diagonal_of, kinematics_of, type_of
 from mmrs_core.analysis.motion import Motion, motions
@@ -59,17 +60,18 @@ def _judge(input: CheckInput, robot: RobotProgram) -> Iterator[Verdict]:
 def _kept(input: CheckInput, robot: RobotProgram, areas: list[Area], own: float) -> Iterator[Verdict]:
     """Yield how the robot keeps its distances if its ways must stay `own` metres off beside the areas'."""
     motion = motions(input)[robot.id]
-    segments = _segments(motion)
+    segments = _segments(motion, cuts(input, robot, motion))
     margins = list(_margins(segments, areas, own)) if segments.moves else []
     yield from judged(NAME, robot, "m", (_described(robot, margin) for margin in margins), motion.gaps)
 
 
-def _segments(motion: Motion) -> _Segments:
+def _segments(motion: Motion, cuts: Iterable[Cut]) -> _Segments:
     pieces = [
         (begin, end, leg.move, leg.radius)
         for leg in motion.legs
         for begin, end in pairwise(leg.points if len(leg.points) > 1 else leg.points * 2)
     ]
+    pieces += [(corner, corner, move, metres) for corner, move, metres in cuts]
     return _Segments(
         begins=np.array([piece[0] for piece in pieces], dtype=np.float64).reshape(-1, 3),
         ends=np.array([piece[1] for piece in pieces], dtype=np.float64).reshape(-1, 3),

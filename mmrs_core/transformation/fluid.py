@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, hypot, isfinite, pi
+from math import acos, hypot, pi
 
 import numpy as np
 import shapely
@@ -11,8 +11,9 @@ from mmrs_core.contributions.rules import MoveSpec
 from mmrs_core.scene import Position, Robot, Scene
 from mmrs_core.transformation.chain import Chain, Edge
 
-UNKNOWN_CUT = 2.0
-"""Metres by which a corner may be cut where a robot type does not state its acceleration."""
+LEAST_CUT = 2.0
+"""Metres by which a corner may be cut at least: autopilots count a place as passed within a radius, and may
+accelerate less than the robot's type says."""
 
 STRAIGHT = pi / 180
 """Turns smaller than this, in radians, cut no corner."""
@@ -21,7 +22,8 @@ STRAIGHT = pi / 180
 class Corners:
     """Tells whether a robot that does not stop at a corner stays clear of everything.
 
-    A robot that goes round a corner without a stop cuts it by up to v² / 2a. Where robots must keep apart
+    A robot that goes round a corner without a stop cuts it by up to v² / 2a, or by the radius within which
+    its autopilot counts the corner as passed. Where robots must keep apart
     they stop at every corner, so that it is certain when they are where.
     """
 
@@ -56,7 +58,7 @@ class Corners:
         if kinematics is None:
             return False
         pace = speed or kinematics.cruise
-        cut = pace**2 / (2 * kinematics.acceleration) if isfinite(kinematics.acceleration) else UNKNOWN_CUT
+        cut = max(LEAST_CUT, pace**2 / (2 * kinematics.acceleration))
         point = shapely.Point(corner[:2])
         return all(
             shape.distance(point) >= keep + cut for shape, keep in zip(self._shapes, self._keep, strict=True)

@@ -17,13 +17,21 @@ ANY = frozenset()
 OF_PROGRAMS = ("minimum_separation", "position_error", "reserve")
 
 
-def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0):
+def kind(metaclass=ROBOT, launches=False, floor=-inf, ceiling=inf, speed=2.0, acceleration=inf):
     """Return a kind of robots that move at one speed in every direction."""
     return RobotKind(
         name=metaclass[1].lower(),
         metaclass=metaclass,
         kinematics=lambda robot, scene: Kinematics(
-            speed, speed, speed, speed, speed, floor=floor, ceiling=ceiling, launches=launches
+            speed,
+            speed,
+            speed,
+            speed,
+            speed,
+            acceleration=acceleration,
+            floor=floor,
+            ceiling=ceiling,
+            launches=launches,
         ),
         launch=lambda height: (),
         recover=lambda: (),

@@ -204,3 +204,34 @@ def test_half_the_diagonal_is_computed_from_the_dimensions_of_the_type():
         type=rover(half_diagonal=0.1, attributes={"size": size}),
     )
     assert verdict.margin == pytest.approx(5.0 - 3.5)
+
+
+def round_a_corner(*, fluid: bool, away: float, speed: float = 5.0, end=(20.0, 20.0, 0.0)):
+    """Return the verdict on a way to the east and then to `end`, so far below an area at its corner."""
+    moves = [replace(go("to", (20.0, 0.0, 0.0)), speed=speed), go("on", end)]
+    flown = robot("a", moves)
+    flows = {index: replace(each, fluid=fluid and index == 1) for index, each in flown.transitions.items()}
+    area = square(at=(20.5, -away - 1.0))
+    return finding(
+        "clearance",
+        given(replace(flown, transitions=flows), areas=(area,), robot_kind=kind(acceleration=2.0)),
+    )
+
+
+def test_a_corner_that_is_gone_through_without_a_stop_needs_the_room_by_which_it_is_cut():
+    stops, flows = (round_a_corner(fluid=fluid, away=3.0, speed=1.0) for fluid in (False, True))
+    assert flows.margin == pytest.approx(stops.margin - 2.0)
+    assert (flows.move, flows.status) == ("to", Status.SAFE)
+    assert round_a_corner(fluid=True, away=1.5, speed=1.0).status is Status.VIOLATED
+
+
+def test_the_faster_a_corner_is_gone_through_the_more_room_it_needs():
+    margins = [round_a_corner(fluid=True, away=40.0, speed=speed).margin for speed in (1.0, 2.0, 5.0, 10.0)]
+    assert margins == sorted(margins, reverse=True)
+    assert margins[0] > margins[-1]
+
+
+def test_a_way_that_goes_straight_on_cuts_nothing():
+    flows = round_a_corner(fluid=True, away=3.0, end=(40.0, 0.0, 0.0))
+    stops = round_a_corner(fluid=False, away=3.0, end=(40.0, 0.0, 0.0))
+    assert flows.margin == pytest.approx(stops.margin)

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import cos, pi, sin
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon
 
@@ -107,6 +107,7 @@ def test_a_way_to_an_emergency_area_is_left_free_too():
 angles = st.lists(st.floats(0.0, 2.0 * pi), min_size=3, max_size=8, unique=True)
 
 
+@settings(deadline=None)
 @given(
     angles=angles,
     sizes=st.lists(st.floats(2.0, 40.0), min_size=8, max_size=8),
