@@ -39,6 +39,19 @@ class Recovering(Protocol):
 
 
 @runtime_checkable
+class Bearing(Protocol):
+    """A backend whose robot breaks off what it does when something goes wrong."""
+
+    def bear(self, now: float) -> bool:
+        """Go on although that went wrong which it has told last, since a policy says so.
+
+        Returns:
+            Whether it can; what was broken off then counts as finished.
+        """
+        ...
+
+
+@runtime_checkable
 class Watched(Protocol):
     """A backend that says how far a robot is that was told to stop."""
 

@@ -79,6 +79,7 @@ class Live:
         begun: the move that it had begun then; empty where it had ended its last one.
         links: how robots are reached, as in ``--connect``, by robot of this process.
         shared: what backends of the same run share, by names of their own; empty at first.
+        announce: tells people what concerns no robot alone, from any thread.
     """
 
     clock: Clock
@@ -91,6 +92,7 @@ class Live:
     begun: str = ""
     links: Mapping[str, str] = field(default_factory=dict)
     shared: dict[str, object] = field(default_factory=dict)
+    announce: Callable[[str], None] = print
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,10 +67,12 @@ class Fault:
         which: a literal of PolicyEvent where policies answer it, otherwise a word of the backend's,
             such as ``BATTERY_EMPTY``.
         reason: for people; may be empty.
+        instead: the response, where what policies say cannot be carried out; else empty.
     """
 
     which: str
     reason: str = ""
+    instead: str = ""
 
     def __str__(self) -> str:
         """Return both, as logs write them."""

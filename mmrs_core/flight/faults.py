@@ -25,11 +25,23 @@ CRASHED = "CRASHED"
 
 
 class Fault(Exception):  # noqa: N818  # the word that policies and logs use
-    """Something went wrong; `event` says what, and the robot's policies say what it does about it."""
+    """Something went wrong; `event` says what, and the robot's policies say what it does about it.
 
-    def __init__(self, event: str, message: str) -> None:
+    Attributes:
+        instead: the response, where what policies say cannot be carried out; else empty.
+    """
+
+    def __init__(self, event: str, message: str, instead: str = "") -> None:
         super().__init__(message)
         self.event = event
+        self.instead = instead
+
+
+class Displaced(Fault):
+    """The vehicle has left by itself what it was told, for an event that is borne, or answered already.
+
+    What it was told goes on: it is to be taken back.
+    """
 
 
 class Refused(Fault):

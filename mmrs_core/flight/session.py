@@ -30,6 +30,7 @@ from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
 from .steps.ending import CODES, FAILED, HEARD_SECONDS, LEAST_HEARD_SECONDS, OK, Crew, Ending
+from .steps.guarding import guarding
 from .steps.obeying import astray
 from .steps.pilot import Pilot
 from .steps.resuming import progress_of
@@ -199,12 +200,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!a}: {line}"))
 
     stack.callback(obedience.close, "its program has ended")
-
-    def guard() -> None:
-        watch.check()
-        if not watch.looking:
-            obedience.check()
-
+    guard = guarding(watch, obedience)
     link = None if options.dry else _link(robot, shared, guard, stack)
     vehicle = _vehicle(robot, options, guard, link)
     desk = Desk(

@@ -116,7 +116,7 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
         faults = injections([options.inject] if options.inject else [], urls)
     except ValueError as error:
         raise UnsupportedError(f"option 'inject': {error}") from error
-    rehearsal = Rehearsal(faults, clock, live.say)
+    rehearsal = Rehearsal(faults, clock, live.announce)
     retries = Retries(options.tries, options.answer_seconds, options.item_seconds)
     sharers: dict[str, list[str]] = {}
     for robot, url in urls.items():

@@ -9,12 +9,19 @@ from math import inf
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER
+from mmrs_core.flight.faults import (
+    BATTERY_LOW,
+    DEVICE_SILENT,
+    LINK_LOST,
+    POSITION_LOST,
+    TAKEN_OVER,
+    Displaced,
+)
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
 from mmrs_core.flight.steps.obeying import obeying
-from mmrs_core.flight.steps.responses import NEEDS_POSITION, respond
+from mmrs_core.flight.steps.responses import CONTINUE, NEEDS_POSITION, respond
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.mavlink.backend_equipment import Equipment
 from mmrs_core.mavlink.backend_lost_link import LostLink
@@ -22,7 +29,7 @@ from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
 from mmrs_core.mavlink.backend_recovery import WayBack
 from mmrs_core.mavlink.backend_setup import Setup
-from mmrs_core.mavlink.backend_worker import Job, Worker
+from mmrs_core.mavlink.backend_worker import Interrupted, Job, Worker
 
 HANDS_OFF = "NOTHING"
 FAREWELL_SECONDS = 5.0
@@ -101,7 +108,20 @@ class MavlinkBackend:
     def fault(self, now: float) -> Fault | None:
         """Return what went wrong."""
         found = self._seen = self._worker.fault
-        return None if found is None else Fault(found.event, str(found))
+        return None if found is None else Fault(found.event, str(found), found.instead)
+
+    def bear(self, now: float) -> bool:
+        """Go on after a device that is silent, or with a battery that does not get full."""
+        found = self._worker.fault
+        if found is None:
+            return True
+        charging = bool(self._move) and self._moves.kind(self._move) is Recharge
+        if found.event != DEVICE_SILENT and not (found.event == BATTERY_LOW and charging):
+            return False
+        self._note_decision(found.event, str(found), CONTINUE)
+        self._with.say(f"carries on although {found}")
+        self._worker.forgive(found)
+        return True
 
     def next_event(self, now: float) -> float | None:
         """Return never: the worker wakes the interpreter."""
@@ -226,15 +246,19 @@ class MavlinkBackend:
         self.note("decision", {"what": what, "why": why, "response": response})
 
     def _look(self) -> None:
-        """Look after the vehicle, whatever it does."""
-        self._watch.check()
+        """Look after the vehicle, whatever it does; what it has left by itself is begun again."""
+        try:
+            self._watch.check()
+        except Displaced:
+            self._with.vehicle.regain()
+            raise Interrupted from None
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
         if self._setup.is_done and not self._hands_off:
             self._with.vehicle.rest(0.0)
         else:
-            self._watch.check()
+            self._look()
 
     def _halt(self) -> None:
         self._with.vehicle.hold()

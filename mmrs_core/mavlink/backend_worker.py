@@ -103,6 +103,14 @@ class Worker:
         """Return whether the vehicle stands, and has not gone on yet."""
         return self._halted
 
+    def forgive(self, fault: Fault) -> None:
+        """Forget a fault; what it has broken off counts as done."""
+        with self._news:
+            if self.fault is fault:
+                self.fault, self._done = None, True
+                self._newest += 1
+                self._news.notify_all()
+
     def pause(self) -> None:
         """Halt in the middle of the job."""
         with self._news:

@@ -39,13 +39,15 @@ class Answers:
         """Return what the robot does, a literal of PolicyResponse or HANDS_OFF."""
         if found.which == TAKEN_OVER:
             return HANDS_OFF
+        if found.instead:
+            return found.instead
         if self.live and policy_for(found.which, self.policies) is None:
             return UNDECLARED.get(found.which, response_to(found.which, ()))
         return response_to(found.which, self.policies)
 
     def bears(self, found: Fault) -> bool:
         """Return whether the robot goes on as if nothing were."""
-        return response_to(found.which, self.policies) == "CONTINUE"
+        return not found.instead and response_to(found.which, self.policies) == "CONTINUE"
 
     def patience(self, found: Fault) -> float:
         """Return for how many seconds the robot bears it; inf: for ever."""

@@ -122,6 +122,7 @@ def _connected(
             begun=own[-1].move if own and own[-1].label == "begin" else "",
             links=venture.links,
             shared=shared,
+            announce=venture.say,
         )
         robots[id] = backend.connect(replace(given, live=live))
         if isinstance(robots[id], Closing):

@@ -9,7 +9,7 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import Noting, Recovering
+from mmrs_core.contributions.abilities import Bearing, Noting, Recovering
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
@@ -194,7 +194,7 @@ class RunningRobot:
 
     def overtaken_by(self, found: Fault) -> bool:
         """Return whether a fault is answered now although the robot still answers another one."""
-        if found.which not in OVERTAKES or found.which in self._answered:
+        if not found.instead and (found.which not in OVERTAKES or found.which in self._answered):
             return False
         self._answered.add(found.which)
         self.response = self._answers().response(found)
@@ -235,7 +235,10 @@ class RunningRobot:
     def _unborne(self, now: float) -> Fault | None:
         """Return what the backend says went wrong, unless the robot goes on as if nothing were."""
         found = self.backend.fault(now)
-        return None if found is None or self._answers().bears(found) else found
+        if found is None or not self._answers().bears(found):
+            return found
+        goes_on = not isinstance(self.backend, Bearing) or self.backend.bear(now)
+        return None if goes_on else found
 
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
         if self.notify.is_waiting:
@@ -273,10 +276,10 @@ class RunningRobot:
                 self.backend.act(action, now)
             else:
                 self.backend.begin(self.move, now, through=self._may_pass())
-        found = self.backend.fault(now)
-        if found is not None and not self._answers().bears(found):
+        trouble = self.backend.fault(now)
+        if (found := self._unborne(now)) is not None:
             return found
-        skipped = action is not None and found is not None and found.which == "DEVICE_SILENT"
+        skipped = action is not None and trouble is not None and trouble.which == "DEVICE_SILENT"
         return self._next() if skipped or self.backend.finished(now) else None
 
     def _way_on(self, now: float, peers: Peers) -> Step | Fault | None:

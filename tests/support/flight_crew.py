@@ -39,6 +39,7 @@ from mmrs_core.flight.records.log import Log, read
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.slots import LocalSlots
 from mmrs_core.flight.steps.ending import Crew, Ending
+from mmrs_core.flight.steps.guarding import guarding
 from mmrs_core.flight.steps.pilot import Pilot
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
@@ -185,13 +186,7 @@ def manned(
         made = Manned(crew, inbox, stop, simulated, said, log, desk.box)
         watch.track = lambda: pilot.track
         watch.decide = lambda event, why, response: made.decided.append((event, response))
-
-        def guard() -> None:
-            watch.check()
-            if not watch.looking:
-                obedience.check()
-
-        link.guard = guard
+        link.guard = guarding(watch, obedience)
         until(lambda: simulated.autopilot.ready)
         yield made
 

@@ -104,6 +104,19 @@ class Obedience:
             except Again:
                 continue
 
+    def regain(self) -> None:
+        """Have the vehicle go on with what it has left by itself.
+
+        Raises:
+            Again: a movement was interrupted, and is to be begun again.
+        """
+        if self._vehicle is None:
+            return
+        if self._moving and not self._held:
+            self._vehicle.take_back()
+            raise Again
+        self._vehicle.regain()
+
     def expect(self, receipt: Receipt, obeyed: Callable[[], bool]) -> None:
         """Confirm an order as soon as the vehicle is seen to obey it."""
         self._pending, self._obeyed = receipt, obeyed

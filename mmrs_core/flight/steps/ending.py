@@ -119,7 +119,7 @@ class Ending:
                     first = other if self.suspended else first
                 elif other.event == LINK_LOST:
                     self._tell_undone(other, response)
-                elif other.event not in OVERTAKES or other.event in self._handled:
+                elif not other.instead and (other.event not in OVERTAKES or other.event in self._handled):
                     return self._give_up(other, response)
                 fault, response = other, self._response_to(other)
                 self._tell(fault, response)
@@ -175,6 +175,8 @@ class Ending:
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew
+        if fault.instead:
+            return fault.instead
         if isinstance(fault, Ordered) and fault.response:
             return fault.response
         if fault.event == STOPPED:

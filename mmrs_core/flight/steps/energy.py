@@ -70,6 +70,17 @@ class Reserve:
         way = f"the way back takes {needed:.0%}" if needed < inf else "the wind is stronger than the robot"
         return f"point of no return: {left:.0%} of the energy is left, and {way}"
 
+    def short(self, state: State, response: str, track: Track) -> str:
+        """Return why what is left does not suffice for a response, margin or not; empty where it may."""
+        left = state.energy
+        endurance = None if left is None or self._begun is None else self._endurance(state.time, left)
+        if left is None or endurance is None or response not in COMES_DOWN:
+            return ""
+        needed = seconds_back(self._robot, state, response, track) / endurance
+        if left >= needed:
+            return ""
+        return f"{left:.0%} of the energy is left, and {response} takes {needed:.0%}"
+
     def _endurance(self, time: float, left: float) -> float | None:
         """Return for how many seconds a full battery lasts; None where nobody knows."""
         assert self._begun is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Sequence
+from math import inf
 
 from ..clock import Clock
 from ..faults import (
@@ -15,6 +16,7 @@ from ..faults import (
     POSITION_LOST,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
+    Displaced,
     Fault,
     Stopped,
 )
@@ -25,7 +27,7 @@ from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
 from .energy import COMES_DOWN, Reserve
 from .ground import WATCHED, Ground
-from .responses import CONTINUE, policy_for
+from .responses import CONTINUE, LAND, policy_for
 from .ways import Track
 
 SILENCE_SECONDS = 5.0
@@ -47,6 +49,12 @@ TOUCHING = 1.0
 
 COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 """Modes at whose end the motors stop."""
+
+ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
+"""Responses that need neither a position nor much energy."""
+
+CRITICAL = ("critical", "emergency")
+"""What vehicles say of batteries that are nearly empty; of others, policies know better what to do."""
 
 Decide = Callable[[str, str, str], None]
 
@@ -85,6 +93,8 @@ class Watch:
         self._ground: Ground | None = None
         self._heeded: frozenset[str] | None = None
         self._hands_off = False
+        self._response = ""
+        self._taken_back = -inf
         self.looking = False
         self.taken = False
         self._flown = False
@@ -95,6 +105,7 @@ class Watch:
         """Watch link and vehicle, too."""
         self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
         self._ground = Ground(link)
+        vehicle.insist(self._insists)
 
     def tell_missing(self) -> None:
         """Tell people before the robot moves that none of their ground stations is heard."""
@@ -113,6 +124,7 @@ class Watch:
         if handled is not None and response not in COMES_DOWN:
             heeded |= {BATTERY_LOW, GROUND_LOST}
         self._heeded = frozenset(heeded - set(handled or ()))
+        self._response = response
 
     def let_go(self) -> None:
         """Heed nothing but the link from now on: somebody else has the vehicle."""
@@ -139,7 +151,7 @@ class Watch:
 
     def tighten(self) -> None:
         """Heed everything again: the robot goes on with its program."""
-        self._heeded, self._hands_off, self.silence = None, False, False
+        self._heeded, self._hands_off, self.silence, self._response = None, False, False, ""
         self.renew()
 
     def renew(self) -> None:
@@ -250,7 +262,11 @@ class Watch:
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
     def _check_pilot(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> None:
-        """Raise a fault where the vehicle has left its mode: by its own failsafe, or by a pilot."""
+        """Raise a fault where the vehicle has left its mode: by its own failsafe, or by a pilot.
+
+        What it has answered by itself is answered as policies say. Where the robot bears that, or does
+        so already, the vehicle is taken back, if that makes sense.
+        """
         left = _left(vehicle)
         if left is None:
             return
@@ -261,8 +277,49 @@ class Watch:
             self.looking = False
         if found is None:
             self.taken = True
-            raise Fault(TAKEN_OVER, f"{left}")
-        raise Fault(found[0], f"{found[1]}; {left}")
+            raise _taken_over(left, vehicle)
+        event, why = found[0], f"{found[1]}; by itself it has gone into mode {vehicle.state().mode}"
+        if self._answers(event):
+            self._taken_back = self._clock.now()
+            raise Fault(event, why)
+        if hindrance := self._hindrance(event, found[1], vehicle):
+            raise Fault(event, f"{why}; {hindrance}", LAND)
+        self._take_back(event, why)
+        raise Displaced(event, why)
+
+    def _insists(self, fault: Fault) -> bool:
+        """Return whether a vehicle that goes elsewhere by itself, while it is told a mode, is told again."""
+        assert self._vehicle is not None
+        event, said = fault.event, self._vehicle.telemetry.announcements.of_this_mode
+        if event == TAKEN_OVER or self._answers(event) or not (why := said(event, self._taken_back)):
+            return False
+        if self._hindrance(event, why, self._vehicle):
+            return False
+        self._take_back(event, f"{why}; {fault}")
+        return True
+
+    def _take_back(self, event: str, why: str) -> None:
+        goes_on = self._response or CONTINUE
+        self._taken_back = self._clock.now()
+        self.decide(event, why, goes_on)
+        self.say(f"takes its vehicle back, {goes_on} goes on: {event}: {why}")
+
+    def _hindrance(self, event: str, said: str, vehicle: MavlinkVehicle) -> str:
+        """Return why a vehicle that does something by itself is not taken back; empty if it is.
+
+        Args:
+            event: that it answers.
+            said: what it has said about that.
+            vehicle: it.
+        """
+        if self._response in ANYWHERE:
+            return ""
+        if vehicle.telemetry.position_trouble():
+            return "without a position it cannot be taken back"
+        if event != BATTERY_LOW or not any(word in said.lower() for word in CRITICAL):
+            return ""
+        short = self._reserve.short(vehicle.state(), self._response, self.track())
+        return f"it is not taken back: {short}" if short else ""
 
     def check_hands(self) -> None:
         """Make sure, right before the vehicle is told how to respond, that no pilot has just taken it.
@@ -278,7 +335,7 @@ class Watch:
         by_themselves = modes.of_failsafes(self._link, self._robot.vehicle)
         if left is not None and tells.armed() and tells.mode() not in by_themselves:
             self.taken = True
-            raise Fault(TAKEN_OVER, f"{left}")
+            raise _taken_over(left, self._vehicle)
 
     def _find_cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
         """Wait for the cause of a change of mode as long as it may still be on its way."""
@@ -286,7 +343,7 @@ class Watch:
         if not tells.armed() or tells.mode() == FIRST_MODE:
             # One that has started anew has lost its position, too: that is no cause.
             if link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS)):
-                return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
+                return self._restart()
             return None
         by_itself = tells.mode() in modes.of_failsafes(link, self._robot.vehicle)
         seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
@@ -295,20 +352,35 @@ class Watch:
     def _cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
         """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
         if signs.restarted and self.moving:
-            return self._answered(VEHICLE_RESTARTED, "the vehicle has started anew")
-        left, mode = _left(vehicle), vehicle.telemetry.mode()
-        told = [(left.event, str(left))] if left is not None and left.event != TAKEN_OVER else []
+            return self._restart()
+        mode, tells = vehicle.telemetry.mode(), vehicle.telemetry.announcements
+        told = [(event, text.text) for event, text in tells.recent()]
         for event, why in (*signs.seen(moving=self.moving), *told):
-            if why and mode in modes.answers_to(link, self._robot.vehicle, event):
-                return self._answered(event, why)
+            said = tells.of_this_mode(event, self._taken_back)
+            if why and mode in modes.answers_to(link, self._robot.vehicle, event, (said,)):
+                if self._answers(event):
+                    return event, why
+                if said:
+                    return event, said
         return None
 
-    def _answered(self, event: str, why: str) -> tuple[str, str] | None:
-        """Return an event with its reason, unless the robot does not heed it, or carries on."""
-        if not self._heeds(event):
-            return None
+    def _restart(self) -> tuple[str, str] | None:
+        """Return that the vehicle has started anew, unless the robot does not heed it, or carries on."""
+        why = "the vehicle has started anew"
+        return (VEHICLE_RESTARTED, why) if self._answers(VEHICLE_RESTARTED) else None
+
+    def _answers(self, event: str) -> bool:
+        """Return whether the robot is to answer an event that happens now."""
         borne = policy_for(event, self._robot, self.current()).response == CONTINUE
-        return None if borne else (event, why)
+        return self._heeds(event) and not borne
+
+
+def _taken_over(left: Fault, vehicle: MavlinkVehicle) -> Fault:
+    """Return that a pilot has taken over, in the words of why the vehicle is elsewhere, if these say so."""
+    if left.event == TAKEN_OVER:
+        return left
+    mode = vehicle.state().mode
+    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: somebody else has taken over")
 
 
 def _left(vehicle: MavlinkVehicle) -> Fault | None:

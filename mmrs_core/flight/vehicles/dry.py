@@ -104,6 +104,9 @@ class DryVehicle:
     def take_back(self) -> None:
         """Do nothing: it does nothing by itself."""
 
+    def regain(self) -> None:
+        """Do nothing: it does nothing by itself."""
+
     def surface(self) -> None:
         """Be at the surface."""
         self._mode = SURFACE

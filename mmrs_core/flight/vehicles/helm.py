@@ -34,6 +34,9 @@ class Helm:
     nobody here asked for means that a pilot has taken over: the program then ends and leaves the
     vehicle alone. One that was asked for lately is no pilot's, although something else was asked for
     since: it is only late, or a copy of it was.
+
+    Attributes:
+        insists: whether the vehicle is to be told again what it has left by itself while it was told.
     """
 
     def __init__(self, link: Link, telemetry: Telemetry, kind: str) -> None:
@@ -47,6 +50,7 @@ class Helm:
         self._habits: Habits | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
+        self.insists: Callable[[Fault], bool] = lambda fault: False
 
     @property
     def habits(self) -> Habits:
@@ -76,8 +80,7 @@ class Helm:
             Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
         """
         wanted, before, accepted = self._modes[mode], self._telemetry.mode(), self._accepted
-        if mode == modes.GUIDED:
-            self.habits.begin_guiding()
+        self._begin(mode)
         self.let_go()
 
         def strange() -> bool:
@@ -93,7 +96,12 @@ class Helm:
                 heard=True,
             )
             if strange():
-                raise self._left(self._telemetry.mode(), modes.word_of(self._link, self._kind, before))
+                self._await_words()
+                fault = self._left(self._telemetry.mode(), modes.word_of(self._link, self._kind, before))
+                if not self.insists(fault):
+                    raise fault
+                before = self._telemetry.mode()
+                self._begin(mode)
             if self._telemetry.mode() == wanted.number:
                 self._requests.shows(wanted.number)
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
@@ -101,6 +109,17 @@ class Helm:
                     self.habits.end_guiding()
                 return
         raise Refused(f"the vehicle does not go into mode {mode}")
+
+    def regain(self) -> None:
+        """Go into the mode again that the vehicle has left by itself.
+
+        Raises:
+            Refused: the vehicle does not go into it. Fault: somebody has taken over.
+        """
+        mode = self._mode
+        self.let_go()
+        if mode is not None:
+            self.enter(mode)
 
     def let_go(self) -> None:
         """Accept whatever mode the vehicle goes into, as after landing."""
@@ -137,11 +156,21 @@ class Helm:
         link, number = self._link, mavlink.MAV_CMD_DO_SET_MODE
         link.send(mavlink.MAVLink_command_long_message(link.system, link.component, number, 0, *params))
 
+    def _begin(self, mode: str) -> None:
+        if mode == modes.GUIDED:
+            self.habits.begin_guiding()
+
+    def _await_words(self) -> None:
+        """Give a vehicle that is in a mode of its failsafes the time to say why."""
+        if self._telemetry.mode() in modes.of_failsafes(self._link, self._kind):
+            self._link.wait(self._telemetry.failsafe, self._link.clock.patience(WORDS_SECONDS, 0.3))
+
     def _left(self, number: int, mode: str) -> Fault:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""
         self.habits.end_guiding()
         cause = self._telemetry.failsafe()
-        if cause is not None and number in modes.answers_to(self._link, self._kind, cause):
+        said = [text.text for event, text in self._telemetry.announcements.recent() if event == cause]
+        if cause is not None and number in modes.answers_to(self._link, self._kind, cause, said):
             return Fault(cause, f"the vehicle left mode {mode} by itself, for mode {self.mode()}")
         return Fault(
             TAKEN_OVER, f"the vehicle left mode {mode} for {self.mode()}: somebody else has taken over"

@@ -287,6 +287,20 @@ class MavlinkVehicle:
         """Accept, until it is told something, that it is in a mode into which it goes by itself."""
         self._helm.accept(modes.of_failsafes(self._link, self._kind))
 
+    def regain(self) -> None:
+        """Have the vehicle again in the mode that it has left by itself, and stay where it is in GUIDED.
+
+        Raises:
+            Refused: it does not go into it. Fault: somebody has taken over.
+        """
+        self._helm.regain()
+        if self._helm.mode() == modes.GUIDED:
+            self._steering.stay()
+
+    def insist(self, insists: Callable[[Fault], bool]) -> None:
+        """Ask that, where the vehicle has left by itself what it is just told, before telling it again."""
+        self._helm.insists = insists
+
     def surface(self) -> None:
         """Come up to the water surface."""
         self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)

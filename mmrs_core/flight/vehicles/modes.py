@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -120,15 +120,31 @@ ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
 
 A pilot who takes over because of an event goes into another: that the event is there is no reason to
 take the vehicle back. What a pilot may choose as well (to hold the height without a position) is left
-out, although ArduPilot can be told to answer so.
+out: there the vehicle must have named the mode.
+"""
+
+NAMED: Mapping[str, Mapping[str, int]] = {"copter": {"althold": 2, "altitudehold": 2}}
+"""Modes that vehicles name when they go into them by themselves, in small letters only.
+
+``EKF Failsafe: changed to ALT_HOLD Mode`` (ArduCopter, ``ekf_check.cpp``) with FS_EKF_ACTION = 2.
 """
 
 
-def answers_to(link: Link, kind: str, event: str) -> frozenset[int]:
-    """Return the numbers of the modes into which a vehicle goes by itself when an event happens."""
+def answers_to(link: Link, kind: str, event: str, said: Iterable[str] = ()) -> frozenset[int]:
+    """Return the numbers of the modes into which a vehicle goes by itself when an event happens.
+
+    Args:
+        link: to the vehicle.
+        kind: of the vehicle.
+        event: of policies.
+        said: what the vehicle has just said about the event.
+    """
     if is_px4(link):
         return of_failsafes(link, kind)
-    return ANSWERS[kind].get(event, frozenset())
+    letters = ["".join(filter(str.isalpha, text.lower())) for text in said]
+    named = NAMED.get(kind, {}).items()
+    told = {number for name, number in named if any(f"changedto{name}" in each for each in letters)}
+    return ANSWERS[kind].get(event, frozenset()) | told
 
 
 def px4_number(main: int, sub: int) -> int:

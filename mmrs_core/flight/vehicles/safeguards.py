@@ -87,7 +87,7 @@ COPTER = (
         "FS_EKF_ACTION",
         "position lost",
         {0: "say so only", 1: "land, or hold its height", 2: "hold its height", 3: "land"},
-        {0: "it flies on without a position"},
+        {0: "it flies on without a position", 2: "the wind carries it until its program lands it"},
     ),
     Safeguard("RTL_ALT", "height at which it returns", unit=" cm"),
     Safeguard("RTL_ALT_M", "height at which it returns", unit=" m"),

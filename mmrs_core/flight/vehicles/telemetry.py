@@ -6,9 +6,10 @@ from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import BATTERY_LOW, FENCE_BREACHED, LINK_LOST, POSITION_LOST
+from ..faults import FENCE_BREACHED, POSITION_LOST
 from ..links.link import Link, Message
 from ..program import Geographic, Local, Place
+from .announcements import WORDS, Announcements
 from .detections import Detections
 from .readiness import lacks, unlocated
 from .texts import Texts
@@ -30,14 +31,6 @@ IN_AIR = frozenset(
     }
 )
 OBSTACLE_METRES = 5.0
-FAILSAFE_WORDS = (
-    (POSITION_LOST, ("ekf failsafe", "gps failsafe", "position lost", "no valid position", "no position")),
-    (FENCE_BREACHED, ("fence breach", "geofence")),
-    (BATTERY_LOW, ("battery failsafe", "battery 1 is", "low battery", "critical battery", "battery level")),
-    (LINK_LOST, ("gcs failsafe", "gcs connection lost", "data link lost")),
-)
-"""What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
-
 CHARGE = {2: "low", 3: "critical", 4: "an emergency", 5: "failed", 6: "unhealthy"}
 BREACHES = {1: "too low", 2: "too high", 3: "at its boundary"}
 
@@ -47,6 +40,7 @@ class Telemetry:
 
     Attributes:
         texts: what the vehicle has said.
+        announcements: what of that is about what it does by itself.
     """
 
     def __init__(self, link: Link, home: Place) -> None:
@@ -57,6 +51,8 @@ class Telemetry:
         self._position = "GLOBAL_POSITION_INT" if self._geographic else "LOCAL_POSITION_NED"
         self.texts = Texts(link.clock)
         link.observe(self.texts)
+        self.announcements = Announcements(link.clock, self.texts)
+        link.observe(self.announcements)
         self._detections = Detections()
         link.observe(self._detections)
 
@@ -138,14 +134,8 @@ class Telemetry:
             return POSITION_LOST
         if self.breach():
             return FENCE_BREACHED
-        now = self._link.clock.now()
-        said = [
-            text.text.lower() for text in self.texts.since(now - self._link.clock.patience(RECENT_SECONDS))
-        ]
-        for event, words in FAILSAFE_WORDS:
-            if any(word in text for text in said for word in words):
-                return event
-        return None
+        said = {event for event, _ in self.announcements.recent()}
+        return next((event for event, _ in WORDS if event in said), None)
 
     def here(self) -> Place:
         """Return the position; home before there is one."""

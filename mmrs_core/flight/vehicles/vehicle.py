@@ -130,6 +130,10 @@ class Vehicle(Protocol):
         """Be ready to command the vehicle out of a mode that it went into by itself."""
         ...
 
+    def regain(self) -> None:
+        """Have the vehicle again in the mode that it has left by itself."""
+        ...
+
     def surface(self) -> None:
         """Come up to the water surface."""
         ...

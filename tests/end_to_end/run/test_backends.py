@@ -102,6 +102,29 @@ def test_a_robot_without_a_take_off_is_watched_after_it_was_charged():
         until(lambda: driven.fault == "OBSTACLE")
 
 
+def test_a_battery_that_does_not_get_full_is_borne_and_the_robot_watched_on():
+    with rover(Policy("BATTERY_LOW", "CONTINUE"), Policy("OBSTACLE", "HOLD")) as driven:
+        driven.do("out", "back")
+        driven.vehicle.faults.set_battery(0.5)
+        driven.begin("charge")
+        until(lambda: driven.fault == "BATTERY_LOW")
+        assert driven.backend.bear(driven.clock.now())
+        driven.finish()
+        driven.begin("far")
+        until(lambda: driven.state.position[0] > 20.0)
+        assert not driven.fault
+        driven.vehicle.faults.take_stick("manual")
+        until(lambda: driven.fault == "TAKEN_OVER")
+
+
+def test_a_link_that_has_ended_cannot_be_borne():
+    with rover(Policy("LINK_LOST", "CONTINUE")) as driven:
+        driven.begin("out")
+        driven.backend._with.link.learns("the port has ended")
+        until(lambda: driven.fault == "LINK_LOST")
+        assert not driven.backend.bear(driven.clock.now())
+
+
 def test_a_black_box_begins_with_the_vehicle_and_the_software_as_a_controllers_does(tmp_path):
     with rover(folder=tmp_path, system=7):
         pass
