@@ -8,6 +8,7 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
+from patience import until
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.orders.ordering import give
@@ -49,6 +50,12 @@ def covered(vehicle) -> list[bool]:
 
 def begun(made, name: str) -> int:
     return sum((step["label"], step["move"]) == ("begin", name) for step in made.steps("alpha"))
+
+
+def resumed(made) -> bool:
+    """Order the robot to go on, and return whether it does: not before it has heard of its battery."""
+    (told,) = give(made.logs, "resume", ["alpha"])
+    return told["confirmed"]
 
 
 def empty(made, vehicle, links, move: str) -> str:
@@ -98,8 +105,7 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
         vehicles["alpha"].faults.set_battery(0.19)
         assert any("came home for its battery" in line for line in process.stderr)
         vehicles["alpha"].faults.set_battery(1.0)
-        (told,) = give(made.logs, "resume", ["alpha"])
-        assert told["confirmed"]
+        until(lambda: resumed(made))
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
     assert all(covered(vehicles["alpha"]))
@@ -116,8 +122,7 @@ def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, han
         vehicles["alpha"].faults.restart()
         vehicles["alpha"].faults.set_battery(1.0)
         time.sleep(1.0)
-        (told,) = give(made.logs, "resume", ["alpha"])
-        assert told["confirmed"]
+        until(lambda: resumed(made))
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
     assert all(covered(vehicles["alpha"]))
