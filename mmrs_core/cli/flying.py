@@ -121,7 +121,11 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             observe=observer.observe,
             say=tell,
         )
-        stack.enter_context(hear_orders(wishes.folder, run, here, orders, observer.status))
+
+        def status(robot: str) -> Mapping[str, object]:
+            return {**venture.standing.status(robot), **observer.status(robot)}
+
+        stack.enter_context(hear_orders(wishes.folder, run, here, orders, status))
         stack.enter_context(_stopping(orders, here))
         stack.enter_context(unfailing())
         ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)

@@ -35,10 +35,10 @@ class Observer:
         self._workshop.plugins.observe_step(record)
 
     def status(self, robot: str) -> Mapping[str, object]:
-        """Return what a robot did last, and what it has reported last if it has."""
+        """Return what a robot did last, and what it has reported last if it has; empty before it began."""
         last, reported = self._last.get(robot), self._reported.get(robot)
         if last is None:
-            return {"state": "gets ready"}
+            return {}
         done = {"move": last.move, "step": last.label, "time": last.time}
         return done | ({} if reported is None else {"reported": reported})
 

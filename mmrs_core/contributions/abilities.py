@@ -100,6 +100,15 @@ class Noting(Protocol):
 
 
 @runtime_checkable
+class Telling(Protocol):
+    """A backend that people may ask how its robot is."""
+
+    def told(self) -> Mapping[str, object]:
+        """Return what the robot has told last, as JSON has it; empty before it has; from any thread."""
+        ...
+
+
+@runtime_checkable
 class Closing(Protocol):
     """A backend with links and threads that end with the run."""
 

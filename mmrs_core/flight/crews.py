@@ -6,16 +6,23 @@ import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from .orders.orders import Inbox, Receipt
+from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS
 from .questions import Questions
 from .records.blackbox import plain
 from .records.journal import Journal
 from .vehicles.vehicle import State
 
-WAITS = "waits for its vehicle"
-WORKS = "works"
-SUSPENDED = "waits for its battery"
-LOST = "has ended by a lost link"
-ENDED = "has ended"
+
+def told_of(state: State) -> dict[str, object]:
+    """Return what there is to say of a vehicle's state, as JSON has it."""
+    found = {
+        "mode": state.mode,
+        "armed": state.armed,
+        "energy": state.energy,
+        "place": state.place,
+        "speed": round(state.speed, 2),
+    }
+    return {name: plain(value) for name, value in found.items()}
 
 
 class Crews:
@@ -71,16 +78,7 @@ class Crews:
         if robot not in self._manned:
             return {"phase": phase}
         told, journal = self._manned[robot]
-        state = told()
-        found = {
-            "phase": phase,
-            "move": journal.move,
-            "mode": state.mode,
-            "armed": state.armed,
-            "energy": state.energy,
-            "place": state.place,
-            "speed": round(state.speed, 2),
-        }
+        found: dict[str, object] = {"phase": phase, "move": journal.move, **told_of(told())}
         asked = self.questions[robot].asked
         found |= ({"asks": asked} if asked else {}) | (
             {"reported": journal.reported} if journal.reported else {}

@@ -9,6 +9,7 @@ from math import inf
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.flight.crews import told_of
 from mmrs_core.flight.faults import (
     BATTERY_LOW,
     DEVICE_SILENT,
@@ -144,6 +145,10 @@ class MavlinkBackend:
         return RobotState(
             now, place, known.speed, known.heading, energy, known.energy, known.wind, known.detected
         )
+
+    def told(self) -> Mapping[str, object]:
+        """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
+        return told_of(self._with.vehicle.state()) if self._with.link.component else {}
 
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""

@@ -78,6 +78,7 @@ def interpret(
             )
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
+    terms.standing.begin(robots)
     over = {id: why for id, why in over_by(program, terms.resumed).items() if id not in backends}
     return _Run(program, robots, bus, clock, terms, over).go()
 

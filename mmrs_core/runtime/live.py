@@ -20,6 +20,7 @@ from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, Order, Orders
 from mmrs_core.runtime.resuming import over_by
+from mmrs_core.runtime.standing import Standing
 from mmrs_core.runtime.terms import Ending, Terms
 
 
@@ -42,6 +43,7 @@ class Venture:
             again what it is given; returns, by robot, how well they begin together.
         observe: called with each step before it has an effect.
         say: tells people what goes on.
+        standing: for people who ask how robots are.
     """
 
     program: Program
@@ -59,6 +61,7 @@ class Venture:
     meet: Callable[[Callable[[], None]], Mapping[str, str]] = lambda look: {}
     observe: Callable[[StepRecord], None] | None = None
     say: Callable[[str], None] = print
+    standing: Standing = field(default_factory=Standing)
 
 
 def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
@@ -80,6 +83,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     venture = replace(venture, inputs={id: each for id, each in venture.inputs.items() if id not in over})
     with ExitStack() as stack:
         robots = _connected(venture, backend, attention, stack)
+        venture.standing.connect(robots)
         _get_ready(robots, venture)
         steps = interpret(
             venture.program,
@@ -98,6 +102,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
                 attention=attention,
                 orders=venture.orders,
                 say=venture.say,
+                standing=venture.standing,
             ),
         )
         stack.callback(steps.close)

@@ -12,6 +12,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.orders import Orders
+from mmrs_core.runtime.standing import Standing
 
 Observer = Callable[[StepRecord], None]
 
@@ -33,6 +34,7 @@ class Terms:
         attention: through which backends wake the interpreter; None in simulated time.
         orders: what people order meanwhile.
         say: tells people what goes on.
+        standing: for people who ask how robots are.
     """
 
     run: str = "run-0"
@@ -46,6 +48,7 @@ class Terms:
     attention: Attention | None = None
     orders: Orders = field(default_factory=Orders)
     say: Callable[[str], None] = lambda words: None
+    standing: Standing = field(default_factory=Standing)
 
 
 TO_THE_END = Terms()

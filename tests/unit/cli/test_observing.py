@@ -18,7 +18,7 @@ FLOCK = program(robot_program("alpha", [SEES]))
 def test_what_a_robot_has_reported_last_is_part_of_how_it_is(tmp_path):
     with LogWriter(tmp_path) as writer:
         observer = Observer(Workshop(Settings()), writer, FLOCK)
-        assert observer.status("alpha") == {"state": "gets ready"}
+        assert observer.status("alpha") == {}
         photo, seen = (
             StepRecord("run-0", "alpha", seq, seq, 1.0, "act", "looks", detail=f"pre:{seq}") for seq in (0, 1)
         )

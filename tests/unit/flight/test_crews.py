@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.crews import ENDED, SUSPENDED, WAITS, WORKS, Crews
+from mmrs_core.flight.crews import Crews
 from mmrs_core.flight.orders.orders import Order
+from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
 
 
 @pytest.fixture

@@ -11,12 +11,13 @@ import pytest
 from flight_crew import SPEEDUP, free_port, in_background, robot_of
 from patience import until
 
-from mmrs_core.flight.crews import ENDED, SUSPENDED, WAITS, WORKS, Crews
+from mmrs_core.flight.crews import Crews
 from mmrs_core.flight.injection import Rehearsal
 from mmrs_core.flight.judgement import Judgement
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.options import options_of, parser_for
 from mmrs_core.flight.orders.orders import Order
+from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
 from mmrs_core.flight.program import Hold, Policy
 from mmrs_core.flight.records.log import read
 from mmrs_core.flight.session import Shared, run_robot

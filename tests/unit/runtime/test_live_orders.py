@@ -194,3 +194,15 @@ def test_a_question_nobody_answers_ends_by_the_policy_of_long_waits(live):
     )
     run = live(behaviour, Script(), conditions=standard_conditions(["answer:q"]))
     assert run.end().faults["r"] == Fault("WAIT_TOO_LONG", "waits for answer:q")
+
+
+def test_people_who_ask_are_told_how_robots_are_in_the_words_of_controllers(live):
+    behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:go on?", "x", "stop")}))
+    run = live(behaviour, Script(ready=0.3), conditions=standard_conditions(["answer:go on?"]))
+    standing = run.venture.standing
+    assert standing.status("r") == {"phase": "waits for its vehicle"}
+    run.wait_for(lambda: "asks" in standing.status("r"))
+    assert standing.status("r") == {"phase": "works", "move": "h", "asks": "go on?"}
+    run.orders.give("answer", ["r"], question="go on?", answer=True)
+    run.end()
+    assert standing.status("r")["phase"] == "has ended"

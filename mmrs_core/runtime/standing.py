@@ -1,0 +1,49 @@
+"""How the robots of a run are, for people who ask while it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from mmrs_core.contributions.abilities import Telling
+from mmrs_core.contributions.backends import Backend
+from mmrs_core.flight.faults import LINK_LOST
+from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS
+from mmrs_core.runtime.robot import RunningRobot
+
+
+class Standing:
+    """Knows how robots are, in the words of generated controllers; any thread may ask."""
+
+    def __init__(self) -> None:
+        """Know of no robot yet."""
+        self._backends: Mapping[str, Backend] | None = None
+        self._robots: Mapping[str, RunningRobot] = {}
+
+    def connect(self, backends: Mapping[str, Backend]) -> None:
+        """Take the backends of all robots that have something left to do."""
+        self._backends = dict(backends)
+
+    def begin(self, robots: Iterable[RunningRobot]) -> None:
+        """Take the robots that now begin."""
+        self._robots = {robot.id: robot for robot in robots}
+
+    def status(self, robot: str) -> Mapping[str, object]:
+        """Return what there is to say of a robot, as JSON has it."""
+        running = self._robots.get(robot)
+        backend = (self._backends or {}).get(robot)
+        found: dict[str, object] = {"phase": self._phase(robot, running)}
+        if running is not None:
+            found["move"] = running.move.id
+        if isinstance(backend, Telling):
+            found |= backend.told()
+        if running is not None and running.questions.asked:
+            found["asks"] = running.questions.asked
+        return found
+
+    def _phase(self, robot: str, running: RunningRobot | None) -> str:
+        if running is None:
+            return WAITS if self._backends is None or robot in self._backends else ENDED
+        if running.point.is_final:
+            lost = running.fault is not None and running.fault.which == LINK_LOST
+            return LOST if lost else ENDED
+        return SUSPENDED if running.suspended else WORKS
