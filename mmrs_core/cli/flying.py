@@ -28,7 +28,7 @@ from mmrs_core.errors import LinkLostError
 from mmrs_core.pipeline import conditions_for, inputs_of, run_live
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture
-from mmrs_core.runtime.obedience import STOPPED
+from mmrs_core.runtime.obedience import ORDERED, STOPPED
 from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
 
@@ -54,7 +54,7 @@ class Result:
         faults = {self.ending.faults[robot].which for robot in self.ending.responses}
         if "LINK_LOST" in faults or self.ending.unconfirmed:
             return LinkLostError.exit_code
-        if STOPPED in faults:
+        if {STOPPED, ORDERED} & faults:
             return INTERRUPTED
         return 0 if self.ending.outcome is Outcome.SUCCESS else FAILED
 

@@ -37,6 +37,14 @@ class Recovering(Protocol):
         """
         ...
 
+    def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
+        """Return why the robot could not be brought back now, as one that stands elsewhere; or nothing."""
+        ...
+
+    def moves(self, now: float) -> bool:
+        """Return whether the robot was seen to be under way, or able to be at any moment."""
+        ...
+
 
 @runtime_checkable
 class Bearing(Protocol):
@@ -60,7 +68,15 @@ class Watched(Protocol):
         ...
 
     def watched(self, now: float) -> bool:
-        """Return whether the robot has stopped, and would do something else if nobody watched it."""
+        """Return whether the robot has stopped, or is out of reach, and somebody must stay with it."""
+        ...
+
+    def undone(self, now: float) -> str:
+        """Return why it has stopped without doing what it was told by `stop`; empty where it has done it."""
+        ...
+
+    def reachable(self, now: float) -> bool:
+        """Return whether the robot was heard of lately, so that it can be told something."""
         ...
 
 

@@ -69,7 +69,7 @@ def main(
         _open_control(options, crews, stack)
         _stop_on_signals(stop, abandon)
         codes = _run_all(robots, shared)
-    return next((code for code in (INTERRUPTED, LINK, FAILED) if code in codes), OK)
+    return next((code for code in (LINK, INTERRUPTED, FAILED) if code in codes), OK)
 
 
 def _run_all(robots: Sequence[Robot], shared: Shared) -> list[int]:

@@ -21,7 +21,13 @@ from mmrs_core.flight.faults import (
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
-from mmrs_core.flight.steps.obeying import obeying
+from mmrs_core.flight.steps.ending import (
+    HEARD_SECONDS,
+    LEAST_HEARD_SECONDS,
+    LEAST_LISTEN_SECONDS,
+    LISTEN_SECONDS,
+)
+from mmrs_core.flight.steps.obeying import astray, obeying, undone
 from mmrs_core.flight.steps.responses import CONTINUE, NEEDS_POSITION, respond
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.mavlink.backend_equipment import Equipment
@@ -57,6 +63,10 @@ class MavlinkBackend:
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
         self._response = ""
+        self._instead = ""
+        self._tolerance = options.home_tolerance
+        self._lost: VehicleFault | None = None
+        self._listens = 0.0
         self._shown: Callable[[], bool] = lambda: False
         self._brakes: Callable[[], bool] = lambda: False
         self._holding = self._hands_off = False
@@ -152,14 +162,15 @@ class MavlinkBackend:
 
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""
-        if response == self._response and (self._worker.fault is None or not self._worker.done):
-            return
         found = self._worker.fault
+        back = found is not None and found.event == LINK_LOST and self.reachable(now)
+        if not back and response == self._response and (found is None or not self._worker.done):
+            return
         self._response, self._holding, self._under_way = response, False, ()
         self._shown = self._brakes = lambda: False
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, response)
-        if found is not None and found.event == LINK_LOST:
+        if found is not None and found.event == LINK_LOST and not back:
             return
         if response == HANDS_OFF or (found is not None and found.event == TAKEN_OVER):
             self._hands_off = True
@@ -169,6 +180,7 @@ class MavlinkBackend:
             return
         possible = self._possible(found, response)
         self._shown = obeying(possible, self._robot, self._with.vehicle, self._moves.track)
+        self._instead = "" if possible == response else f"without a position, it does {possible}"
         self._worker.begin(Job(lambda: self._respond(possible)), afresh=True)
         self._with.link.wake()
 
@@ -176,20 +188,54 @@ class MavlinkBackend:
         """Return whether the vehicle has carried out the response, or was seen to begin it since."""
         if self._worker.fault is not None or not self._worker.started:
             return False
-        return self._worker.done or self._shown()
+        return (self._worker.done or self._shown()) and not self.undone(now)
+
+    def undone(self, now: float) -> str:
+        """Return why nothing is left to do, and the vehicle has not done what it was told."""
+        return self._instead or undone(self._response, self._robot, self._with.vehicle)
+
+    def reachable(self, now: float) -> bool:
+        """Return whether the vehicle was heard lately."""
+        limit = self._with.clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
+        return self._with.link.listening and self._with.link.silent_for() < limit
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
         return self._watch.looking or (self._watch.taken and not self._hands_off)
 
     def watched(self, now: float) -> bool:
-        """Return whether the motors run, and the vehicle holds or a pilot has it.
+        """Return whether the motors run, and the vehicle holds, a pilot has it, or its link is lost.
 
         Without the heartbeats of this process, it might fly away from the pilot.
         """
-        if self._worker.fault is not None:
-            return False
+        if (found := self._worker.fault) is not None:
+            return found.event == LINK_LOST and self._is_listened_to(found)
         return self._holding or (self._hands_off and self._with.vehicle.state().armed)
+
+    def _is_listened_to(self, lost: VehicleFault) -> bool:
+        """Return whether a vehicle whose link was lost may still be heard, and given orders."""
+        now = self._with.clock.now()
+        if self._lost is not lost or self.reachable(now):
+            self._lost = lost
+            self._listens = now + self._with.clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
+        return self._with.vehicle.state().armed and now < self._listens
+
+    def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
+        """Return why there is no way back now; empty where there is one."""
+        vehicle = self._with.vehicle
+        if not self.reachable(now):
+            return "its vehicle is not heard"
+        if not vehicle.state().armed and (away := astray(self._robot, vehicle, self._tolerance)):
+            return away
+        try:
+            self._way.check(passed, begun)
+        except VehicleFault as fault:
+            return str(fault)
+        return ""
+
+    def moves(self, now: float) -> bool:
+        """Return whether the motors run."""
+        return self._worker.fault is None and self._with.vehicle.state().armed
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
         """Begin to go back to where the program was broken off."""

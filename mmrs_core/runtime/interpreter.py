@@ -301,7 +301,7 @@ class _Run:
 
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
-        if not any(robot.suspended for robot in self._robots):
+        if not any(robot.suspended and not robot.released for robot in self._robots):
             return -inf if begin else inf
         if begin and self._idle_since is None:
             self._idle_since = self._clock.now()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Collection, Generator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -152,18 +152,23 @@ def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
         for id in waiting:
             _refuse_fault(id, robots[id], clock.now())
         waiting = [id for id in waiting if not robots[id].finished(clock.now())]
-        early.look()
+        early.look(waiting)
         if waiting:
             clock.sleep_until(clock.now() + PACE)
-    _meet(robots, venture, early)
+    if not early.ends_all:
+        _meet(robots, venture, early)
     early.pass_on()
 
 
 def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
     def look() -> None:
-        early.look()
-        for id, robot in robots.items():
-            _refuse_fault(id, robot, venture.clock.now())
+        while True:
+            early.look(())
+            for id, robot in robots.items():
+                _refuse_fault(id, robot, venture.clock.now())
+            if not early.held:
+                return
+            venture.clock.sleep_until(venture.clock.now() + PACE)
 
     for id, why in venture.meet(look).items():
         if isinstance(robot := robots[id], Noting):
@@ -171,61 +176,88 @@ def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) 
 
 
 class _EarlyOrders:
-    """Orders that come before anything moves."""
+    """Orders that come before anything moves.
+
+    Attributes:
+        held: robots that are not to begin.
+    """
 
     def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
+        self.held: set[str] = set()
         self._venture, self._robots = venture, robots
+        self._under_way = {record.robot for record in venture.resumed}
+        self._open: list[Order] = []
         self._later: list[Order] = []
-        self._answers: list[Order] = []
-        self._held: set[str] = set()
         self._ended: set[str] = set()
 
-    def look(self) -> None:
-        """Obey what can be obeyed on the ground; once every robot is to end, nothing begins.
+    @property
+    def ends_all(self) -> bool:
+        """Return whether every robot is to end its program."""
+        return self._ended >= set(self._robots)
+
+    def look(self, unready: Collection[str]) -> None:
+        """Confirm to whom that is ready, and stays, that it does; once all are to end, nothing begins.
+
+        Args:
+            unready: robots whose vehicles are not known to stay where they are.
 
         Raises:
-            KeyboardInterrupt: if every robot was ordered to end its program.
+            KeyboardInterrupt: if every robot was ordered to end its program, and none is in the air.
         """
         for order in self._venture.orders.taken():
-            if order.kind in (HOLD, RESUME):
-                self._hold_or_not(order)
-            elif order.kind == ANSWER:
-                self._answers.append(order)
-            else:
-                self._keep(order)
-        if self._ended >= set(self._robots):
+            self._take(order)
+        for order in self._open:
+            for id in order.open:
+                if id not in unready and (order.kind == HOLD or id not in self._under_way):
+                    order.confirm(id)
+        self._open = [order for order in self._open if order.open]
+        if self.ends_all and not self._under_way & set(self._robots):
             self._venture.say("stopped before anything moved")
+            for order in self._open:
+                for id in order.open:
+                    order.confirm(id)
             raise KeyboardInterrupt
 
     def pass_on(self) -> None:
         """Have the interpreter obey what was ordered, and know the answers."""
-        if self._held:
-            self._venture.orders.give(HOLD, sorted(self._held))
-        for order in self._answers:
-            self._venture.orders.put_back(order)
+        if self.held:
+            self._venture.orders.give(HOLD, sorted(self.held))
         for order in self._later:
-            self._venture.orders.give(order.kind, order.robots)
-
-    def _hold_or_not(self, order: Order) -> None:
-        """Have robots stay on the ground once they are ready, or no longer."""
-        for id in order.robots:
-            if id not in self._robots:
-                order.refuse(id, "no such robot here")
-            elif order.kind == RESUME and id not in self._held:
-                order.refuse(id, "has nothing to resume")
+            if order.kind == ANSWER or order.open:
+                self._venture.orders.put_back(order)
             else:
-                (self._held.add if order.kind == HOLD else self._held.discard)(id)
-                order.confirm(id)
+                self._venture.orders.give(order.kind, order.robots)
 
-    def _keep(self, order: Order) -> None:
-        self._later.append(order)
-        for id in order.robots:
-            if id in self._robots:
-                order.confirm(id)
-            else:
-                order.refuse(id, "no such robot here")
+    def _take(self, order: Order) -> None:
+        for id in set(order.robots) - set(self._robots):
+            order.refuse(id, "no such robot here")
+        if order.kind == RESUME:
+            self._let_go(order)
+            return
+        if order.kind == HOLD:
+            self.held.update(order.open)
+        else:
+            self._later.append(order)
         if order.kind in ENDINGS:
-            self._ended.update(order.robots)
+            self._ended.update(order.open)
+            self._take_back(order.open, "something else was ordered since")
+        if order.kind != ANSWER:
+            self._open.append(order)
+
+    def _let_go(self, order: Order) -> None:
+        for id in order.open:
+            if id not in self.held:
+                order.refuse(id, "it is not held")
+            else:
+                self._take_back((id,), "it is to go on")
+                order.confirm(id)
+
+    def _take_back(self, robots: Collection[str], why: str) -> None:
+        """Have robots be held no longer."""
+        self.held -= set(robots)
+        for order in self._open:
+            for id in set(robots) & set(order.open) if order.kind == HOLD else ():
+                order.refuse(id, why)
 
 
 def _refuse_fault(id: str, robot: Backend, now: float) -> None:

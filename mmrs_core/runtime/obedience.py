@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.abilities import Doubting, Noting, Pausable, Watched
+from mmrs_core.contributions.abilities import Doubting, Noting, Pausable, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
-from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
+from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
 
 ORDERED, STOPPED = "ORDERED", "STOPPED"
@@ -48,11 +48,11 @@ class Obedience:
         """Tell the orders that ended a robot's program what became of it."""
         for order in self._open:
             began = (order, id) not in self._waiting
-            if order.kind in ENDINGS and id in order.open and began and not stopping:
-                if trouble is None:
-                    order.confirm(id)
+            if id in order.responses and id in order.open and began and not stopping:
+                if why := str(trouble) if trouble is not None else self._undone(order, id):
+                    order.refuse(id, why)
                 else:
-                    order.refuse(id, str(trouble))
+                    order.confirm(id)
                 self._note(order)
 
     def give_up(self) -> None:
@@ -89,9 +89,12 @@ class Obedience:
             self._resume(order, robot)
         elif robot.point.is_final:
             self._stop_again(order, robot)
+        elif self._stands(robot):
+            self._obey_on_the_ground(order, robot)
         else:
             which = STOPPED if order.kind == STOP else ORDERED
-            robot.end_by(Fault(which, f"order to {order.kind}"), self._orders.response(order.kind))
+            order.responses[id] = self._orders.response(order.kind)
+            robot.end_by(Fault(which, f"order to {order.kind}"), order.responses[id])
 
     def _answer(self, order: Order, robot: RunningRobot) -> None:
         ended = "its program has ended" if robot.point.is_final else ""
@@ -101,8 +104,12 @@ class Obedience:
             order.confirm(robot.id)
 
     def _hold(self, order: Order, robot: RunningRobot) -> None:
-        if robot.point.is_final or robot.suspended:
-            order.refuse(robot.id, "its program has ended")
+        if robot.point.is_final:
+            self._stop_again(order, robot)
+        elif self._stands(robot):
+            self._obey_on_the_ground(order, robot)
+        elif robot.suspended:
+            self._stop(order, robot)
         elif not isinstance(robot.backend, Pausable):
             order.refuse(robot.id, "its backend cannot pause")
         else:
@@ -110,7 +117,9 @@ class Obedience:
             robot.backend.pause(self._clock.now())
 
     def _resume(self, order: Order, robot: RunningRobot) -> None:
-        if robot.point.is_final:
+        if robot.broken_off:
+            self._stop(order, robot)
+        elif robot.point.is_final:
             order.refuse(robot.id, "its program has ended")
         elif robot.suspended and robot.stopping:
             order.refuse(robot.id, f"has still to do {robot.response}")
@@ -120,12 +129,24 @@ class Obedience:
             robot.backend.resume(self._clock.now())
             robot.held = False
         else:
-            order.refuse(robot.id, "has nothing to resume")
+            order.refuse(robot.id, "it is not held")
+
+    def _stands(self, robot: RunningRobot) -> bool:
+        """Return whether it came down for its battery, and is there."""
+        return robot.suspended and not (robot.stopping or self._is_watched(robot))
+
+    def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
+        """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
+        if order.kind == RETURN and (why := robot.astray(self._clock.now())):
+            order.refuse(robot.id, why)
+            return
+        robot.released = robot.released or order.kind == STOP
+        order.confirm(robot.id)
 
     def _recover(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot go on whose program was broken off, unless its battery was not changed."""
         try:
-            why = robot.still_low(self._clock.now())
+            why = robot.hindrance(self._clock.now())
         except LinkLostError as error:
             why = str(error)
         if why:
@@ -134,15 +155,13 @@ class Obedience:
             robot.recover(self._clock.now())
 
     def _stop_again(self, order: Order, robot: RunningRobot) -> None:
-        """Have a robot whose program has ended by a fault stop in another way."""
-        if robot.fault is None:
+        """Have a robot whose program has ended by a fault stop in another way, if it does anything still."""
+        busy = robot.fault is not None and (robot.stopping or self._is_watched(robot))
+        robot.released = robot.released or order.kind == STOP
+        if not busy:
             order.refuse(robot.id, "its program has ended")
-        elif robot.response == HANDS_OFF:
-            order.refuse(robot.id, "a pilot has taken over")
-        elif robot.fault.which == "LINK_LOST":
+        elif isinstance(robot.backend, Watched) and not robot.backend.reachable(self._clock.now()):
             order.refuse(robot.id, "its link is lost")
-        elif order.kind == STOP and not (robot.stopping or self._is_watched(robot)):
-            order.confirm(robot.id)
         else:
             self._stop(order, robot)
 
@@ -150,13 +169,20 @@ class Obedience:
         return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
 
     def _stop(self, order: Order, robot: RunningRobot) -> None:
-        robot.response = self._orders.response(order.kind)
+        """Have a robot do something else about what has ended its program; `resume` what it did before."""
+        if order.kind == HOLD:
+            robot.broken_off, robot.response = robot.broken_off or _unless_hold(robot.response), "HOLD"
+        elif order.kind == RESUME:
+            robot.broken_off, robot.response = "", robot.broken_off
+        else:
+            robot.broken_off, robot.response = "", self._orders.response(order.kind)
+        order.responses[robot.id] = robot.response
         try:
             robot.backend.stop(self._clock.now(), robot.response)
         except LinkLostError as error:
             order.refuse(robot.id, str(error))
             return
-        robot.released = True
+        robot.released = robot.released or order.kind in ENDINGS
         robot.stopping = self._clock.passes_by_itself
 
     def _look(self, order: Order) -> None:
@@ -165,13 +191,37 @@ class Obedience:
             if (order, id) in self._waiting:
                 continue
             robot = self._robots[id]
-            if order.kind == HOLD:
+            if id in order.responses:
+                self._look_at_response(order, robot, now)
+            elif robot.fault is not None:
+                order.refuse(id, f"something has happened since: {robot.fault}")
+            elif order.kind == HOLD:
                 if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
                     order.confirm(id)
-                elif robot.point.is_final:
-                    order.refuse(id, "its program has ended")
-            elif order.kind == RESUME:
-                if not (isinstance(robot.backend, Pausable) and robot.backend.paused(now)):
-                    order.confirm(id)
-            elif robot.stopping and isinstance(robot.backend, Watched) and robot.backend.obeys(now):
+            elif self._goes_on(robot, now):
                 order.confirm(id)
+
+    def _look_at_response(self, order: Order, robot: RunningRobot, now: float) -> None:
+        if robot.ordered is not None:
+            return
+        if robot.response != order.responses[robot.id]:
+            order.refuse(robot.id, f"something else has happened since: {robot.response}")
+        elif robot.stopping and isinstance(robot.backend, Watched) and robot.backend.obeys(now):
+            order.confirm(robot.id)
+
+    def _goes_on(self, robot: RunningRobot, now: float) -> bool:
+        """Return whether a robot that was told to go on was seen to."""
+        if robot.recovering:
+            return isinstance(robot.backend, Recovering) and robot.backend.moves(now)
+        return not (isinstance(robot.backend, Pausable) and robot.backend.paused(now))
+
+    def _undone(self, order: Order, id: str) -> str:
+        """Return why a robot that has stopped has not done what was ordered; empty where it has."""
+        robot = self._robots[id]
+        if robot.response != order.responses[id]:
+            return f"something else has happened since: {robot.response}"
+        return robot.backend.undone(self._clock.now()) if isinstance(robot.backend, Watched) else ""
+
+
+def _unless_hold(response: str) -> str:
+    return "" if response == "HOLD" else response

@@ -27,6 +27,7 @@ class Order:
         settled: set once every robot has done one or the other.
         told: called with a robot, and why it refuses, or None: it has obeyed.
         noted: robots whose black boxes know of it.
+        responses: by robot, that which shows that it obeys, where its program has ended, or is to end.
     """
 
     kind: str
@@ -39,6 +40,7 @@ class Order:
     settled: threading.Event = field(default_factory=threading.Event)
     given: float = field(default_factory=time.monotonic)
     noted: set[str] = field(default_factory=set)
+    responses: dict[str, str] = field(default_factory=dict)
 
     @property
     def open(self) -> tuple[str, ...]:

@@ -58,6 +58,7 @@ class RunningRobot:
         notify: that owners of slots have still to answer or to acknowledge.
         number: of its next step.
         response: how it was told to stop.
+        broken_off: how it was told to stop before somebody ordered it to hold meanwhile.
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
         released: whether somebody ordered it to stop, so that it need not be watched.
         held: whether somebody ordered it to hold.
@@ -78,7 +79,7 @@ class RunningRobot:
         self.fault: Fault | None = None
         self.notify = Outgoing()
         self.number = 0
-        self.response = ""
+        self.response = self.broken_off = ""
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.recovering = False
         conditions = (transition.condition for transition in program.transitions.values())
@@ -131,8 +132,17 @@ class RunningRobot:
             self.follow(step_of(self._program, self.point, record), record.time)
             self.lamport, self.number = record.lamport, record.seq + 1
 
-    def still_low(self, now: float) -> str:
-        """Return why its battery does not suffice to go on; empty if it may, or nobody knows."""
+    def hindrance(self, now: float) -> str:
+        """Return why its program cannot be gone on with; empty if it can, as far as anybody knows."""
+        return self.astray(now) or self._still_low(now)
+
+    def astray(self, now: float) -> str:
+        """Return that it is where its program cannot be gone on with, or out of reach; empty: it is not."""
+        if not isinstance(self.backend, Recovering):
+            return ""
+        return self.backend.hindrance(tuple(self._passed), self._underway, now)
+
+    def _still_low(self, now: float) -> str:
         charge = self.backend.state(now).charge
         if self.fault is None or self.fault.which != "BATTERY_LOW" or charge is None:
             return ""
@@ -140,13 +150,17 @@ class RunningRobot:
 
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
-        self.fault, self.suspended, self.response = None, False, ""
+        self.fault, self.suspended, self.response, self.broken_off = None, False, "", ""
+        self.released = False
         self._answered.clear()
         self._forget()
         if isinstance(self.backend, Recovering):
             self.recovering = True
-            begun = self.move.id if self.point.phase is Phase.BUSY else ""
-            self.backend.recover(tuple(self._passed), begun, now)
+            self.backend.recover(tuple(self._passed), self._underway, now)
+
+    @property
+    def _underway(self) -> str:
+        return self.move.id if self.point.phase is Phase.BUSY else ""
 
     def end_by(self, found: Fault, response: str) -> None:
         """Have the program end because somebody ordered that."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from mmrs_core.contributions.abilities import Noting, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.answers import HANDS_OFF
+from mmrs_core.runtime.answers import COMES_DOWN, HANDS_OFF
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -25,6 +25,7 @@ class Stopping:
         """Look after these robots; orders that stop them are told what became of it."""
         self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
         self._unconfirmed: dict[str, None] = {}
+        self._lost: set[str] = set()
 
     @property
     def unconfirmed(self) -> tuple[str, ...]:
@@ -75,6 +76,15 @@ class Stopping:
             return  # it has stopped, and its link was not needed any more
         if trouble is not None and robot.overtaken_by(trouble):
             self.answer(robot, trouble)
+        elif isinstance(robot.backend, Watched):
+            self._tell_link(robot, lost=not robot.backend.reachable(now))
+
+    def _tell_link(self, robot: RunningRobot, *, lost: bool) -> None:
+        if lost:
+            self._lost.add(robot.id)
+        elif robot.id in self._lost and self._is_watched(robot):
+            self._say(f"'{robot.id}': is heard again: orders are obeyed")
+            self._lost.discard(robot.id)
 
     def _look_after(self, robot: RunningRobot, now: float) -> None:
         try:
@@ -89,9 +99,24 @@ class Stopping:
             self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed[robot.id] = None
         elif not robot.stopping:
-            done = "is left alone" if robot.response == HANDS_OFF else f"has done {robot.response}"
-            self._say(f"'{robot.id}': {done}")
+            self._say(f"'{robot.id}': {self._done(robot, now)}")
+            self._tell_battery(robot, now)
         self._obedience.stopped(robot.id, robot.stopping, trouble)
+
+    def _done(self, robot: RunningRobot, now: float) -> str:
+        """Return in words what a robot has done that has stopped."""
+        if robot.response == HANDS_OFF:
+            return "is left alone"
+        if isinstance(robot.backend, Watched) and (why := robot.backend.undone(now)):
+            return f"has not done {robot.response}: {why}"
+        return f"has done {robot.response}"
+
+    def _tell_battery(self, robot: RunningRobot, now: float) -> None:
+        """Tell what is to be done for a robot that came down for its battery."""
+        if robot.suspended and robot.response in COMES_DOWN:
+            away = robot.astray(now)
+            home = f"{away}: carry it home, " if away else ""
+            self._say(f"'{robot.id}': {home}change its battery, then order resume, or use --resume later")
 
     def _is_watched(self, robot: RunningRobot) -> bool:
         if robot.fault is None or robot.released or not isinstance(robot.backend, Watched):

@@ -26,7 +26,7 @@ class Walker:
         self.given, self.script = given, script
         self.done, self.trouble, self.stops, self.begun = True, None, [], []
         self.halted = self.closed = self.watched_for = self.doubted = False
-        self.recovered = None
+        self.recovered, self.astray, self.heard, self.armed = None, "", True, True
         script.robots[given.robot.id] = self
 
     def _go(self, what):
@@ -75,13 +75,25 @@ class Walker:
         self._go(f"stop {response}")
 
     def obeys(self, now):
-        return self.begun[-1].startswith("stop")
+        return self.begun[-1].startswith("stop") and not self.undone(now)
 
     def in_doubt(self, now):
         return self.doubted or (self.trouble is not None and self.trouble.which == "TAKEN_OVER")
 
     def watched(self, now):
         return self.watched_for and self.trouble is None
+
+    def undone(self, now):
+        return self.astray if self.stops[-1:] == ["RETURN"] else ""
+
+    def reachable(self, now):
+        return self.heard
+
+    def hindrance(self, passed, begun, now):
+        return self.astray
+
+    def moves(self, now):
+        return self.armed
 
     def pause(self, now):
         self.halted = True

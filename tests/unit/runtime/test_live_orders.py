@@ -30,7 +30,7 @@ def test_a_robot_that_is_held_before_anything_moves_stays_until_it_may_go_on(liv
 def test_a_hold_before_anything_moves_can_be_taken_back(live):
     run = live(TWO, Script(ready=0.3))
     run.wait_for(lambda: len(run.script.robots) == 2)
-    assert run.order(RESUME, "a").refused == {"a": "has nothing to resume"}
+    assert run.order(RESUME, "a").refused == {"a": "it is not held"}
     run.order(HOLD, "a")
     assert list(run.order(RESUME, "a").confirmed) == ["a"]
     assert run.end().outcome is Outcome.SUCCESS
@@ -71,6 +71,58 @@ def test_nothing_begins_once_every_robot_was_told_to_stop(live):
     assert isinstance(run.error, KeyboardInterrupt)
     assert run.records == []
     assert "stopped before anything moved" in run.said
+
+
+def test_a_hold_is_confirmed_when_the_robot_is_ready_and_not_before(live):
+    run = live(TWO, Script(ready=inf))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    held = run.orders.give(HOLD, ["a"])
+    time.sleep(0.2)
+    assert held.open == ("a",)
+    run.script.robots["a"]._finish("ready")
+    assert held.settled.wait(20.0)
+    assert list(held.confirmed) == ["a"]
+
+
+def test_a_hold_that_is_taken_back_before_the_robot_is_ready_is_refused(live):
+    run = live(TWO, Script(ready=inf))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    held = run.orders.give(HOLD, ["a"])
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
+    assert held.refused == {"a": "it is to go on"}
+
+
+def test_nobody_begins_together_while_a_robot_is_held(live):
+    looks = []
+
+    def meet(look):
+        while len(looks) < 20:
+            look()
+            looks.append(None)
+            time.sleep(0.01)
+        return {}
+
+    run = live(TWO, Script(), meet=meet)
+    run.wait_for(lambda: looks)
+    assert list(run.order(HOLD, "a").confirmed) == ["a"]
+    before = len(looks)
+    time.sleep(0.5)
+    assert len(looks) <= before + 1
+    assert run.records == []
+    run.order(RESUME, "a")
+    assert run.end().outcome is Outcome.SUCCESS
+
+
+def test_a_resumed_robot_that_is_to_land_before_it_goes_on_is_seen_to_land(live):
+    first = live(WALK, Script(walk=inf))
+    first.wait_for_step("r begin walk")
+    made = tuple(first.records)
+    run = live(WALK, Script(ready=0.3), resumed=made)
+    run.wait_for(lambda: run.script.robots)
+    landed = run.orders.give(LAND, ["r"])
+    assert run.end().faults == {"r": Fault("ORDERED", "order to land")}
+    assert list(landed.confirmed) == ["r"]
+    assert run.script.robots["r"].stops == ["LAND"]
 
 
 def test_an_answer_that_comes_before_the_question_counts(live):
@@ -134,10 +186,80 @@ def test_a_robot_that_holds_makes_no_step_and_then_goes_on(live):
     assert replay(WALK, run.records).accepted
 
 
+def responding(live, response="RETURN", **seconds):
+    """Return a run whose robot carries out a response to a fault."""
+    policy = Policy("DEVICE_SILENT", response)
+    behaviour = program(robot("r", [do("walk")], policies=(policy,)))
+    run = live(behaviour, Script(walk=inf, **seconds))
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].fail("DEVICE_SILENT")
+    run.wait_for(lambda: run.script.robots["r"].stops == [response])
+    return run
+
+
+def test_a_response_can_be_held_and_gone_on_with(live):
+    run = responding(live, stop_RETURN=inf)
+    run.script.robots["r"].watched_for = True
+    assert list(run.order(HOLD).confirmed) == ["r"]
+    assert run.order(HOLD).refused == {}
+    assert list(run.order(RESUME).confirmed) == ["r"]
+    assert run.script.robots["r"].stops == ["RETURN", "HOLD", "HOLD", "RETURN"]
+    assert run.order(RESUME).refused == {"r": "its program has ended"}
+
+
+def test_a_robot_that_has_landed_elsewhere_does_not_confirm_that_it_returns(live):
+    run = responding(live, "LAND", stop_LAND=inf)
+    run.script.robots["r"].astray = "it stands 98 m from its home"
+    order = run.order(RETURN)
+    assert order.refused == {"r": "it stands 98 m from its home"}
+    run.end()
+    assert "'r': has not done RETURN: it stands 98 m from its home" in run.said
+
+
+def test_nothing_is_confirmed_by_who_has_come_down_and_has_nothing_left_to_do(live):
+    policy = Policy("DEVICE_SILENT", "LAND")
+    behaviour = program(robot("a", [do("walk")], policies=(policy,)), robot("b", [do("rest")]))
+    run = live(behaviour, Script(walk=inf, rest=inf))
+    run.wait_for_step("a begin walk")
+    run.script.robots["a"].fail("DEVICE_SILENT")
+    run.wait_for(lambda: "'a': has done LAND" in run.said)
+    for kind in (RETURN, LAND, HOLD, RESUME):
+        assert run.order(kind, "a").refused == {"a": "its program has ended"}
+
+
+def test_an_order_that_another_has_replaced_is_not_confirmed_by_that(live):
+    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].obeys = lambda now: False
+    first = run.orders.give(RETURN, ["r"])
+    run.wait_for(lambda: run.script.robots["r"].stops == ["RETURN"])
+    last = run.orders.give(LAND, ["r"])
+    run.end()
+    assert first.refused == {"r": "something else has happened since: LAND"}
+    assert list(last.confirmed) == ["r"]
+
+
+def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
+    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
+    run.wait_for_step("r begin walk")
+    walker = run.script.robots["r"]
+    walker.stop = lambda now, response: None
+    walker.heard, walker.watched = False, lambda now: True
+    walker.fail("LINK_LOST")
+    run.wait_for(lambda: run.records[-1].label == "fault")
+    run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
+    assert run.order(LAND).refused == {"r": "its link is lost"}
+    del walker.stop, walker.watched
+    walker.watched_for, walker.heard, walker.trouble = True, True, None
+    run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
+    assert list(run.order(LAND).confirmed) == ["r"]
+    run.end()
+
+
 def test_orders_that_make_no_sense_are_refused_with_the_reason(live):
     run = live(WALK, Script(walk=inf))
     run.wait_for_step("r begin walk")
-    assert run.order(RESUME).refused == {"r": "has nothing to resume"}
+    assert run.order(RESUME).refused == {"r": "it is not held"}
     assert run.order(HOLD, "somebody").refused == {"somebody": "no such robot here"}
 
 
