@@ -1,0 +1,58 @@
+"""Choices that ask the operator, under `mmrs run` with vehicles."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from fault_table.fleet import wait_for
+from fault_table.project import Pad
+
+from mmrs_core.behaviour.replay import Outcome
+
+PATIENCE = 60.0
+QUESTION = "go on?"
+PLAIN = '<moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"'
+ASKING = (
+    '<moveTransitions xsi:type="behaviour:Choice" conditionIdentifier="answer:go on?"'
+    ' falseBranch="//@robots.0/@moves.2" from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"'
+)
+
+
+@pytest.fixture
+def asking(fleet):
+    """Return vehicles whose robot asks something after its take-off, and the process that flies it."""
+    flown = fleet(Pad("a", stay=1.0))
+    text = flown.behaviour.read_text("utf-8")
+    assert PLAIN in text
+    flown.behaviour.write_text(text.replace(PLAIN, ASKING), "utf-8")
+    flown.start()
+    return flown
+
+
+def control(fleet, *words):
+    """Give an order by `mmrs control`; return the exit code and the robot's answer."""
+    command = [sys.executable, "-m", "mmrs_core", "control", *words, "--log", str(fleet.logs), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    (reply,) = json.loads(done.stdout)["robots"]
+    return done.returncode, reply
+
+
+def test_the_operator_is_told_what_is_asked_and_decides(asking):
+    assert wait_for(lambda: "'a': waits for an answer to 'go on?'" in asking.process.said, PATIENCE)
+    _, status = control(asking, "status")
+    assert (status["phase"], status["move"], status["asks"]) == ("works", "up", QUESTION)
+    assert (status["mode"], status["armed"]) == ("guided", True)
+    assert status["energy"] > 0.5
+    assert status["place"]["height"] == pytest.approx(10.0, abs=1.0)
+
+    code, refused = control(asking, "answer", "--question", "go on", "--says", "yes")
+    assert (code, refused["why"]) == (1, "no choice asks 'go on'; there is 'go on?'")
+    code, _ = control(asking, "answer", "--question", QUESTION, "--says", "yes")
+    assert code == 0
+    assert asking.process.end(PATIENCE) == 0, asking.process.said
+    (decision,) = [line for line in asking.box("a") if line.get("what") == "CHOICE"]
+    assert decision["response"] == "waits for an answer to 'go on?'"
+    assert asking.replayed().outcome is Outcome.SUCCESS
