@@ -330,6 +330,27 @@ def _wait_rows() -> list[Row]:
     return rows
 
 
+def _own_failsafe_rows() -> list[Row]:
+    """Return rows in which the vehicle answers by itself, too, and otherwise than the policy."""
+    own = {"parameters": {"BATT_FS_LOW_ACT": 2.0, "BATT_LOW_TIMER": 2.0, "BATT_LOW_VOLT": 11.0}}
+    cases = [(LEG, "LAND", "here"), (AUTO, "EMERGENCY_AREA", "meadow"), (AT, "HOLD", "holds")]
+    batteries = [
+        replace(row, settings=own, suspends=row.ends != "holds")
+        for row in _event_rows(
+            "battery low, and vehicle returns by itself", "", _battery, cases, "EMERGENCY_AREA"
+        )
+    ]
+    batteries[-1] = replace(batteries[-1], event="BATTERY_LOW")
+    blind = _landed(
+        "satellites lost, and vehicle holds its height",
+        "POSITION_LOST",
+        _satellites,
+        [(AT, "HOLD", "here"), (LEG, "LAND", "here"), (AUTO, "CONTINUE", "here")],
+        "",
+    )
+    return [*batteries, *(replace(row, settings={"parameters": {"FS_EKF_ACTION": 2.0}}) for row in blind)]
+
+
 ROWS: tuple[Row, ...] = (
     *_link_rows(),
     *_pilot_rows(),
@@ -397,6 +418,7 @@ ROWS: tuple[Row, ...] = (
             "",
         )
     ),
+    *_own_failsafe_rows(),
     *_landing_rows(),
     *_device_rows(),
     *_wait_rows(),
