@@ -168,6 +168,54 @@ def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
     assert process.end(PATIENCE) == 5, process.said
 
 
+def test_a_robot_whose_link_comes_back_is_heard_again_and_lands_where_it_is_told_to(fleet):
+    flown = fleet(Pad("a", policies=(("LINK_LOST", "RETURN", 5.0),)), speedup=8.0)
+    process = flown.start()
+    vehicle = begun(flown, "a", "tour 1")
+    vehicle.faults.cut_link()
+    assert wait_for(lambda: any(s["detail"] == "LINK_LOST" for s in flown.steps("a")), PATIENCE)
+    assert control(flown, "land")["a"]["why"] == "its link is lost"
+    vehicle.faults.mend_link()
+    assert wait_for(lambda: any("is heard again" in line for line in process.said), PATIENCE)
+    assert control(flown, "hold")["a"]["confirmed"]
+    assert vehicle.autopilot.mode == HOLDING
+    assert control(flown, "land")["a"]["confirmed"]
+    assert process.end(PATIENCE) == 5, process.said
+    assert landed(flown)
+
+
+def test_a_robot_that_came_down_elsewhere_for_its_battery_is_not_resumed_before_it_stands_at_home(fleet):
+    flown = fleet(Pad("a", policies=(("BATTERY_LOW", "LAND", None),)))
+    process = flown.start("--battery-patience", "600")
+    vehicle = begun(flown, "a", "tour 1")
+    vehicle.faults.set_battery(0.15)
+    assert wait_for(lambda: any("carry it home" in line for line in process.said), PATIENCE)
+    vehicle.faults.set_battery(1.0)
+    for order in ("resume", "return"):
+        assert control(flown, order)["a"]["why"].endswith("m from its home")
+    with vehicle.lock:
+        vehicle.autopilot.body.position = (0.0, 0.0, 0.0)
+    assert wait_for(lambda: control(flown, "resume")["a"]["confirmed"], PATIENCE)
+    assert vehicle.autopilot.armed
+    assert process.end(PATIENCE) == 0, process.said
+    assert judged(flown) is Outcome.SUCCESS
+
+
+def test_a_hold_before_the_vehicles_speak_keeps_them_on_the_ground(fleet):
+    flown = fleet(Pad("a"), speedup=8.0)
+    flown.vehicles["a"].faults.cut_link()
+    process = flown.start()
+    assert wait_for(lambda: any("waits for a vehicle" in line for line in process.said), PATIENCE)
+    assert not control(flown, "hold", "--seconds", "0.5")["a"]["confirmed"]
+    flown.vehicles["a"].faults.mend_link()
+    assert control(flown, "hold")["a"]["confirmed"]
+    time.sleep(1.0)
+    assert not flown.vehicles["a"].autopilot.armed
+    assert control(flown, "land")["a"]["confirmed"]
+    assert process.end(PATIENCE) == 130, process.said
+    assert not any(number == 400 for _, number, _ in flown.vehicles["a"].autopilot.history)
+
+
 def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
     flown = fleet(Pad("a"), Pad("b", "wait"), Pad("g", "give", stay=100.0, gives="b"))
     process = flown.start()
