@@ -52,7 +52,7 @@ class Ours:
 
     speedup = 20.0
 
-    def __init__(self, homes: Sequence[Home], folder: Path) -> None:
+    def __init__(self, homes: Sequence[Home], folder: Path, *, gusts: float = 0.0) -> None:
         ports = [free_port() for _ in homes]
         self.links = links_of(homes, ports)
         self.armed: dict[str, bool] = {}
@@ -60,7 +60,15 @@ class Ours:
         self._vehicles = {
             home.robot: SimulatedVehicle(
                 port,
-                Settings("copter", home.latitude, home.longitude, number, energy=ENERGY, recharge=60.0),
+                Settings(
+                    "copter",
+                    home.latitude,
+                    home.longitude,
+                    number,
+                    energy=ENERGY,
+                    recharge=60.0,
+                    gusts=(gusts, 5.0),
+                ),
                 speedup=self.speedup,
             )
             for number, (home, port) in enumerate(zip(homes, ports, strict=True), start=1)

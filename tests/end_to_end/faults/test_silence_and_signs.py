@@ -1,0 +1,106 @@
+"""Vehicles that fall silent in the middle of an exchange, and vehicles that do not what they are ordered.
+
+Both executions share what does this; each is flown all the same.
+"""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+
+import pytest
+from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.project import Pad
+
+from mmrs_core.flight.orders.ordering import give
+
+PATIENCE = 60.0
+SPEEDUP = 5.0
+MISSION_COUNT = "MISSION_COUNT"
+every_execution = pytest.mark.parametrize("execution", EXECUTIONS)
+
+
+@pytest.fixture
+def fly(tmp_path):
+    """Return a function that switches a vehicle on, and starts what flies it."""
+    with ExitStack() as stack:
+
+        def start(
+            execution: str, *policies, before=lambda vehicle: None, speedup: float = SPEEDUP, **settings
+        ):
+            pads = (Pad("a", policies=policies, stay=60.0),)
+            fleet = stack.enter_context(
+                Fleet(tmp_path, pads, execution, speedup=speedup, settings={"a": settings})
+            )
+            fleet.start()
+            return fleet, fleet.vehicles["a"]
+
+        yield start
+
+
+def uploading(vehicle) -> bool:
+    return any(kind == MISSION_COUNT for _, kind in vehicle.received)
+
+
+@every_execution
+def test_a_vehicle_that_is_silent_during_an_upload_is_waited_for_as_the_policy_says(fly, execution):
+    """Three and a half seconds of silence are more than all tries take."""
+    fleet, vehicle = fly(execution, ("LINK_LOST", "HOLD", 60.0))
+    assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
+    vehicle.mute()
+    time.sleep(3.5)
+    assert fleet.process.running(), fleet.process.said
+    vehicle.unmute()
+    assert wait_for(lambda: vehicle.autopilot.airborne, PATIENCE), fleet.process.said
+
+
+@every_execution
+def test_a_vehicle_that_stays_silent_during_an_upload_is_lost_when_the_policy_says(fly, execution):
+    fleet, vehicle = fly(execution, ("LINK_LOST", "HOLD", 15.0))
+    assert wait_for(lambda: uploading(vehicle), PATIENCE), fleet.process.said
+    vehicle.mute()
+    begun = time.monotonic()
+    assert fleet.process.end(PATIENCE) == 5, fleet.process.said
+    assert time.monotonic() - begun > 14.0 / SPEEDUP
+    assert any("the vehicle has been silent for 1" in line for line in fleet.process.said), fleet.process.said
+
+
+def deafen(vehicle) -> None:
+    """Have a vehicle heed no set-points any more, but answer everything else."""
+    taken = vehicle._take
+
+    def take(message) -> None:
+        if message.get_type() != "SET_POSITION_TARGET_GLOBAL_INT":
+            taken(message)
+
+    vehicle._take = take
+
+
+def drift_home(vehicle) -> None:
+    """Have something drive a vehicle two metres towards its home, at what a gust may do."""
+    with vehicle.lock:
+        body = vehicle.autopilot.body
+        north, east, up = body.position
+        body.target, body.speed = (north - 2.0, east, up), 0.6
+
+
+@every_execution
+def test_a_vehicle_that_is_driven_home_but_does_not_obey_confirms_no_return(fly, execution):
+    fleet, vehicle = fly(execution, speedup=4.0)
+    assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
+    deafen(vehicle)
+    before = vehicle.autopilot.body.position[0]
+    drift_home(vehicle)
+    (reply,) = give(fleet.logs, "return", seconds=4.0)
+    assert not reply["confirmed"], reply
+    assert vehicle.autopilot.body.position[0] < before - 1.0
+
+
+@pytest.mark.thorough
+@every_execution
+def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly, execution):
+    fleet, vehicle = fly(execution, speedup=1.0, gusts=(2.0, 5.0))
+    assert wait_for(lambda: vehicle.autopilot.airborne and vehicle.autopilot.body.position[2] > 5.0, PATIENCE)
+    (reply,) = give(fleet.logs, "return", seconds=4.0)
+    assert reply["confirmed"], reply
+    assert reply["seconds"] < 1.0
