@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, TypeVar
 
 from ..clock import Clock
@@ -34,7 +35,7 @@ LEAST_SECONDS = 0.5
 """Real seconds for an answer at least, unless less was asked for."""
 
 LATE_FRAMES = 64
-"""How many frames of the vehicle may have overtaken one that is late; it then is no longer news."""
+"""How many frames of the vehicle may have overtaken one that is late."""
 
 OVERTAKEN_SECONDS = 1.0
 """For how long: frames are counted to 255 only, and after a gap what is new may look as if it were late."""
@@ -128,8 +129,9 @@ class Link:
         self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
         self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
-        self._newest: int | None = None
-        self._newest_at = 0.0
+        self._fresh: list[tuple[str, deque[Message]]] = []
+        self._newest, self._newest_at = -1, -inf
+        self._orders: dict[str, int] = {}
         self._ended = ""
         radio.join(self)
 
@@ -226,6 +228,13 @@ class Link:
         found = self._latest.get(kind)
         return self.clock.now() - found[1] if found else float("inf")
 
+    def order(self, kind: str) -> int:
+        """Return which of the vehicle's frames the last message of that name was; -1 before one came.
+
+        Of two messages the one with the larger number was sent later, whichever has come first.
+        """
+        return self._orders.get(kind, -1)
+
     def silent_for(self) -> float:
         """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
         return 0.0 if self._heard is None else self.clock.now() - self._heard
@@ -312,6 +321,18 @@ class Link:
             with self._changed:
                 self._inboxes = [other for other in self._inboxes if other is not entry]
 
+    @contextmanager
+    def trail(self, kind: str) -> Iterator[deque[Message]]:
+        """Collect every message of that name that is news, from now on, in the order they were sent in."""
+        entry = (kind, deque[Message]())
+        with self._changed:
+            self._fresh.append(entry)
+        try:
+            yield entry[1]
+        finally:
+            with self._changed:
+                self._fresh = [other for other in self._fresh if other is not entry]
+
     def meets(self, heartbeat: Message) -> bool:
         """Return whether an autopilot's heartbeat is that of the vehicle; it is the link's from then on."""
         system = heartbeat.get_srcSystem()
@@ -362,18 +383,33 @@ class Link:
             self._heard = now
             if kind in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)
-        if (own and not self._is_late(message)) or (kind in OF_ALL and not own):
+        if (own and self._is_news(message)) or (kind in OF_ALL and not own):
             self._latest[kind] = (message, now)
+            for wanted, collected in self._fresh:
+                if kind == wanted:
+                    collected.append(message)
         for kinds, component, collected in self._inboxes:
             if kind in kinds and component in (ANYBODY, message.get_srcComponent()):
                 collected.append(message)
 
-    def _is_late(self, message: Message) -> bool:
-        """Return whether messages that the vehicle sent after this one have come before it."""
-        seq = message.get_seq()
-        now, before = self.clock.now(), self._newest
+    def _is_news(self, message: Message) -> bool:
+        """Return whether no message of that name has come that the vehicle sent later.
+
+        What messages of other names have overtaken is news all the same: where each frame takes as long
+        as it likes, most are overtaken by some other.
+        """
+        kind, order = message.get_type(), self._numbered(message.get_seq())
+        if order < self._orders.get(kind, -1):
+            return False
+        self._orders[kind] = order
+        return True
+
+    def _numbered(self, seq: int) -> int:
+        """Return which of the vehicle's frames one is, by its number, which is counted to 255 only."""
+        now = self.clock.now()
         recent = now - self._newest_at <= self.clock.patience(OVERTAKEN_SECONDS, LEAST_SECONDS)
-        if before is not None and recent and 0 < (before - seq) % 256 <= LATE_FRAMES:
-            return True
-        self._newest, self._newest_at = seq, now
-        return False
+        behind = (self._newest - seq) % 256
+        if recent and behind <= LATE_FRAMES:
+            return self._newest - behind
+        self._newest, self._newest_at = self._newest + 256 - behind, now
+        return self._newest

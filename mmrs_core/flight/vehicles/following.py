@@ -12,14 +12,14 @@ from math import hypot
 from ..faults import NO_PROGRESS, Fault
 from ..places import offset
 from ..program import Place
-from .telemetry import Telemetry
+from .trail import Trail
 
 NEAR_METRES = 4.0
 """How near a vehicle comes to every place of its mission, however it cuts its corners."""
 
 
 JUDGED_AFTER = 2
-"""How many positions must have come since an item was left behind: the last before may be old."""
+"""How many positions that were sent after it said that it has left an item behind must have come."""
 
 
 class Following:
@@ -30,21 +30,22 @@ class Following:
     """
 
     def __init__(
-        self, telemetry: Telemetry, places: Mapping[int, Place], item: Callable[[], int], first: int
+        self, trail: Trail, places: Mapping[int, Place], item: Callable[[], int], first: int
     ) -> None:
-        """Begin at an item.
+        """Begin at an item, before the vehicle does: it may be past it when it is heard to fly.
 
         Args:
-            telemetry: of the vehicle.
+            trail: of the vehicle, from now on.
             places: by item.
             item: gives the item that the vehicle is at; less than 0: not known.
             first: that it begins with.
         """
-        self._telemetry = telemetry
+        self._trail = trail
         self._places = places
         self._item = item
         self._claimed = self._proven = first
-        self._here = telemetry.here()
+        self._claimed_order = self._judged_order = -1
+        self._here = trail.begun
         self._missed: dict[int, float] = {}
         self._since: dict[int, int] = {}
         self._approach(self._here)
@@ -55,17 +56,35 @@ class Following:
         Raises:
             Fault: it has left items out, or has gone back.
         """
-        here, now = self._telemetry.here(), self._item()
-        if 0 <= now < self._claimed:
-            raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
-        self._claimed = max(self._claimed, now)
-        if here != self._here:
-            self._approach(here)
-            for seq in range(self._proven, self._claimed):
-                self._since[seq] = self._since.get(seq, 0) + 1
+        for place in self._trail.passed():
+            self._approach(place)
+        self._claim(self._item())
+        self._count()
         while self._proven < self._claimed and self._was_near(self._proven):
             self._proven += 1
         return self._proven
+
+    def _claim(self, now: int) -> None:
+        """Take note of the item that the vehicle says it is at.
+
+        Raises:
+            Fault: it has gone back.
+        """
+        if 0 <= now < self._claimed:
+            raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
+        if now > self._claimed:
+            self._claimed, self._claimed_order = now, self._trail.item_order()
+
+    def _count(self) -> None:
+        """Count a position that the vehicle has sent since it last claimed to have left something behind.
+
+        One that stands still counts as well: at the end of a mission it would else be waited for in vain.
+        """
+        order = self._trail.place_order()
+        if order > max(self._claimed_order, self._judged_order):
+            self._judged_order = order
+            for seq in range(self._proven, self._claimed):
+                self._since[seq] = self._since.get(seq, 0) + 1
 
     def _was_near(self, seq: int) -> bool:
         """Return whether the vehicle has been near an item, or the item is nowhere.

@@ -189,16 +189,12 @@ class MavlinkVehicle:
         self._helm.arm()
         self._check_mission()
         self._select(first)
-        self._helm.enter(modes.AUTO)
-        if (speed := speed_before(self._mission, first)) is not None:
-            command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
-        following = Following(self._telemetry, self._places(first, last), self._item, first)
-        done = first - 1
-        while done < last:
-            now = self._await_item_after(done + 1, following)
-            for seq in range(done + 1, now):
-                reached(seq)
-            done = now - 1
+        with self._telemetry.trail() as trail:
+            following = Following(trail, self._places(first, last), self._item, first)
+            self._helm.enter(modes.AUTO)
+            if (speed := speed_before(self._mission, first)) is not None:
+                command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
+            self._follow(first, last, following, reached)
         self._helm.enter(modes.GUIDED)
         self._steering.stay(self._place_of(last))
 
@@ -369,6 +365,15 @@ class MavlinkVehicle:
         found = mark_of(current, BEFORE_MISSION_ID) if current is not None else 0
         if self._mark and found and found != self._mark:
             raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
+
+    def _follow(self, first: int, last: int, following: Following, reached: Callable[[int], None]) -> None:
+        """Tell each item of a run that the vehicle reaches, up to the last."""
+        done = first - 1
+        while done < last:
+            now = self._await_item_after(done + 1, following)
+            for seq in range(done + 1, now):
+                reached(seq)
+            done = now - 1
 
     def _await_item_after(self, seq: int, following: Following) -> int:
         def behind() -> int | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import atan2, degrees, hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -13,6 +15,7 @@ from .announcements import WORDS, Announcements
 from .detections import Detections
 from .readiness import lacks, unlocated
 from .texts import Texts
+from .trail import Trail, place_in
 from .vehicle import State
 
 NO_HEADING = 65_535
@@ -140,11 +143,13 @@ class Telemetry:
     def here(self) -> Place:
         """Return the position; home before there is one."""
         found = self._link.latest(self._position)
-        if found is None:
-            return self._home
-        if self._geographic:
-            return Geographic(found.lat * 1e-7, found.lon * 1e-7, found.relative_alt * 1e-3)
-        return Local(found.x, found.y, -found.z)
+        return self._home if found is None else place_in(found)
+
+    @contextmanager
+    def trail(self) -> Iterator[Trail]:
+        """Collect all positions that are told from now on, also while nobody looks."""
+        with self._link.trail(self._position) as told:
+            yield Trail(self._link, self._position, self.here(), told)
 
     def still_since(self, begun: float, pace: float) -> bool:
         """Return whether a position that has come since tells of no more than a pace, metres a second."""

@@ -12,14 +12,23 @@ PLACES = {2: Local(50.0, 0.0, 20.0), 3: Local(100.0, 0.0, 20.0), 4: Local(100.0,
 
 
 class Vehicle:
-    """Says where it is and at which item."""
+    """Says at which item it is, and then where."""
 
     def __init__(self) -> None:
-        self.place = Local(0.0, 0.0, 20.0)
+        self.begun = Local(0.0, 0.0, 20.0)
         self.item = 1
+        self.sent = 0
+        self.places: list[Local] = []
 
-    def here(self) -> Local:
-        return self.place
+    def passed(self) -> list[Local]:
+        places, self.places = self.places, []
+        return places
+
+    def place_order(self) -> int:
+        return self.sent
+
+    def item_order(self) -> int:
+        return self.sent - 1
 
 
 @pytest.fixture
@@ -29,7 +38,8 @@ def flight():
     following = Following(vehicle, PLACES, lambda: vehicle.item, 1)
 
     def move(north: float, east: float, item: int) -> int:
-        vehicle.place, vehicle.item = Local(north, east, 20.0), item
+        vehicle.places, vehicle.item = [Local(north, east, 20.0)], item
+        vehicle.sent += 2
         return following.look()
 
     return move
@@ -81,3 +91,33 @@ def test_over_a_poor_link_a_place_may_lie_beside_the_way_between_two_positions(f
     flight(85.0, 0.0, 3)
     flight(100.0, 15.0, 4)
     assert flight(100.0, 20.0, 4) == 4
+
+
+def test_a_vehicle_that_stands_still_where_it_was_set_ahead_to_is_not_waited_for():
+    vehicle = Vehicle()
+    following = Following(vehicle, PLACES, lambda: vehicle.item, 1)
+    vehicle.item, vehicle.sent = 4, 2
+    assert following.look() == 2
+    vehicle.sent += 2
+    with pytest.raises(Fault, match="has not been near item 2"):
+        following.look()
+
+
+def test_positions_that_were_sent_before_an_item_was_left_behind_do_not_count_against_it():
+    vehicle = Vehicle()
+    following = Following(vehicle, PLACES, lambda: vehicle.item, 1)
+    vehicle.item_order = lambda: 10
+    vehicle.item = 3
+    for vehicle.sent, north in ((4, 20.0), (6, 30.0), (8, 40.0)):
+        vehicle.places = [Local(north, 0.0, 20.0)]
+        assert following.look() == 2
+    vehicle.sent, vehicle.places = 12, [Local(60.0, 0.0, 20.0)]
+    assert following.look() == 3
+
+
+def test_places_that_were_passed_while_nobody_looked_are_believed():
+    vehicle = Vehicle()
+    following = Following(vehicle, PLACES, lambda: vehicle.item, 1)
+    vehicle.places = [Local(50.0, 0.0, 20.0), Local(100.0, 0.0, 20.0), Local(100.0, 30.0, 20.0)]
+    vehicle.item, vehicle.sent = 4, 2
+    assert following.look() == 4

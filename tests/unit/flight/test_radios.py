@@ -216,6 +216,17 @@ def test_a_message_that_was_overtaken_is_no_news():
         assert link.latest("MISSION_CURRENT").seq == 5
 
 
+def test_a_message_that_only_others_have_overtaken_is_news():
+    with linked() as (link, wire):
+        wire.say(mavlink.MAVLink_mission_current_message(4), seq=18)
+        assert link.wait(lambda: link.latest("MISSION_CURRENT"), 5.0)
+        wire.say(position(1000), seq=25)
+        assert link.wait(lambda: link.latest("GLOBAL_POSITION_INT"), 5.0)
+        wire.say(mavlink.MAVLink_mission_current_message(5), seq=22)
+        assert link.wait(lambda: link.latest("MISSION_CURRENT").seq == 5, 5.0)
+        assert link.order("MISSION_CURRENT") < link.order("GLOBAL_POSITION_INT")
+
+
 def test_what_comes_after_a_gap_is_news_whatever_its_number():
     with linked() as (link, wire):
         wire.say(mavlink.MAVLink_mission_current_message(5), seq=20)

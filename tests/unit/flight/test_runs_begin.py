@@ -60,6 +60,21 @@ def test_a_run_begins_with_its_own_first_place(airborne, firmware):
     assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
+def test_a_run_is_followed_from_its_beginning_also_where_the_mode_is_heard_of_later(airborne):
+    made = airborne()
+    link, run, reached = made.crew.link, FLIGHTS["a1"], []
+    hears, body = link.hears, made.simulated.autopilot.body
+
+    def hears_late(message, sender):
+        late = made.mode == "auto" and body.position[0] < 16.0
+        if not (late and message.get_type() == "HEARTBEAT"):
+            hears(message, sender)
+
+    link.hears = hears_late
+    made.crew.vehicle.fly(run.first, run.last, reached.append)
+    assert reached == list(range(run.first, run.last + 1))
+
+
 def test_what_is_left_of_a_run_is_flown_as_fast_as_the_run(airborne):
     made = airborne()
     autopilot, speeds = made.simulated.autopilot, []

@@ -1,0 +1,52 @@
+"""The way that a vehicle goes, position by position, also while nobody looks."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from ..links.link import Link, Message
+from ..program import Geographic, Local, Place
+
+
+class Trail:
+    """Where a vehicle has been since something began.
+
+    Attributes:
+        begun: where it was then.
+    """
+
+    def __init__(self, link: Link, kind: str, begun: Place, told: deque[Message]) -> None:
+        """Read what is collected.
+
+        Args:
+            link: to the vehicle.
+            kind: of message that tells where it is.
+            begun: where it is now.
+            told: gets such messages, in the order in which the vehicle has sent them.
+        """
+        self.begun = begun
+        self._link = link
+        self._kind = kind
+        self._told = told
+
+    def passed(self) -> list[Place]:
+        """Return the positions since it was last asked, oldest first."""
+        places = []
+        while self._told:
+            places.append(place_in(self._told.popleft()))
+        return places
+
+    def place_order(self) -> int:
+        """Return which of the vehicle's frames its last position was, by `Link.order`."""
+        return self._link.order(self._kind)
+
+    def item_order(self) -> int:
+        """Return which of the vehicle's frames its last word of its item was."""
+        return self._link.order("MISSION_CURRENT")
+
+
+def place_in(message: Message) -> Place:
+    """Return the position in a GLOBAL_POSITION_INT or LOCAL_POSITION_NED."""
+    if message.get_type() == "GLOBAL_POSITION_INT":
+        return Geographic(message.lat * 1e-7, message.lon * 1e-7, message.relative_alt * 1e-3)
+    return Local(message.x, message.y, -message.z)
