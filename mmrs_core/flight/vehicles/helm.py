@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from itertools import count
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -212,8 +213,14 @@ class Helm:
         self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
 
     def leave_ground(self, height: float) -> None:
-        """Arm and take off, again where the vehicle has disarmed itself in between."""
-        for attempt in range(TAKE_OFF_TRIES):
+        """Arm and take off, again where the vehicle has disarmed itself in between.
+
+        As one does when the command is lost: it is then asked as often as anything may be lost.
+
+        Raises:
+            Refused: the vehicle does not arm or take off.
+        """
+        for attempt in count(1):
             self._be_in(self.habits.climbs_in)
             self.start_motors()
             try:
@@ -225,7 +232,8 @@ class Helm:
                 if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, heard=True):
                     self._follow_climb()
                     return
-                if attempt + 1 == TAKE_OFF_TRIES:
+                lost = 0 if self._telemetry.armed() else self._link.tries
+                if attempt >= max(TAKE_OFF_TRIES, lost):
                     raise
 
     def disarm(self) -> None:

@@ -127,6 +127,22 @@ def test_a_take_off_whose_first_answer_was_lost_is_no_refusal(steered):
     helm.leave_ground(20.0)
 
 
+def test_a_take_off_is_asked_for_as_often_as_anything_where_the_vehicle_disarms_itself_before(steered):
+    helm, _, vehicle, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
+    helm._link.tries, asked = 5, []
+
+    def disarm_itself(message):
+        if message.get_type() == "COMMAND_LONG" and message.command == mavlink.MAV_CMD_NAV_TAKEOFF:
+            asked.append(message)
+            vehicle.armed = len(asked) == 5
+            vehicle.results = {} if vehicle.armed else vehicle.results
+        yield from vehicle(message)
+
+    wire.answer = disarm_itself
+    helm.leave_ground(20.0)
+    assert len(asked) == 5
+
+
 def test_a_take_off_that_is_refused_on_the_ground_is(steered):
     helm, _, _, _ = steered(c22=mavlink.MAV_RESULT_FAILED)
     with pytest.raises(Refused, match="NAV_TAKEOFF: the vehicle answers 'failed'"):
