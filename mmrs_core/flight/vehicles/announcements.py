@@ -28,7 +28,7 @@ WORDS = (
 """What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
 
 CLEARED = "cleared"
-"""In what they say when it is over."""
+"""In what they say when it is over: of a lost link, nobody can hear more than that."""
 
 RECENT_SECONDS = 5.0
 """For how long what was said counts."""
@@ -72,4 +72,5 @@ class Announcements:
 
 def _events(text: Text) -> Iterable[str]:
     words = text.text.lower()
-    return (event for event, known in WORDS if CLEARED not in words and any(word in words for word in known))
+    found = (event for event, known in WORDS if any(word in words for word in known))
+    return (event for event in found if event == LINK_LOST or CLEARED not in words)
