@@ -227,6 +227,14 @@ def test_a_message_that_only_others_have_overtaken_is_news():
         assert link.order("MISSION_CURRENT") < link.order("GLOBAL_POSITION_INT")
 
 
+def test_a_trail_is_what_was_news_in_the_order_in_which_it_was_sent():
+    with linked() as (link, wire), link.trail("GLOBAL_POSITION_INT") as trail:
+        for milliseconds, seq in ((1000, 20), (3000, 24), (2000, 22), (4000, 26)):
+            wire.say(position(milliseconds), seq=seq)
+        assert link.wait(lambda: len(trail) >= 3, 5.0)
+        assert [message.time_boot_ms for message in trail] == [1000, 3000, 4000]
+
+
 def test_what_comes_after_a_gap_is_news_whatever_its_number():
     with linked() as (link, wire):
         wire.say(mavlink.MAVLink_mission_current_message(5), seq=20)
