@@ -184,7 +184,7 @@ def test_a_robot_whose_link_comes_back_is_listened_to_until_its_motors_are_off(r
     made.crew.vehicle.answer_lost_link("RETURN", 5.0)
     made.simulated.faults.cut_link()
     code = in_background(lambda: made.ending().end(made.caught()))
-    until(lambda: made.mode not in ("guided", "brake"))
+    until(lambda: made.events() == ["LINK_LOST"] and made.mode not in ("guided", "brake"))
     made.simulated.faults.mend_link()
     until(lambda: any("is heard again, in mode" in line for line in made.said))
     assert code.result(30.0) == 5
