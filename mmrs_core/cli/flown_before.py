@@ -15,7 +15,7 @@ from mmrs_core.cli.figures import clock
 from mmrs_core.cli.output import counted, tell
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
-from mmrs_core.flight.records.blackbox import black_box_path, last_time
+from mmrs_core.flight.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_core.runtime.resuming import over_by
 
 
@@ -34,6 +34,9 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
         return ()
     if not found:
         raise typer.BadParameter(f"--resume: no logs in {wishes.folder}")
+    for path in found:
+        if plan_of(black_box_path(path)) not in ("", program.fingerprint):
+            raise InvalidModelError(f"{path}: was flown by another plan of the mission")
     records = read_logs(found, partial=True)
     result = replay(program, records, partial=True)
     if not result.accepted and len(here) == len(program.robots):

@@ -17,7 +17,7 @@ from .links.link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
 from .links.ports import address_of, split_system
 from .links.signing import Signer, signer_for
 from .program import Robot
-from .records.blackbox import black_box_path, last_time
+from .records.blackbox import black_box_path, last_time, plan_of
 from .records.log import read
 
 FIRST_PORT = 14_550
@@ -242,6 +242,9 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
     runs = sorted({str(step["run"]) for step in steps})
     if len(runs) > 1 or (runs and given.run and runs != [given.run]):
         parser.error(f"--resume: the logs are of run {', '.join(map(ascii, runs))}")
+    for robot in robots:
+        if plan_of(black_box_path(given.log / robot.log)) not in ("", robot.plan):
+            parser.error(f"--resume: {robot.id!a} flew by another plan of the mission in {given.log}")
     ends = (last_time(black_box_path(path)) for path in taken)
     start = max((*(float(step["time"]) for step in steps), *ends), default=0.0)
     return (runs[0] if runs else given.run or FIRST_RUN), start

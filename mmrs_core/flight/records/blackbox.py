@@ -3,7 +3,7 @@
 Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
 `time` (seconds of the run), `wall` (UTC) and `kind`; what else there is depends on the kind:
 
-``start``     link, vehicle, firmware, home, system, versions
+``start``     plan, link, vehicle, firmware, home, system, versions
 ``fix``       place, speed, heading, energy, mode, armed
 ``text``      severity, text: what the vehicle said
 ``command``   name, params, result, seconds, tries
@@ -40,7 +40,7 @@ LARGEST_PART = 32 * 1024 * 1024
 """Bytes after which a new file is begun."""
 
 LONGEST_END = 1 << 16
-"""Bytes at the end of a file in which its last line is looked for."""
+"""Bytes at either end of a file in which its first and last lines are looked for."""
 
 DIGITS = 9
 KEPT_AT_ONCE = frozenset({"start", "decision", "order"})
@@ -63,13 +63,29 @@ def last_time(path: Path) -> float:
     return next((time for line in reversed(lines) if (time := _time_in(line))), 0.0)
 
 
+def plan_of(path: Path) -> str:
+    """Return which plan of the mission a black box tells of at its beginning; empty: it does not say."""
+    oldest = path.with_suffix(".0001.ndjson")
+    try:
+        with (oldest if oldest.exists() else path).open("rb") as file:
+            lines = file.read(LONGEST_END).splitlines()
+    except OSError:
+        return ""
+    told = (found.get("plan") for line in lines if (found := _object_in(line)).get("kind") == "start")
+    return next((plan for plan in told if isinstance(plan, str)), "")
+
+
 def _time_in(line: bytes) -> float:
+    told = _object_in(line).get("time")
+    return float(told) if isinstance(told, int | float) and isfinite(told) and told > 0 else 0.0
+
+
+def _object_in(line: bytes) -> Mapping[str, object]:
     try:
         found = json.loads(line)
     except ValueError:
-        return 0.0
-    told = found.get("time") if isinstance(found, dict) else None
-    return float(told) if isinstance(told, int | float) and isfinite(told) and told > 0 else 0.0
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 class BlackBox:

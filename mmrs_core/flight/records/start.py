@@ -16,6 +16,7 @@ def start_of(robot: Robot, url: str, link: Link | None) -> dict[str, object]:
     beat = link.latest("HEARTBEAT") if link is not None else None
     firmware = mavlink.enums["MAV_AUTOPILOT"].get(beat.autopilot) if beat is not None else None
     return {
+        "plan": robot.plan,
         "link": url if link is not None else None,
         "vehicle": robot.vehicle,
         "firmware": firmware.name.removeprefix("MAV_AUTOPILOT_") if firmware is not None else None,

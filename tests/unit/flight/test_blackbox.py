@@ -6,7 +6,7 @@ from math import nan
 import pytest
 
 from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path, last_time
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path, last_time, plan_of
 
 
 @pytest.fixture
@@ -85,3 +85,17 @@ def test_the_end_of_a_box_is_the_time_of_its_last_whole_line(path, opened, more)
 
 def test_a_box_that_is_not_there_has_no_end(path):
     assert last_time(path) == 0.0
+
+
+def test_the_plan_that_a_box_began_with_is_that_of_its_oldest_part(path, opened):
+    box = opened(largest=100)
+    box.write("start", plan="first")
+    for _ in range(3):
+        box.write("text", text="full")
+    box.write("start", plan="second")
+    assert plan_of(path) == "first"
+
+
+def test_a_box_without_a_plan_is_of_any(path, opened):
+    opened().write("start", link=None)
+    assert plan_of(path) == plan_of(path.with_name("absent")) == ""
