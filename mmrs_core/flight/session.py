@@ -248,8 +248,12 @@ def _recognition(
     """Return what makes sure that the vehicle is the robot's, before anybody may tell it anything."""
     system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
 
+    def rests() -> bool:
+        heard = link is not None and link.latest("HEARTBEAT") is not None
+        return heard and not vehicle.state().armed
+
     def look(under_way: bool) -> None:
-        obedience.begin(None)
+        obedience.begin(None, rests)
         if link is not None and isinstance(vehicle, MavlinkVehicle):
             near = inf if under_way and vehicle.state().armed else options.tolerances.home
             recognise(link, vehicle, robot, near, under_way=under_way, system=system)

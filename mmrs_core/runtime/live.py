@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import Closing, Noting, Preparing
+from mmrs_core.contributions.abilities import Closing, Noting, Preparing, Telling
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition
@@ -208,14 +208,15 @@ class _EarlyOrders:
             self._take(order)
         for order in self._open:
             for id in order.open:
-                if id not in unready and (order.kind == HOLD or id not in self._under_way):
-                    order.confirm(id)
+                ready = id not in unready and (order.kind == HOLD or id not in self._under_way)
+                if ready or self._rests(id):
+                    self._confirm(order, id)
         self._open = [order for order in self._open if order.open]
         if self.ends_all and not self._under_way & set(self._robots):
             self._venture.say("stopped before anything moved")
             for order in self._open:
                 for id in order.open:
-                    order.confirm(id)
+                    self._confirm(order, id)
             raise KeyboardInterrupt
 
     def pass_on(self) -> None:
@@ -243,6 +244,15 @@ class _EarlyOrders:
             self._take_back(order.open, "something else was ordered since")
         if order.kind != ANSWER:
             self._open.append(order)
+
+    def _rests(self, id: str) -> bool:
+        """Return whether a vehicle is seen to have its motors off, known to be the robot's or not."""
+        robot = self._robots[id]
+        return isinstance(robot, Telling) and robot.told().get("armed") is False
+
+    def _confirm(self, order: Order, id: str) -> None:
+        order.confirm(id)
+        order.note(id, self._robots[id])
 
     def _let_go(self, order: Order) -> None:
         for id in order.open:

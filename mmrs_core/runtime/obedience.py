@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.abilities import Doubting, Noting, Pausable, Recovering, Watched
+from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
@@ -63,13 +63,8 @@ class Obedience:
                 order.refuse(id, "the run has ended")
 
     def _note(self, order: Order) -> None:
-        for id in {*order.confirmed, *order.refused} - order.noted:
-            order.noted.add(id)
-            backend = self._robots[id].backend if id in self._robots else None
-            if isinstance(backend, Noting):
-                seconds, why = order.confirmed.get(id), order.refused.get(id, "")
-                content = {"order": order.kind, "confirmed": not why, "seconds": seconds, "why": why}
-                backend.note("order", content)
+        for id in {*order.confirmed, *order.refused}:
+            order.note(id, self._robots[id].backend if id in self._robots else None)
 
     def _in_doubt(self, id: str) -> bool:
         backend = self._robots[id].backend if id in self._robots else None

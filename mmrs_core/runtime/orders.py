@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from mmrs_core.contributions.abilities import Noting
+
 HOLD, RESUME, RETURN, LAND, STOP, ANSWER = "hold", "resume", "return", "land", "stop", "answer"
 KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER)
 ENDINGS: Mapping[str, str] = {RETURN: "RETURN", LAND: "LAND", STOP: "HOLD"}
@@ -58,6 +60,16 @@ class Order:
         if robot in self.open:
             self.refused[robot] = why
             self._settle(robot, why)
+
+    def note(self, robot: str, backend: object) -> None:
+        """Have a robot's black box know, once, what became of the order."""
+        if robot in self.noted:
+            return
+        self.noted.add(robot)
+        if isinstance(backend, Noting):
+            seconds, why = self.confirmed.get(robot), self.refused.get(robot, "")
+            content = {"order": self.kind, "confirmed": not why, "seconds": seconds, "why": why}
+            backend.note("order", content)
 
     def _settle(self, robot: str, why: str | None) -> None:
         self.told(robot, why)

@@ -64,14 +64,20 @@ class Obedience:
         self._say = say
         self._vehicle: Vehicle | None = None
         self._early: list[Receipt] = []
+        self._rests: Callable[[], bool] = lambda: False
         self._pending: Receipt | None = None
         self._obeyed: Callable[[], bool] = lambda: False
         self._held = False
         self._moving = False
 
-    def begin(self, vehicle: Vehicle | None) -> None:
-        """Obey with a vehicle; None: there is none that may be told anything."""
-        self._vehicle = vehicle
+    def begin(self, vehicle: Vehicle | None, rests: Callable[[], bool] = lambda: False) -> None:
+        """Obey with a vehicle; None: there is none that may be told anything.
+
+        Args:
+            vehicle: of the robot.
+            rests: whether what will be its vehicle is seen to have its motors off meanwhile.
+        """
+        self._vehicle, self._rests = vehicle, rests
 
     @property
     def has_vehicle(self) -> bool:
@@ -88,6 +94,9 @@ class Obedience:
         self._confirm_what_is_seen()
         if self._held or self.hands_off:
             return
+        if self._early and self._vehicle is None and self._rests():
+            for each in self._early:
+                each.confirm("its motors are off, and stay so")
         if self._early and self._vehicle is not None:
             early, self._early = self._early, []
             self._hold(*early)

@@ -60,6 +60,23 @@ def test_a_landing_that_was_held_is_begun_again(robot):
     assert not robot.simulated.autopilot.armed
 
 
+def test_a_hold_before_the_vehicle_is_known_is_confirmed_by_motors_that_are_off(robot):
+    seen = []
+    robot.crew.obedience.begin(None, lambda: bool(seen))
+    held = robot.inbox.give(Order("hold"))
+    for _ in range(2):
+        robot.crew.obedience.check()
+    assert held.confirmed is None
+    seen.append("motors off")
+    robot.crew.obedience.check()
+    assert (held.confirmed, held.why) == (True, "its motors are off, and stay so")
+    robot.crew.obedience.begin(robot.crew.vehicle)
+    done = in_background(robot.crew.obedience.check)
+    until(lambda: robot.said[-1:] == ["is held; waits for an order"])
+    robot.inbox.give(Order("resume"))
+    done.result(20.0)
+
+
 @pytest.mark.parametrize("name", ["return", "land"])
 def test_an_order_that_ends_the_program_ends_a_hold_too(robot, name):
     done = go_north(robot)
