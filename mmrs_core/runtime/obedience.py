@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Watched
+from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.answers import HANDS_OFF
@@ -128,7 +128,8 @@ class Obedience:
 
     def _stands(self, robot: RunningRobot) -> bool:
         """Return whether it came down for its battery, and is there."""
-        return robot.suspended and not (robot.stopping or self._is_watched(robot))
+        still_flies = isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is True
+        return robot.suspended and not (robot.stopping or self._is_watched(robot) or still_flies)
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""

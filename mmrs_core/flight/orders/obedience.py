@@ -223,7 +223,9 @@ class Obedience:
             raise Again
 
     def _await_resume(self, vehicle: Vehicle) -> Receipt:
-        while not self._stop.is_set():
+        """Return the order to go on; a stop ends the waiting unless it came before the hold."""
+        stopped = self._stop.is_set()
+        while stopped or not self._stop.is_set():
             vehicle.rest(GLANCE_SECONDS * self._clock.speedup)
             receipt = self._inbox.take()
             if receipt is None:

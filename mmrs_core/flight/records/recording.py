@@ -121,7 +121,10 @@ class Recording:
             self._answered(int(message.command), _word("MAV_RESULT", message.result))
 
     def _answered(self, number: int, result: str) -> None:
-        begun, tries, params = self._commands.pop(number)
+        # The robot's thread sends, the reader's hears: whichever comes first tells of the command.
+        if (command := self._commands.pop(number, None)) is None:
+            return
+        begun, tries, params = command
         name, seconds = _word("MAV_CMD", number), round(self._clock.now() - begun, 3)
         self._box.write("command", name=name, params=params, result=result, seconds=seconds, tries=tries)
 

@@ -271,10 +271,16 @@ class Ending:
             self._crew.vehicle.rest(WATCH_SECONDS)
 
     def _leave_it_holding(self) -> None:
-        """Have a vehicle that was stopped stay where it is when nobody talks to it any more."""
+        """Have a vehicle that was stopped stay where it is when nobody talks to it any more.
+
+        Raises:
+            Fault: somebody has ordered something meanwhile, or has taken over.
+        """
         try:
             self._crew.vehicle.answer_lost_link(HOLD)
         except Fault as fault:
+            if isinstance(fault, Ordered) or fault.event == TAKEN_OVER:
+                raise
             self._crew.say(f"{fault}: it may not stay where it is when this program has ended")
 
     def _stand_back(self) -> None:

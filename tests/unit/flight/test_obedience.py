@@ -49,6 +49,19 @@ def test_a_held_robot_halts_and_then_comes_to_where_it_was_going(robot):
     assert distance(robot.crew.vehicle.state().place, NORTH) < 1.0
 
 
+def test_a_hold_after_a_stop_lasts_until_the_next_order(robot):
+    robot.crew.desk.stop.set()
+    robot.crew.watch.relax({"STOPPED"}, "LAND")
+    done = in_background(lambda: robot.crew.obedience.repeat(robot.crew.vehicle.land))
+    held = robot.inbox.give(Order("hold"))
+    until(lambda: held.confirmed)
+    until(lambda: robot.said[-1:] == ["is held; waits for an order"])
+    assert not done.done()
+    robot.inbox.give(Order("resume"))
+    done.result(20.0)
+    assert not robot.simulated.autopilot.armed
+
+
 def test_a_landing_that_was_held_is_begun_again(robot):
     done = in_background(lambda: robot.crew.obedience.repeat(robot.crew.vehicle.land))
     until(lambda: robot.simulated.autopilot.body.position[2] < 9.0)
