@@ -59,8 +59,11 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def _told_elsewhere(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
-    """Print errors as usual, but no interrupt: libraries written in C print what breaks their imports off."""
-    if not issubclass(kind, KeyboardInterrupt):
+    """Print errors as usual, but none of an interrupt.
+
+    Libraries written in C print what breaks their imports off: the interrupt, and errors that follow from it.
+    """
+    if not (interrupted() or issubclass(kind, KeyboardInterrupt)):
         sys.__excepthook__(kind, error, traceback)
 
 
