@@ -8,6 +8,7 @@ come; if all begin at that very moment, it begins, too.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -84,7 +85,7 @@ def begin_together(
     Raises:
         Incomplete: not all are ready by then; says who is not.
     """
-    calls = [_Asking(node, each, run, robots, now) for each in (robot, *beside)]
+    calls = [_Asking(node, each, run, robots, guard, now) for each in (robot, *beside)]
     asking = calls[0]
     _gather(calls, guard, time.monotonic() + patience)
     if not asking.at:
@@ -100,6 +101,16 @@ def begin_together(
 
 def _gather(calls: Sequence[_Asking], guard: Callable[[str], None], until: float) -> None:
     """Have it known that robots are ready, until the first of them knows the instant or time is up."""
+    try:
+        _call_together(calls, guard, until)
+        _part(calls)
+    except BaseException:
+        for each in calls:
+            each.leave_word()
+        raise
+
+
+def _call_together(calls: Sequence[_Asking], guard: Callable[[str], None], until: float) -> None:
     asking, why = calls[0], "nobody has answered yet"
     while not asking.at and time.monotonic() < until:
         guard(why)
@@ -109,8 +120,13 @@ def _gather(calls: Sequence[_Asking], guard: Callable[[str], None], until: float
                 each.ask()
         if not asking.at:
             time.sleep(GLANCE_SECONDS)
+
+
+def _part(calls: Sequence[_Asking]) -> None:
+    """Have it known that robots are no longer ready, unless all begin."""
+    asking = calls[0]
     for each in calls:
-        if not asking.at and each.heard:
+        if not asking.at and each.may_be_listed():
             each.withdraw()
             asking.at = asking.at or each.at
 
@@ -128,20 +144,25 @@ class _Asking:
         at: when all begin, by the first robot's clock; 0: nobody knows.
         offset: seconds by which that clock is ahead, measured in a round trip of the `shortest` time.
         trips: round trips since the instant is known.
-        heard: whether the first robot knows that this one is ready.
     """
 
     def __init__(
-        self, node: Node, robot: str, run: str, robots: Sequence[str], now: Callable[[], float]
+        self,
+        node: Node,
+        robot: str,
+        run: str,
+        robots: Sequence[str],
+        guard: Callable[[str], None],
+        now: Callable[[], float],
     ) -> None:
         self.at = self.offset = 0.0
         self.shortest = float("inf")
         self.trips = 0
-        self.heard = False
+        self._heard = False
         self._ready: tuple[str, ...] = ()
         self._robot = robot
         self._robots, self._first = sorted(set(robots)), min(robots)
-        self._node, self._now = node, now
+        self._node, self._guard, self._now = node, guard, now
         self._request = Meet(CommandId(run, robot, node.incarnation, 0), len(self._robots))
 
     def left(self) -> float:
@@ -166,9 +187,13 @@ class _Asking:
         if answer is None:
             self._ready = ()
             return f"no answer from {self._first!a}"
-        self.heard, self._ready = True, answer.ready
+        self._heard, self._ready = True, answer.ready
         missing = ", ".join(map(ascii, self.missing()))
         return f"{answer.why}; not yet: {missing}" if answer.why and missing else answer.why
+
+    def may_be_listed(self) -> bool:
+        """Return whether the first robot may know that this one is ready; its answers may all be lost."""
+        return self._heard or not self._node.missing([self._first])
 
     def withdraw(self) -> None:
         """Say that the robot waits no longer; where all begin at this very moment, it does, too."""
@@ -176,16 +201,23 @@ class _Asking:
             if self._answer_to(replace(self._request, robots=0)) is not None:
                 return
 
+    def leave_word(self) -> None:
+        """Say that the robot waits no longer, and go without an answer."""
+        farewell = replace(self._request, robots=0)
+        self._node.ask_once(farewell.id.sender, self._first, farewell, lambda answer: None)
+
     def _answer_to(self, request: Meet) -> Answer | None:
         found: list[tuple[Answer, float]] = []
+        answered = threading.Event()
         asked = self._now()
 
         def take(answer: Answer) -> None:
             found.append((answer, self._now()))
+            answered.set()
 
         self._node.ask_once(request.id.sender, self._first, request, take)
-        while not found and self._now() - asked < SLOWEST_SECONDS:
-            time.sleep(0.0005)
+        while not answered.wait(GLANCE_SECONDS) and self._now() - asked < SLOWEST_SECONDS:
+            self._guard("")
         if not found:
             return None
         self._learn(found[0][0], asked, found[0][1])

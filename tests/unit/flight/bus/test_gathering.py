@@ -1,0 +1,115 @@
+"""Waiting for the robots to begin with: whatever is lost on the way, it can be ended at once."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Container
+
+import pytest
+
+from mmrs_core.flight.bus import Incomplete, Member, Node, Owned, begin_together
+from mmrs_core.flight.bus.carrier import NoCarrier
+from mmrs_core.flight.bus.reading import request_in, written
+from mmrs_core.flight.bus.roster import Roster
+from mmrs_core.flight.bus.words import Meet
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.orders.obedience import Obedience, Ordered
+from mmrs_core.flight.orders.orders import Inbox, Order
+from mmrs_core.flight.vehicles.dry import DryVehicle
+
+AT_ONCE = 1.5
+"""Seconds, on a busy machine; for an answer that does not come a robot waits for longer."""
+
+ALL = range(1_000)
+
+
+class Tired(Exception):  # noqa: N818  # a wish, not a fault
+    """What ends a wait here."""
+
+
+class Losing(NoCarrier):
+    """Carries requests to the robot that keeps the list, and answers back unless they are lost.
+
+    Attributes:
+        listed: who was ready after each request.
+    """
+
+    def __init__(self, lost: Container[int]) -> None:
+        self.listed: list[tuple[str, ...]] = []
+        self._roster, self._lost = Roster(), lost
+
+    def open(self, station) -> None:
+        station.noticed("a", True)
+
+    def ask(self, sender, owner, request, answered) -> None:
+        asked = request_in(request)
+        if not isinstance(asked, Meet):
+            return
+        answer = self._roster.answer(asked)
+        self.listed.append(answer.ready)
+        if len(self.listed) - 1 not in self._lost:
+            answered(written(answer))
+
+
+@pytest.fixture
+def begin():
+    """Return what has ``b`` begin together with ``a``, who keeps the list."""
+    opened = []
+
+    def beginning(carrier, guard, **more) -> None:
+        opened.append(Node([Member(Owned("b", (), {}, {}), frozenset("a"))], "run-0", carrier=carrier))
+        begin_together(opened[-1], "b", "run-0", ("a", "b"), guard, **more)
+
+    yield beginning
+    for node in opened:
+        node.close()
+
+
+def tired_after(seconds: float):
+    until = time.monotonic() + seconds
+
+    def guard(why: str) -> None:
+        if time.monotonic() > until:
+            raise Tired
+
+    return guard
+
+
+def test_waiting_for_an_answer_that_does_not_come_can_be_ended_at_once(begin):
+    begun = time.monotonic()
+    with pytest.raises(Tired):
+        begin(Losing(ALL), tired_after(0.2))
+    assert time.monotonic() - begun < AT_ONCE
+
+
+def test_taking_leave_of_a_robot_that_answers_no_more_can_be_ended_at_once(begin):
+    begun = time.monotonic()
+    with pytest.raises(Tired):
+        begin(Losing(ALL[1:]), tired_after(0.2), patience=0.01)
+    assert time.monotonic() - begun < AT_ONCE
+
+
+def test_an_order_is_obeyed_while_an_answer_does_not_come(begin):
+    inbox, clock = Inbox("b"), Clock()
+    obedience = Obedience(inbox, clock, threading.Event(), print)
+    obedience.begin(DryVehicle(clock, None, obedience.check))
+    threading.Timer(0.2, inbox.give, [Order("return")]).start()
+    begun = time.monotonic()
+    with pytest.raises(Ordered, match="return was ordered"):
+        begin(Losing(ALL), lambda why: obedience.check())
+    assert time.monotonic() - begun < AT_ONCE
+
+
+def test_a_robot_that_has_heard_no_answer_is_no_longer_listed_once_it_waits_no_more(begin):
+    carrier = Losing({0})
+    with pytest.raises(Incomplete):
+        begin(carrier, lambda why: None, patience=0.01)
+    assert (carrier.listed[0], carrier.listed[-1]) == (("b",), ())
+
+
+def test_a_robot_that_is_made_to_wait_no_more_is_no_longer_listed(begin):
+    carrier = Losing(ALL)
+    with pytest.raises(Tired):
+        begin(carrier, tired_after(0.2))
+    assert (carrier.listed[0], carrier.listed[-1]) == (("b",), ())
