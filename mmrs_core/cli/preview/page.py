@@ -12,7 +12,7 @@ from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, Thing
-from mmrs_core.cli.preview.profile import profile_markup
+from mmrs_core.cli.preview.profile import BARS, profile_markup
 from mmrs_core.cli.preview.projection import projection_of
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
 from mmrs_core.cli.preview.timeline import timeline_markup
@@ -58,7 +58,13 @@ def page(picture: Picture) -> str:
             element("h2", None, "Who does what, and who waits for whom"),
             timeline_markup(picture),
         ),
-        element("section", None, element("h2", None, "Heights above the origin"), profile_markup(picture)),
+        element(
+            "section",
+            None,
+            element("h2", None, "Heights above the origin"),
+            element("p", {"class": "soft"}, BARS),
+            profile_markup(picture),
+        ),
         element("section", None, element("h2", None, "Robots"), _table(picture)),
         _things(picture),
         _notes(picture),

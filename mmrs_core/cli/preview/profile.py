@@ -20,6 +20,8 @@ _TOP = 20.0
 _SMALLEST_RANGE = 4.0
 _NAMES = 40
 
+BARS = "Grey and red bars: obstacles and forbidden areas on the way as seen from above, from foot to top."
+
 
 @dataclass(frozen=True, slots=True)
 class _Strip:

@@ -14,7 +14,7 @@ from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture
-from mmrs_core.cli.preview.profile import profile_markup
+from mmrs_core.cli.preview.profile import BARS, profile_markup
 from mmrs_core.cli.preview.timeline import timeline_markup
 from mmrs_core.cli.report import measures, sections
 from mmrs_core.cli.report.charts import battery_chart, off_way_chart
@@ -86,7 +86,8 @@ def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
     yield sections.robots(report)
     yield sections.events(report)
     yield section("Who did what, and who waited for whom", _wide(timeline_markup(picture)))
-    yield section("Heights above the origin", _wide(profile_markup(picture)), note="Dashed grey: as planned.")
+    words = f"{BARS} Dashed grey: as planned."
+    yield section("Heights above the origin", _wide(profile_markup(picture)), note=words)
     yield measures.deviations(report)
     yield measures.approaches(report)
     yield measures.separations(report)
