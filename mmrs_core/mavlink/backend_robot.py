@@ -49,7 +49,7 @@ class MavlinkBackend:
     def __init__(self, robot: Robot, equipment: Equipment, options: LinkOptions) -> None:
         """Listen to the vehicle; it is told nothing before it is to get ready."""
         self._robot, self._with = robot, equipment
-        self._lost_link = LostLink(robot, equipment.vehicle)
+        self._lost_link = LostLink(robot, equipment.vehicle, equipment.say)
         self._watch = self._new_watch()
         self._moves = Moves(robot, equipment.vehicle, equipment.clock, equipment.locators, self._keep)
         self._way = WayBack(robot, self._moves, equipment.vehicle, options.home_tolerance)
@@ -281,7 +281,7 @@ class MavlinkBackend:
 
     def _begin(self, job: Job, *, afresh: bool = False) -> None:
         if self._lost_link.is_due:
-            job.first(self._lost_link.tell_again)
+            job.first(self._lost_link.tell_what_is_due)
         fresh = afresh or (self._seen is not None and self._seen is self._worker.fault)
         self._worker.begin(job, afresh=fresh)
 

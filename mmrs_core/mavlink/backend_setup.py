@@ -62,7 +62,7 @@ class Setup:
         self._recognise()
         if self._with.resumed:
             vehicle.hold()
-        self._lost_link.tell(self._with.say)
+        self._lost_link.tell()
         equip(self._robot, vehicle, self._uploads, self._with.say)
         self._note("start", start_of(self._robot, self._with.url, self._with.link))
         self.is_done = True
