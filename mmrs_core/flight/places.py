@@ -63,6 +63,14 @@ def between(a: Place, b: Place, part: float) -> Place:
     return Local(a.north + north * part, a.east + east * part, a.height + up * part)
 
 
+def distance_to_leg(here: Place, a: Place, b: Place) -> float:
+    """Return the metres from a place to a straight leg."""
+    along, leg = offset(a, here), offset(a, b)
+    square = sum(each * each for each in leg)
+    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
+    return distance(here, between(a, b, min(1.0, max(0.0, part))))
+
+
 def at_height(place: Place, height: float) -> Place:
     """Return the place above or below another at that height."""
     if isinstance(place, Geographic):

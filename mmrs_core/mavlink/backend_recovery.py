@@ -7,9 +7,9 @@ from itertools import pairwise
 from math import hypot
 
 from mmrs_core.flight.faults import Refused
-from mmrs_core.flight.places import ends_of, offset
+from mmrs_core.flight.places import distance_to_leg, ends_of, offset
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
-from mmrs_core.flight.steps.rejoining import OFF_ITS_WAY, distance_to_leg, way_ahead
+from mmrs_core.flight.steps.rejoining import OFF_ITS_WAY, way_ahead
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend_worker import Job

@@ -146,7 +146,8 @@ class Radio:
         return mavlink.MAVLink(None, srcSystem=system, srcComponent=GROUND_COMPONENT)
 
     def _packed(self, message: Message, system: int) -> bytes:
-        packer = self._packers.setdefault(system, self._parser(system))
+        if (packer := self._packers.get(system)) is None:
+            packer = self._packers[system] = self._parser(system)
         data = packer.packed(message) if self._signer is not None else bytes(message.pack(packer))
         packer.seq = (packer.seq + 1) % 256
         return data

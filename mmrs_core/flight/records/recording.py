@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import hypot
@@ -11,9 +12,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..clock import Clock
 from ..links.link import Message
-from ..program import Geographic, Local, Place
+from ..program import Geographic, Place
 from ..services.missions import NAMES
 from ..vehicles.telemetry import NO_HEADING
+from ..vehicles.trail import place_in
 from ..vehicles.vehicle import State
 from .blackbox import BlackBox
 
@@ -51,7 +53,7 @@ NO_ANSWER = "no answer"
 
 
 class Recording:
-    """Observes one link.
+    """Observes one link; the robot's thread tells it what is sent, the link's reader what is heard.
 
     Commands are written when the vehicle has answered, or when the next one shows that it never did.
     """
@@ -78,16 +80,18 @@ class Recording:
         self._upload: dict[int, tuple[float, int]] = {}
         self._values: dict[str, float] = {}
         self._asked: dict[str, float] = {}
+        self._lock = threading.Lock()
 
     def __call__(self, message: Message, outgoing: bool) -> None:
         """Write what a message tells."""
         kind = message.get_type()
-        if outgoing:
-            self._sent(message, kind)
-        elif kind in _HEARD:
-            _HEARD[kind](self, message)
-        elif kind not in TELEMETRY | TOLD_OTHERWISE:
-            self._other(message, kind)
+        with self._lock:
+            if outgoing:
+                self._sent(message, kind)
+            elif kind in _HEARD:
+                _HEARD[kind](self, message)
+            elif kind not in TELEMETRY | TOLD_OTHERWISE:
+                self._other(message, kind)
 
     def _sent(self, message: Message, kind: str) -> None:
         if kind == "HEARTBEAT":
@@ -121,10 +125,7 @@ class Recording:
             self._answered(int(message.command), _word("MAV_RESULT", message.result))
 
     def _answered(self, number: int, result: str) -> None:
-        # The robot's thread sends, the reader's hears: whichever comes first tells of the command.
-        if (command := self._commands.pop(number, None)) is None:
-            return
-        begun, tries, params = command
+        begun, tries, params = self._commands.pop(number)
         name, seconds = _word("MAV_CMD", number), round(self._clock.now() - begun, 3)
         self._box.write("command", name=name, params=params, result=result, seconds=seconds, tries=tries)
 
@@ -167,7 +168,7 @@ class Recording:
             return
         self._fixed = now
         # The link keeps a message once everybody has seen it: the state is still that of the one before.
-        state = replace(self._state(), place=_place(message), speed=_speed(message))
+        state = replace(self._state(), place=place_in(message), speed=_speed(message))
         fix(self._box, state if (north := _heading(message)) is None else replace(state, heading=north))
 
     def _on_text(self, message: Message) -> None:
@@ -215,12 +216,6 @@ def fix(box: BlackBox, state: State, place: Place | None = None) -> None:
         mode=state.mode,
         armed=state.armed,
     )
-
-
-def _place(message: Message) -> Place:
-    if message.get_type() == "GLOBAL_POSITION_INT":
-        return Geographic(message.lat * 1e-7, message.lon * 1e-7, message.relative_alt * 1e-3)
-    return Local(message.x, message.y, -message.z)
 
 
 def _speed(message: Message) -> float:

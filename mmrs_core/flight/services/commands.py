@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections import deque
+from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -64,6 +65,11 @@ def command(
         raise Refused(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
 
 
+def ask(link: Link, number: int, *params: float) -> None:
+    """Send a command to the autopilot once; nobody waits for the acknowledgement."""
+    link.send(_message(link, number, params, link.component))
+
+
 def name_of(number: int) -> str:
     """Return the name of a MAV_CMD for people."""
     entry = mavlink.enums["MAV_CMD"].get(number)
@@ -71,14 +77,10 @@ def name_of(number: int) -> str:
 
 
 def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, component: int) -> Message:
-    padded = [*params, *[0.0] * (7 - len(params))]
     answer: Message | None = None
     with link.inbox("COMMAND_ACK", component=component) as inbox:
         for sent in link.attempts(tries):
-            confirmation = min(sent, LAST_CONFIRMATION)
-            link.send(
-                mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
-            )
+            link.send(_message(link, number, params, component, min(sent, LAST_CONFIRMATION)))
             heard = link.wait(lambda: _answer(inbox, number), link.patience)
             answer = heard or answer
             if heard is not None and heard.result == _BEGUN:
@@ -89,6 +91,13 @@ def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, co
     if answer is None:
         raise Unanswered(f"{name_of(number)}: no answer to {tries} tries")
     return answer
+
+
+def _message(
+    link: Link, number: int, params: Sequence[float], component: int, confirmation: int = 0
+) -> Message:
+    padded = [*params, *[0.0] * (7 - len(params))]
+    return mavlink.MAVLink_command_long_message(link.system, component, number, confirmation, *padded)
 
 
 def _end(link: Link, inbox: deque[Message], number: int, component: int) -> Message:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from ..faults import Refused
-from ..places import at_height, between, distance, ends_of, offset
+from ..places import at_height, distance, distance_to_leg, ends_of
 from ..program import GoTo, Land, Place, Robot, TakeOff
 
 OFF_ITS_WAY = 5.0
@@ -60,11 +60,3 @@ def rest_of_way(came: Sequence[Place], ahead: Sequence[Place], here: Place) -> S
         raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")
     last = len(came) - 1
     return way[nearest + 1 : last + 1] if nearest < last else way[last : nearest + 1][::-1]
-
-
-def distance_to_leg(here: Place, a: Place, b: Place) -> float:
-    """Return the metres from a place to a straight leg."""
-    along, leg = offset(a, here), offset(a, b)
-    square = sum(each * each for each in leg)
-    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
-    return distance(here, between(a, b, min(1.0, max(0.0, part))))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from ..places import at_height, between, distance, ends_of, offset
+from ..places import at_height, distance, distance_to_leg, ends_of
 from ..program import GoTo, Hold, Land, Object, Place, Robot, Skip, Step, Stop, Then, Turn
 
 NEAR = 1.0
@@ -75,7 +75,7 @@ def _cut_short(track: Track, here: Place | None) -> Iterator[int]:
 def _joined(track: Track, here: Place) -> int:
     """Return the number of the place that begins the first leg of the track on which the robot is."""
     for index, ((_, a), (_, b)) in enumerate(pairwise(track)):
-        if _distance_to_leg(here, a, b) <= NEAR:
+        if distance_to_leg(here, a, b) <= NEAR:
             return index
     return len(track) - 1
 
@@ -121,10 +121,3 @@ def _above(place: Place, below: Place) -> bool:
 
 def _length(here: Place, places: Sequence[Place]) -> float:
     return sum(distance(a, b) for a, b in pairwise([here, *places]))
-
-
-def _distance_to_leg(here: Place, a: Place, b: Place) -> float:
-    along, leg = offset(a, here), offset(a, b)
-    square = sum(each * each for each in leg)
-    part = sum(x * y for x, y in zip(along, leg, strict=True)) / square if square else 0.0
-    return distance(here, between(a, b, min(1.0, max(0.0, part))))

@@ -17,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..links.link import Link
 from ..places import distance, offset
 from ..program import Place
+from ..services.commands import ask
 from . import modes
 from .telemetry import Telemetry
 
@@ -98,15 +99,4 @@ class LinkEvidence:
         if now - self._asked.get(kind, 0.0) < ASK_SECONDS:
             return
         self._asked[kind] = now
-        number = getattr(mavlink, f"MAVLINK_MSG_ID_{kind}")
-        rest = (0.0,) * 6
-        self._link.send(
-            mavlink.MAVLink_command_long_message(
-                self._link.system,
-                self._link.component,
-                mavlink.MAV_CMD_REQUEST_MESSAGE,
-                0,
-                float(number),
-                *rest,
-            )
-        )
+        ask(self._link, mavlink.MAV_CMD_REQUEST_MESSAGE, getattr(mavlink, f"MAVLINK_MSG_ID_{kind}"))

@@ -7,10 +7,9 @@ vehicle then goes straight to an item over ground that nobody has checked.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import hypot
 
 from ..faults import NO_PROGRESS, Fault
-from ..places import offset
+from ..places import distance, distance_to_leg
 from ..program import Place
 from .trail import Trail
 
@@ -101,18 +100,9 @@ class Following:
 
     def _approach(self, here: Place) -> None:
         """Keep by how many metres each place was missed up to now; 0: not at all."""
-        gap = hypot(*offset(self._here, here))
+        gap = distance(self._here, here)
         for seq, place in self._places.items():
             if seq >= self._proven:
-                missed = max(0.0, _distance(place, self._here, here) - NEAR_METRES - gap / 2.0)
+                missed = max(0.0, distance_to_leg(place, self._here, here) - NEAR_METRES - gap / 2.0)
                 self._missed[seq] = min(self._missed.get(seq, missed), missed)
         self._here = here
-
-
-def _distance(place: Place, a: Place, b: Place) -> float:
-    """Return the metres between a place and the straight way from `a` to `b`."""
-    way, to = offset(a, b), offset(a, place)
-    squared = sum(each * each for each in way)
-    part = sum(p * q for p, q in zip(way, to, strict=True)) / squared if squared else 0.0
-    part = min(1.0, max(0.0, part))
-    return hypot(*(q - part * p for p, q in zip(way, to, strict=True)))

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
 from ..links.link import Link
-from ..services.commands import command
+from ..services.commands import ask, command
 from . import modes
 from .habits import ArduPilot, Habits
 from .px4 import Px4
@@ -153,9 +153,7 @@ class Helm:
         if self._mode is None or now - self._asked_again < self._link.patience:
             return
         self._asked_again = now
-        params = [*self._modes[self._mode].params, 0.0, 0.0, 0.0, 0.0, 0.0][:7]
-        link, number = self._link, mavlink.MAV_CMD_DO_SET_MODE
-        link.send(mavlink.MAVLink_command_long_message(link.system, link.component, number, 0, *params))
+        ask(self._link, mavlink.MAV_CMD_DO_SET_MODE, *self._modes[self._mode].params)
 
     def _begin(self, mode: str) -> None:
         if mode == modes.GUIDED:

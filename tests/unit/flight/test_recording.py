@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import threading
 
 import pytest
+from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
@@ -59,3 +61,42 @@ def test_a_local_fix_has_the_speed_of_its_message(fixes):
 def test_places_are_taken_from_messages_of_the_programs_frame_only(fixes):
     message = mavlink.MAVLink_local_position_ned_message(0, 1.0, 2.0, -3.0, 0.6, 0.0, -0.8)
     assert fixes(message, geographic=True) == []
+
+
+class Interrupting(Clock):
+    """A clock whose reader is interrupted once, by a thread that has a moment to do something."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.meanwhile = None
+
+    def now(self) -> float:
+        meanwhile, self.meanwhile = self.meanwhile, None
+        if meanwhile is not None:
+            thread = threading.Thread(target=meanwhile)
+            thread.start()
+            thread.join(0.2)
+        return super().now()
+
+
+def test_an_answer_that_comes_while_a_command_is_sent_again_ends_that_command(tmp_path):
+    path = black_box_path(tmp_path / "alpha.jsonl")
+    box, clock = BlackBox(path, "run-0", "alpha", lambda: 1.5), Interrupting()
+    record = Recording(box, clock, lambda: BEFORE)
+
+    def send(confirmation: int = 0) -> None:
+        record(mavlink.MAVLink_command_long_message(1, 1, 400, confirmation, 1, *[0] * 6), True)
+
+    def answer() -> None:
+        record(mavlink.MAVLink_command_ack_message(400, mavlink.MAV_RESULT_ACCEPTED), False)
+
+    send()
+    clock.meanwhile = answer
+    send(confirmation=1)
+    until(lambda: '"kind": "command"' in path.read_text("ascii"))
+    send()
+    answer()
+    box.close()
+    lines = (json.loads(line) for line in path.read_text("ascii").splitlines())
+    told = [(line["result"], line["tries"]) for line in lines if line["kind"] == "command"]
+    assert told == [("ACCEPTED", 2), ("ACCEPTED", 1)]
