@@ -1,4 +1,4 @@
-"""One process's end of the bus: its robots' slots, notifies on their way, and who is there."""
+"""One process's end of the bus: its robots' slots, what they notify others of, and who is there."""
 
 from __future__ import annotations
 
@@ -6,37 +6,24 @@ import random
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
-from functools import partial
 
 from .announcing import FAREWELL_SECONDS, Announcing
 from .answering import Answering
 from .carrier import Carrier, NoCarrier
 from .carrying import Courier
+from .changes import Changes
 from .delivery import Delivery
-from .errands import Errand, Message, Notice
 from .journal import Journal, NoJournal
 from .members import Member, Recorded
+from .notifying import Notifying
 from .outbox import Outbox
 from .owners import Owners
 from .pacing import Pacing
 from .reading import written
+from .sending import Sending
 from .troubles import Keeping, Net, Tell, tell_people
 from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
-from .words import (
-    LARGEST,
-    REACH,
-    Answer,
-    Begin,
-    CommandId,
-    Commit,
-    Meet,
-    Prepare,
-    Request,
-    SlotId,
-    SlotState,
-    Withdraw,
-)
+from .words import Answer, Begin, CommandId, Commit, Meet, Request, SlotId, SlotState
 
 LEASE_SECONDS = 1.5
 """How long a robot may be out of reach before slots are no longer kept for it."""
@@ -111,10 +98,30 @@ class Node:
         )
         self._answering = Answering(self._owners, self._watching, self._outbox, self._net, now)
         self._pacing = Pacing(self.lock, now, self._next_due, self.pump, self._net, threaded=threaded)
-        self._callbacks: list[Callable[[], None]] = []
-        self._chance = chance or random.Random()
+        self._changes = Changes(self.lock, self._net)
         carrying = carrier or NoCarrier()
         self._courier = Courier(carrying, self._net)
+        self._notifying = Notifying(
+            self.lock,
+            now,
+            self._run,
+            self._owners,
+            self._watching,
+            self._outbox,
+            self.pump,
+            chance or random.Random(),
+            alone=self._alone,
+        )
+        self._sending = Sending(
+            self.lock,
+            now,
+            self._owners,
+            self._outbox,
+            self._answering,
+            self._courier,
+            self._changes,
+            self._net,
+        )
         self._begin(given, settle)
         for robot in self._members:
             carrying.appear(robot)
@@ -172,41 +179,7 @@ class Node:
 
         Where there are robots of other processes, run and incarnation are those of this node.
         """
-        parts: dict[str, tuple[str, ...]] = {}
-        for owner, slot in slots:
-            parts[owner] = (*parts.get(owner, ()), slot)
-        if not self._alone:
-            id = replace(id, run=self._run, incarnation=self.incarnation)
-            self._take_part(id.sender)
-        errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
-        with self.lock:
-            for owner in parts:
-                if self._watching.has_ended(owner) and owner not in self._owners:
-                    errand.gone(owner)
-            self._outbox.add(errand)
-        self.pump()
-        return Delivery(errand, self.lock, partial(self._send, errand), partial(self._withdraw, errand))
-
-    def _take_part(self, robot: str) -> None:
-        with self.lock:
-            try:
-                self._owners.take_part(robot)
-            except OSError:
-                return  # whoever watches the journal has told; a robot that cannot keep this says so
-
-    def _send(self, errand: Errand, lamport: int) -> None:
-        """Have the owners of a notify apply it; they are told until all have acknowledged."""
-        with self.lock:
-            errand.send(lamport, self.now())
-            self._owners.use(lamport)
-        self.pump()
-
-    def _withdraw(self, errand: Errand) -> None:
-        """Give a notify up; its owners are told until they have answered."""
-        with self.lock:
-            if (notice := errand.withdraw()) is not None:
-                self._outbox.add(notice)
-        self.pump()
+        return self._notifying.prepare(id, slots, active)
 
     def state(self, slot: SlotId) -> SlotState:
         """Return the state of a slot of this process's robots.
@@ -256,7 +229,7 @@ class Node:
             self._watching.left[robot] = self._owners.lamport
             self._announcing.bid_farewell(robot)
         self.pump()
-        self._tell_changed()
+        self._changes.tell()
 
     def hide(self, robot: str) -> None:
         """Have a robot of this process be out of reach, as one that is frozen; its slots are kept."""
@@ -287,7 +260,7 @@ class Node:
         """Set own slots as a log says they were, whoever may set them."""
         with self.lock:
             self._owners.repeat(id, slots, active, lamport)
-        self._tell_changed()
+        self._changes.tell()
 
     def restore(self, active: Iterable[SlotId], lamport: int) -> None:
         """Begin with these own slots active and at that logical time; others' slots are left alone."""
@@ -296,13 +269,11 @@ class Node:
 
     def on_change(self, callback: Callable[[], None]) -> None:
         """Have a function called, from any thread, when something may have changed; it must not block."""
-        with self.lock:
-            self._callbacks.append(callback)
+        self._changes.on(callback)
 
     def await_change(self, seconds: float) -> None:
         """Wait until something may have changed, but no longer than so many real seconds."""
-        with self.lock:
-            self.lock.wait(seconds)
+        self._changes.wait(seconds)
 
     def close(self) -> None:
         """Leave the bus, once; robots that have not ended are lost to the others."""
@@ -334,7 +305,7 @@ class Node:
         with self.lock:
             self._pacing.keep_going()
         if not isinstance(found, Meet):
-            self._tell_changed()
+            self._changes.tell()
         if isinstance(found, Commit | Begin):
             self._courier.publish(owner)
         return "" if answer is None else written(answer)
@@ -353,7 +324,7 @@ class Node:
             if here:
                 self._outbox.back(robot, now)
             self._pacing.keep_going()
-        self._tell_changed()
+        self._changes.tell()
 
     def stranger(self, robot: str, here: bool) -> None:
         """Take note that a robot is there by another plan of the mission, or no longer."""
@@ -370,28 +341,17 @@ class Node:
         """Send what is due; called by itself where the bus is threaded."""
         with self.lock:
             now = self.now()
-            work = self._outbox.take_due(now)
-            for errand, message in work:
-                if message.owner in self._owners:
-                    answer = self._answer(message.owner, message.request, here=True)
-                    if answer is not None:
-                        errand.answered(message.owner, _round(message.request), answer, now)
+            work = self._sending.begin(now)
             gone = self._outbox.sweep()
             ended = self._owners.end_lost(now)
             silent, back = self._keeping.look()
             self._tell_oddities(now)
             self._pacing.keep_going()
-        # Carriers may take other locks, or wait: never with ours.
-        for errand, message in work:
-            if message.owner not in self._owners:
-                taken = self._taker(errand, message)
-                self._courier.ask(message.sender, message.owner, message.request, taken)
-            elif isinstance(message.request, Commit | Begin):
-                self._courier.publish(message.owner)
+        self._sending.finish(work)
         self._courier.vanish([*gone, *silent])
         self._appear(back)
         if work or ended or silent or back:
-            self._tell_changed()
+            self._changes.tell()
 
     def _tell_oddities(self, now: float) -> None:
         for what in self._watching.lasting_oddities(now):
@@ -405,38 +365,11 @@ class Node:
             if not ended:
                 self._courier.appear(robot)
 
-    def _answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:
+    def _answer(self, robot: str, request: Request) -> Answer | None:
         with self.lock:
-            return self._answering.answer(robot, request, here=here)
-
-    def _taker(self, errand: Errand | Notice, message: Message) -> Callable[[Answer], None]:
-        def take(answer: Answer) -> None:
-            with self.lock:
-                errand.answered(message.owner, _round(message.request), answer, self.now())
-                if answer.what == "refused" and isinstance(message.request, Begin):
-                    self._net.tell(f"{message.owner!a} refuses {message.sender!a}: {answer.why}")
-                gone = self._outbox.sweep()
-            self._courier.vanish(gone)
-            self._tell_changed()
-
-        return take
-
-    def _least(self) -> int:
-        return 0 if self._alone else self._owners.lamport + 1
-
-    def _tell_changed(self) -> None:
-        with self.lock:
-            self.lock.notify_all()
-            callbacks = tuple(self._callbacks)
-        for callback in callbacks:
-            with self._net.under("telling of a change"):
-                callback()
+            return self._answering.answer(robot, request)
 
     def _next_due(self) -> float:
         """Return when there is something to do; inf: never."""
         ends = (self._owners.next_end(), self._keeping.due, self._watching.next_oddity())
         return min((*ends, self._outbox.due))
-
-
-def _round(request: Request) -> int:
-    return request.round if isinstance(request, Prepare | Withdraw) else 0

@@ -1,0 +1,94 @@
+"""Notifies of one process's robots, from the first request to the owners until all have acknowledged."""
+
+from __future__ import annotations
+
+import random
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from .delivery import Delivery
+from .errands import Errand
+from .outbox import Outbox
+from .owners import Owners
+from .watching import Watching
+from .words import LARGEST, REACH, CommandId, SlotId
+
+
+class Notifying:
+    """Has slots set, whoever owns them."""
+
+    def __init__(
+        self,
+        lock: threading.Condition,
+        now: Callable[[], float],
+        run: str,
+        owners: Owners,
+        watching: Watching,
+        outbox: Outbox,
+        pump: Callable[[], None],
+        chance: random.Random,
+        *,
+        alone: bool,
+    ) -> None:
+        """Set nothing yet.
+
+        Args:
+            lock: guards owners, watching and outbox.
+            now: seconds of a clock that never goes back.
+            run: identifier of the run, as robots of other processes know it.
+            owners: of this process.
+            watching: who has ended.
+            outbox: takes what is to be sent.
+            pump: sends what is due; called without the lock.
+            chance: for pauses between tries.
+            alone: whether there are no robots of other processes.
+        """
+        self._lock, self._now, self._run = lock, now, run
+        self._owners, self._watching, self._outbox = owners, watching, outbox
+        self._pump, self._chance, self._alone = pump, chance, alone
+
+    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+        """Ask the owners of slots for setting them; returns at once.
+
+        Where there are robots of other processes, run and incarnation are those of this process.
+        """
+        parts: dict[str, tuple[str, ...]] = {}
+        for owner, slot in slots:
+            parts[owner] = (*parts.get(owner, ()), slot)
+        if not self._alone:
+            id = replace(id, run=self._run, incarnation=self._owners.incarnation)
+            self._take_part(id.sender)
+        errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
+        with self._lock:
+            for owner in parts:
+                if self._watching.has_ended(owner) and owner not in self._owners:
+                    errand.gone(owner)
+            self._outbox.add(errand)
+        self._pump()
+        return Delivery(errand, self._lock, partial(self._send, errand), partial(self._withdraw, errand))
+
+    def _take_part(self, robot: str) -> None:
+        with self._lock:
+            try:
+                self._owners.take_part(robot)
+            except OSError:
+                return  # whoever watches the journal has told; a robot that cannot keep this says so
+
+    def _send(self, errand: Errand, lamport: int) -> None:
+        """Have the owners of a notify apply it; they are told until all have acknowledged."""
+        with self._lock:
+            errand.send(lamport, self._now())
+            self._owners.use(lamport)
+        self._pump()
+
+    def _withdraw(self, errand: Errand) -> None:
+        """Give a notify up; its owners are told until they have answered."""
+        with self._lock:
+            if (notice := errand.withdraw()) is not None:
+                self._outbox.add(notice)
+        self._pump()
+
+    def _least(self) -> int:
+        return 0 if self._alone else self._owners.lamport + 1
