@@ -13,8 +13,8 @@ from .bus import PATIENCE
 from .clock import Clock
 from .faults import Fault
 from .injection import HELP, Injections, injections
-from .links.link import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
 from .links.ports import address_of, split_system
+from .links.retries import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
 from .links.signing import Signer, signer_for
 from .program import Robot
 from .records.blackbox import black_box_path, last_time, plan_of

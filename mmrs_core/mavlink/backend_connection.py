@@ -17,9 +17,10 @@ from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.injection import Rehearsal, injections
-from mmrs_core.flight.links.link import Link, Retries
+from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import Port, address_of, split_system
 from mmrs_core.flight.links.radios import Radios
+from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.links.signing import Signer, signer_for
 from mmrs_core.flight.objects import Locator, where_expected
 from mmrs_core.flight.program import Action, Geographic, Robot

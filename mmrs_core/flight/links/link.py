@@ -1,4 +1,4 @@
-"""A link to one vehicle: the latest of everything that it says, waits for more, and what is sent to it."""
+"""A link to one vehicle: what it says, waits for more of it, and what is sent to it."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from math import inf
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from ..clock import Clock
 from ..faults import LINK_LOST, Fault
 from .identity import LATE_MILLISECONDS, Identity
+from .messages import Messages
 from .ports import Address, Port
 from .radio import GLANCE_SECONDS, Radio, is_autopilot
+from .retries import Retries
 from .roaming import Roaming
 from .signing import Signer
 from .stations import Stations
@@ -25,58 +26,16 @@ Found = TypeVar("Found")
 Observer = Callable[[Message, bool], None]
 """Is given every message and whether it goes out; called from whatever thread sends or reads."""
 
-TRIES = 5
-ANSWER_SECONDS = 1.5
-ITEM_SECONDS = 0.25
 FORSAKEN_SECONDS = 600.0
 """Silence after which nobody waits for a vehicle any more, where no policy has said so before."""
 
 LEAST_SECONDS = 0.5
 """Real seconds for an answer at least, unless less was asked for."""
 
-LATE_FRAMES = 64
-"""How many frames of the vehicle may have overtaken one that is late."""
-
-OVERTAKEN_SECONDS = 1.0
-"""For how long: frames are counted to 255 only, and after a gap what is new may look as if it were late."""
-
 GAP_SECONDS, LEAST_GAP_SECONDS = 2.0, 0.5
 """Silence of the vehicle, of the run and real, after which ground stations had no chance to be heard."""
 
-ANYBODY = 0
-"""Stands for every component of the vehicle's system."""
-
 TELL_BOOT = frozenset({"GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "SYSTEM_TIME", "ATTITUDE"})
-OF_ALL = frozenset(
-    {
-        "CAMERA_FEEDBACK",
-        "CAMERA_IMAGE_CAPTURED",
-        "COLLISION",
-        "DISTANCE_SENSOR",
-        "NAMED_VALUE_FLOAT",
-        "OBSTACLE_DISTANCE",
-        "RADIO_STATUS",
-    }
-)
-"""Messages that count as the vehicle's whichever of its components sends them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Retries:
-    """How often to send at most what is not answered, and how long to wait each time.
-
-    As the mission protocol publishes them (https://mavlink.io/en/services/mission.html); slow radios
-    need more.
-
-    Attributes:
-        tries: how often to send.
-        answer: seconds for an answer.
-        item: seconds for an item of a mission that is read back.
-    """
-
-    tries: int = TRIES
-    answer: float = ANSWER_SECONDS
-    item: float = ITEM_SECONDS
 
 
 def nobody() -> None:
@@ -125,13 +84,9 @@ class Link:
         late = max(LATE_MILLISECONDS, 1000.0 * self.clock.speedup)
         self._identity, self._roaming = Identity(late), Roaming(late)
         self._changed = threading.Condition()
-        self._latest: dict[str, tuple[Message, float]] = {}
-        self._inboxes: list[tuple[frozenset[str], int, deque[Message]]] = []
+        self._messages = Messages(self._changed, clock)
         self._observers: tuple[Observer, ...] = ()
         self._heard: float | None = None
-        self._fresh: list[tuple[str, deque[Message]]] = []
-        self._newest, self._newest_at = -1, -inf
-        self._orders: dict[str, int] = {}
         self._ended = ""
         radio.join(self)
 
@@ -220,20 +175,18 @@ class Link:
 
     def latest(self, kind: str) -> Message | None:
         """Return the last message of that name from the vehicle."""
-        found = self._latest.get(kind)
-        return found[0] if found else None
+        return self._messages.latest(kind)
 
     def since(self, kind: str) -> float:
         """Return how long ago the last message of that name came, in seconds; inf if none did."""
-        found = self._latest.get(kind)
-        return self.clock.now() - found[1] if found else float("inf")
+        return self._messages.since(kind)
 
     def order(self, kind: str) -> int:
         """Return which of the vehicle's frames the last message of that name was; -1 before one came.
 
         Of two messages the one with the larger number was sent later, whichever has come first.
         """
-        return self._orders.get(kind, -1)
+        return self._messages.order(kind)
 
     def silent_for(self) -> float:
         """Return for how many seconds the vehicle has not been heard; 0 before it was first heard."""
@@ -304,34 +257,18 @@ class Link:
         """Return whether somebody else says when the link is lost."""
         return self.guard is not nobody and self.silent_for() < FORSAKEN_SECONDS
 
-    @contextmanager
-    def inbox(self, *kinds: str, component: int | None = None) -> Iterator[deque[Message]]:
+    def inbox(self, *kinds: str, component: int | None = None) -> AbstractContextManager[deque[Message]]:
         """Collect every message of these names from now on.
 
         Args:
             kinds: names of messages.
             component: of the vehicle's system that must have sent them; None: the autopilot.
         """
-        entry = (frozenset(kinds), self.component if component is None else component, deque[Message]())
-        with self._changed:
-            self._inboxes.append(entry)
-        try:
-            yield entry[2]
-        finally:
-            with self._changed:
-                self._inboxes = [other for other in self._inboxes if other is not entry]
+        return self._messages.inbox(frozenset(kinds), self.component if component is None else component)
 
-    @contextmanager
-    def trail(self, kind: str) -> Iterator[deque[Message]]:
+    def trail(self, kind: str) -> AbstractContextManager[deque[Message]]:
         """Collect every message of that name that is news, from now on, in the order they were sent in."""
-        entry = (kind, deque[Message]())
-        with self._changed:
-            self._fresh.append(entry)
-        try:
-            yield entry[1]
-        finally:
-            with self._changed:
-                self._fresh = [other for other in self._fresh if other is not entry]
+        return self._messages.trail(kind)
 
     def meets(self, heartbeat: Message) -> bool:
         """Return whether an autopilot's heartbeat is that of the vehicle; it is the link's from then on."""
@@ -340,7 +277,7 @@ class Link:
             return False
         with self._changed:
             self.system, self.component = system, heartbeat.get_srcComponent()
-            self._latest["HEARTBEAT"] = (heartbeat, self.clock.now())
+            self._messages.put(heartbeat)
             self._changed.notify_all()
         return True
 
@@ -376,40 +313,10 @@ class Link:
         return self._roaming.accepts(message, sender, real, now, heartbeat=is_autopilot(message))
 
     def _keep(self, message: Message, *, own: bool) -> None:
-        kind, now = message.get_type(), self.clock.now()
         if own:
             if self.silent_for() > self.clock.patience(GAP_SECONDS, LEAST_GAP_SECONDS):
                 self.stations.pass_over(self.silent_for())
-            self._heard = now
-            if kind in TELL_BOOT:
+            self._heard = self.clock.now()
+            if message.get_type() in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)
-        if (own and self._is_news(message)) or (kind in OF_ALL and not own):
-            self._latest[kind] = (message, now)
-            for wanted, collected in self._fresh:
-                if kind == wanted:
-                    collected.append(message)
-        for kinds, component, collected in self._inboxes:
-            if kind in kinds and component in (ANYBODY, message.get_srcComponent()):
-                collected.append(message)
-
-    def _is_news(self, message: Message) -> bool:
-        """Return whether no message of that name has come that the vehicle sent later.
-
-        What messages of other names have overtaken is news all the same: where each frame takes as long
-        as it likes, most are overtaken by some other.
-        """
-        kind, order = message.get_type(), self._numbered(message.get_seq())
-        if order < self._orders.get(kind, -1):
-            return False
-        self._orders[kind] = order
-        return True
-
-    def _numbered(self, seq: int) -> int:
-        """Return which of the vehicle's frames one is, by its number, which is counted to 255 only."""
-        now = self.clock.now()
-        recent = now - self._newest_at <= self.clock.patience(OVERTAKEN_SECONDS, LEAST_SECONDS)
-        behind = (self._newest - seq) % 256
-        if recent and behind <= LATE_FRAMES:
-            return self._newest - behind
-        self._newest, self._newest_at = self._newest + 256 - behind, now
-        return self._newest
+        self._messages.take(message, own=own)

@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 from ..clock import Clock
 from ..faults import LINK_LOST, Fault, Refused
-from .link import Link, Retries
+from .link import Link
 from .ports import Port, open_port
 from .radio import Radio
+from .retries import Retries
 from .signing import Signer
 
 

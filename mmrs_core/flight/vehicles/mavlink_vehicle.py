@@ -14,7 +14,8 @@ from math import inf
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import NO_PROGRESS, Fault, Refused
-from ..links.link import ANYBODY, Link, Message
+from ..links.link import Link, Message
+from ..links.messages import ANYBODY
 from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import Unanswered, command, name_of

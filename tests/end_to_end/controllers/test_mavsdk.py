@@ -14,8 +14,9 @@ from lossy_proxy import LossyProxy
 
 from mmrs_core import flight
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.links.link import Link, Retries
+from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import open_port
+from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.services import missions, parameters
 from mmrs_core.flight.services.commands import command
 from mmrs_core.flight.services.uploads import mission_of

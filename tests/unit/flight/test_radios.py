@@ -11,7 +11,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault, Refused
-from mmrs_core.flight.links.link import ANYBODY, Link
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.messages import ANYBODY
 from mmrs_core.flight.links.ports import split_system
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.radios import Radios
