@@ -33,12 +33,6 @@ from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
 
 FAILED = 1
-_CAME_DOWN = {
-    "RETURN": "came home",
-    "EMERGENCY_AREA": "went to an emergency area",
-    "LAND": "landed where it was",
-    "SURFACE": "came up where it was",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +64,8 @@ class Result:
             word = "broken off" if robot in ending.suspended else "fault"
             say(f"  {word} of '{robot}': {fault}")
         for robot in ending.suspended:
-            way = _CAME_DOWN.get(ending.responses[robot])
-            changes = way is not None and ending.faults[robot].which == "BATTERY_LOW"
-            why = f"{way} for its battery" if changes else "has not gone on"
-            say(f"  '{robot}' {why}; --resume goes on where it stopped")
+            happened = ending.came_down.get(robot, "has not gone on")
+            say(f"  '{robot}' {happened}; --resume goes on where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
         for robot in ending.unconfirmed:

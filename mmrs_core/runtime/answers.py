@@ -7,20 +7,12 @@ from math import inf
 
 from mmrs_core.behaviour.policies import patience, policy_for, response_to
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.flight.faults import TAKEN_OVER
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.scene import Policy
-
-HANDS_OFF = "NOTHING"
-TAKEN_OVER = "TAKEN_OVER"
-"""A pilot has the robot: no policy answers that, the program lets go of it."""
-
-OVERTAKES = frozenset({"POSITION_LOST", "VEHICLE_RESTARTED", "BATTERY_LOW", "GROUND_LOST", TAKEN_OVER})
-"""What is answered anew where it happens while a robot still responds to something else."""
 
 UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
 """What real robots do where nobody declared it; to anything else they hold."""
-
-COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
-"""Responses after which a battery can be changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +28,9 @@ class Answers:
     live: bool = False
 
     def response(self, found: Fault) -> str:
-        """Return what the robot does, a literal of PolicyResponse or HANDS_OFF."""
+        """Return what the robot does, a literal of PolicyResponse or NOTHING."""
         if found.which == TAKEN_OVER:
-            return HANDS_OFF
+            return NOTHING
         if found.instead:
             return found.instead
         if self.live and policy_for(found.which, self.policies) is None:

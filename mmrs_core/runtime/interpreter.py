@@ -352,4 +352,5 @@ class _Run:
             self._made,
             suspended,
             responses,
+            {id: words for id, words in self._stopping.came_down.items() if id in suspended},
         )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.answers import HANDS_OFF
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -76,9 +76,9 @@ class Obedience:
             order.refuse(id, "no such robot here")
         elif order.kind == ANSWER:
             self._answer(order, robot)
-        elif order.kind == HOLD and robot.response != HANDS_OFF:
+        elif order.kind == HOLD and robot.response != NOTHING:
             self._hold(order, robot)
-        elif robot.response == HANDS_OFF:
+        elif robot.response == NOTHING:
             order.refuse(id, "a pilot has taken over")
         elif order.kind == RESUME:
             self._resume(order, robot)
@@ -129,7 +129,7 @@ class Obedience:
     def _stands(self, robot: RunningRobot) -> bool:
         """Return whether it came down for its battery, and is there."""
         still_flies = isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is True
-        return robot.suspended and not (robot.stopping or self._is_watched(robot) or still_flies)
+        return robot.suspended and not (robot.stopping or robot.is_watched(self._clock.now()) or still_flies)
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
@@ -152,7 +152,7 @@ class Obedience:
 
     def _stop_again(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot whose program has ended by a fault stop in another way, if it does anything still."""
-        busy = robot.fault is not None and (robot.stopping or self._is_watched(robot))
+        busy = robot.fault is not None and (robot.stopping or robot.is_watched(self._clock.now()))
         robot.released = robot.released or order.kind == STOP
         if not busy:
             order.refuse(robot.id, "its program has ended")
@@ -160,9 +160,6 @@ class Obedience:
             order.refuse(robot.id, "its link is lost")
         else:
             self._stop(order, robot)
-
-    def _is_watched(self, robot: RunningRobot) -> bool:
-        return isinstance(robot.backend, Watched) and robot.backend.watched(self._clock.now())
 
     def _stop(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot do something else about what has ended its program; `resume` what it did before."""

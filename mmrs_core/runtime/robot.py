@@ -9,20 +9,24 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import Bearing, Noting, Recovering
+from mmrs_core.contributions.abilities import Bearing, Noting, Recovering, Watched
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.conditions import awaiting, question_of
+from mmrs_core.flight.faults import TAKEN_OVER
+from mmrs_core.flight.policies import COMES_DOWN, OVERTAKES, still_low
 from mmrs_core.flight.questions import Questions
-from mmrs_core.runtime.answers import COMES_DOWN, OVERTAKES, Answers
+from mmrs_core.runtime.answers import Answers
 from mmrs_core.runtime.conditions import decided
 from mmrs_core.runtime.outgoing import Outgoing
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import step_of
 from mmrs_core.runtime.waiting import Wait
 from mmrs_core.scene import Policy
+
+OVERTAKING = OVERTAKES | {TAKEN_OVER}
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +147,13 @@ class RunningRobot:
         return self.backend.hindrance(tuple(self._passed), self._underway, now)
 
     def _still_low(self, now: float) -> str:
-        charge = self.backend.state(now).charge
-        if self.fault is None or self.fault.which != "BATTERY_LOW" or charge is None:
+        if self.fault is None or self.fault.which != "BATTERY_LOW":
             return ""
-        return f"its battery is still at {charge:.0%}" if charge <= self._rules.reserve else ""
+        return still_low(self.backend.state(now).charge, self._rules.reserve)
+
+    def is_watched(self, now: float) -> bool:
+        """Return whether it has stopped, or is out of reach, so that somebody must stay with it."""
+        return isinstance(self.backend, Watched) and self.backend.watched(now)
 
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
@@ -208,7 +215,7 @@ class RunningRobot:
 
     def overtaken_by(self, found: Fault) -> bool:
         """Return whether a fault is answered now although the robot still answers another one."""
-        if not found.instead and (found.which not in OVERTAKES or found.which in self._answered):
+        if not found.instead and (found.which not in OVERTAKING or found.which in self._answered):
             return False
         self._answered.add(found.which)
         self.response = self._answers().response(found)

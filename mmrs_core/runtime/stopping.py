@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from mmrs_core.contributions.abilities import Noting, Watched
+from mmrs_core.contributions.abilities import Noting, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.runtime.answers import COMES_DOWN, HANDS_OFF
+from mmrs_core.flight.policies import COMES_DOWN, NOTHING
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -25,6 +25,7 @@ class Stopping:
         """Look after these robots; orders that stop them are told what became of it."""
         self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
         self._unconfirmed: dict[str, None] = {}
+        self._came_down: dict[str, str] = {}
         self._lost: set[str] = set()
 
     @property
@@ -40,7 +41,12 @@ class Stopping:
     @property
     def watching(self) -> bool:
         """Return whether a robot has stopped in a way that somebody must watch."""
-        return any(self._is_watched(robot) for robot in self._robots)
+        return any(self._needs_company(robot) for robot in self._robots)
+
+    @property
+    def came_down(self) -> Mapping[str, str]:
+        """Return in words how robots came down that now wait for their batteries."""
+        return {each.id: self._came_down[each.id] for each in self._robots if each.id in self._came_down}
 
     def answer(self, robot: RunningRobot, found: Fault) -> None:
         """Have a robot give the response that it decided on, and tell people why."""
@@ -53,6 +59,7 @@ class Stopping:
     def stop(self, robot: RunningRobot, response: str) -> None:
         """Have a robot stop in some way."""
         robot.response = response
+        self._came_down.pop(robot.id, None)
         try:
             robot.backend.stop(self._clock.now(), response)
         except LinkLostError:
@@ -65,7 +72,7 @@ class Stopping:
         for robot in self._robots:
             if robot.stopping:
                 self._look_after(robot, self._clock.now())
-            elif robot.fault is not None and robot.response != HANDS_OFF and self._clock.passes_by_itself:
+            elif robot.fault is not None and robot.response != NOTHING and self._clock.passes_by_itself:
                 self._look_again(robot, self._clock.now())
 
     def _look_again(self, robot: RunningRobot, now: float) -> None:
@@ -82,7 +89,7 @@ class Stopping:
     def _tell_link(self, robot: RunningRobot, *, lost: bool) -> None:
         if lost:
             self._lost.add(robot.id)
-        elif robot.id in self._lost and self._is_watched(robot):
+        elif robot.id in self._lost and self._needs_company(robot):
             self._say(f"'{robot.id}': is heard again: orders are obeyed")
             self._lost.discard(robot.id)
 
@@ -99,13 +106,14 @@ class Stopping:
             self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed[robot.id] = None
         elif not robot.stopping:
+            self._unconfirmed.pop(robot.id, None)
             self._say(f"'{robot.id}': {self._done(robot, now)}")
             self._tell_battery(robot, now)
         self._obedience.stopped(robot.id, robot.stopping, trouble)
 
     def _done(self, robot: RunningRobot, now: float) -> str:
         """Return in words what a robot has done that has stopped."""
-        if robot.response == HANDS_OFF:
+        if robot.response == NOTHING:
             return "is left alone"
         if isinstance(robot.backend, Watched) and (why := robot.backend.undone(now)):
             return f"has not done {robot.response}: {why}"
@@ -113,12 +121,17 @@ class Stopping:
 
     def _tell_battery(self, robot: RunningRobot, now: float) -> None:
         """Tell what is to be done for a robot that came down for its battery."""
-        if robot.suspended and robot.response in COMES_DOWN:
-            away = robot.astray(now)
-            home = f"{away}: carry it home, " if away else ""
-            self._say(f"'{robot.id}': {home}change its battery, then order resume, or use --resume later")
+        low = robot.fault is not None and robot.fault.which == "BATTERY_LOW"
+        if robot.suspended and low and robot.response in COMES_DOWN:
+            words = self._came_down[robot.id] = _came_down(robot, now)
+            self._say(f"'{robot.id}': {words}; change it, then order resume, or start again with --resume")
 
-    def _is_watched(self, robot: RunningRobot) -> bool:
-        if robot.fault is None or robot.released or not isinstance(robot.backend, Watched):
-            return False
-        return robot.backend.watched(self._clock.now())
+    def _needs_company(self, robot: RunningRobot) -> bool:
+        """Return whether this process must not end yet, since nobody has said that it may leave the robot."""
+        return robot.fault is not None and not robot.released and robot.is_watched(self._clock.now())
+
+
+def _came_down(robot: RunningRobot, now: float) -> str:
+    if why := robot.astray(now):
+        return f"came down for its battery, but {why}"
+    return f"came {'home' if isinstance(robot.backend, Recovering) else 'down'} for its battery"

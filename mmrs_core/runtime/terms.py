@@ -69,6 +69,8 @@ class Ending:
         steps: how many were made.
         suspended: robots whose programs were broken off, to be resumed with a full battery.
         responses: to faults, by robot.
+        came_down: in words how robots came down for their batteries that have not gone on since; those of
+            `suspended` that are not here are not known to have come down for that.
     """
 
     outcome: Outcome
@@ -79,3 +81,4 @@ class Ending:
     steps: int
     suspended: tuple[str, ...] = ()
     responses: Mapping[str, str] = field(default_factory=dict)
+    came_down: Mapping[str, str] = field(default_factory=dict)

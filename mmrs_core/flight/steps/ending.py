@@ -8,25 +8,22 @@ from dataclasses import dataclass
 from ..desk import Desk
 from ..faults import (
     BATTERY_LOW,
-    GROUND_LOST,
     LINK_LOST,
     ORDERED,
-    POSITION_LOST,
     STOPPED,
     TAKEN_OVER,
-    VEHICLE_RESTARTED,
     Alone,
     Fault,
     Strange,
 )
 from ..links.link import Link
 from ..orders.obedience import Obedience, Ordered
+from ..policies import COMES_DOWN, NOTHING, OVERTAKES
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
-from .energy import COMES_DOWN
 from .obeying import obeying, undone
 from .pilot import Pilot
-from .responses import HOLD, NOTHING, respond, response_to
+from .responses import HOLD, respond, response_to
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -41,8 +38,7 @@ KEPT_UP = (
     " does what it does about a lost link, whoever has it"
 )
 CODES = {STOPPED: INTERRUPTED, ORDERED: INTERRUPTED, LINK_LOST: LINK}
-OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST, STOPPED})
-"""Events that are answered although the robot already responds to another."""
+OVERTAKING = OVERTAKES | {STOPPED}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +115,7 @@ class Ending:
                     first = other if self.suspended else first
                 elif other.event == LINK_LOST:
                     self._tell_undone(other, response)
-                elif not other.instead and (other.event not in OVERTAKES or other.event in self._handled):
+                elif not other.instead and (other.event not in OVERTAKING or other.event in self._handled):
                     return self._give_up(other, response)
                 fault, response = other, self._response_to(other)
                 self._tell(fault, response)

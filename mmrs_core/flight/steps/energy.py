@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import cos, hypot, inf, radians
 
 from ..places import bearing, distance, offset
+from ..policies import COMES_DOWN
 from ..program import Place, Robot
 from ..vehicles.vehicle import State
 from .ways import Track, way_back
@@ -24,7 +25,12 @@ LEAST_USED = 0.05
 """Part of the battery that must be used before its use is taken for the rate of a sortie."""
 
 RECOUNT_SECONDS = 1.0
-COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
+
+FULL = 0.99
+"""Part of a battery from which on it counts as charged."""
+
+RECHARGE_FACTOR = 3.0
+"""How many times as long as expected charging may take."""
 
 
 class Reserve:

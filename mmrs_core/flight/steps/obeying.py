@@ -8,9 +8,9 @@ from math import hypot
 from ..orders.obedience import OBEYED_IN
 from ..orders.orders import HOLD, LAND
 from ..places import offset
+from ..policies import COMES_DOWN
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
-from .energy import COMES_DOWN
 from .ways import Track, way_back
 
 STOP_THRUST = "STOP_THRUST"

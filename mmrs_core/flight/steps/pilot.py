@@ -11,6 +11,7 @@ from ..faults import BATTERY_LOW, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, distance, ends_of
+from ..policies import still_low
 from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from ..records.journal import Journal
 from ..records.recording import fix
@@ -18,15 +19,12 @@ from ..services.uploads import Flight, uploads_of
 from ..vehicles.corners import goes_through
 from ..vehicles.vehicle import Vehicle
 from .doing import Doing
+from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
 from .rejoining import OFF_ITS_WAY, rest_of_way, way_ahead
 from .resuming import still_on, track_of
 from .waits import Waits
 from .watch import Watch
-
-FULL = 0.99
-RECHARGE_FACTOR = 3.0
-"""How many times as long as expected charging may take."""
 
 ON_THE_GROUND = 1.0
 """Metres above home under which a vehicle that was to land does not climb once more."""
@@ -160,10 +158,7 @@ class Pilot:
 
     def lacks_energy(self) -> str:
         """Return why the battery is not to be flown with; empty where it is, or nobody knows."""
-        left = self._vehicle.state().energy
-        if left is None or left >= self._robot.reserve:
-            return ""
-        return f"the battery is still at {left:.0%}"
+        return still_low(self._vehicle.state().energy, self._robot.reserve)
 
     def _is_down(self, step: Step) -> bool:
         """Return whether the robot stands where it was to land, or is about to."""
@@ -177,7 +172,7 @@ class Pilot:
         state = self._vehicle.state()
         if not state.armed:
             if why := self.lacks_energy():
-                raise Fault(BATTERY_LOW, why)
+                self.waits.raise_unless_carried_on(Fault(BATTERY_LOW, why))
             if self._robot.vehicle == "copter":
                 self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
             return places

@@ -13,6 +13,7 @@ from ..faults import (
     POSITION_LOST,
     TAKEN_OVER,
 )
+from ..policies import NOTHING
 from ..program import Place, Policy, Robot
 from ..vehicles.vehicle import Vehicle
 from .ways import steps_back
@@ -20,7 +21,6 @@ from .ways import steps_back
 CONTINUE = "CONTINUE"
 HOLD = "HOLD"
 LAND = "LAND"
-NOTHING = "NOTHING"
 ESCAPE = "EMERGENCY_AREA"
 RETURN = "RETURN"
 

@@ -21,11 +21,12 @@ from ..faults import (
     Stopped,
 )
 from ..links.link import Link
+from ..policies import COMES_DOWN
 from ..program import Policy, Robot
 from ..vehicles import modes
 from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
-from .energy import COMES_DOWN, Reserve
+from .energy import Reserve
 from .ground import WATCHED, Ground
 from .responses import CONTINUE, LAND, policy_for
 from .ways import Track

@@ -344,5 +344,5 @@ def test_a_battery_that_was_not_changed_is_not_flown_with(controllers, hangar):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     assert not told["confirmed"]
-    assert "the battery is still at 1" in told["why"]
+    assert "its battery is still at 1" in told["why"]
     assert not vehicles["alpha"].autopilot.armed

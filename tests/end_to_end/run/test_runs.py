@@ -192,12 +192,29 @@ def test_a_robot_that_came_down_elsewhere_for_its_battery_is_not_resumed_before_
     assert wait_for(lambda: any("carry it home" in line for line in process.said), PATIENCE)
     vehicle.faults.set_battery(1.0)
     for order in ("resume", "return"):
-        assert control(flown, order)["a"]["why"].endswith("m from its home")
+        assert control(flown, order)["a"]["why"].endswith("m from its home: carry it home")
     with vehicle.lock:
         vehicle.autopilot.body.position = (0.0, 0.0, 0.0)
     assert wait_for(lambda: control(flown, "resume")["a"]["confirmed"], PATIENCE)
     assert vehicle.autopilot.armed
     assert process.end(PATIENCE) == 0, process.said
+    assert judged(flown) is Outcome.SUCCESS
+
+
+def test_a_battery_that_was_not_changed_is_not_flown_with_by_a_new_process_either(fleet):
+    flown = fleet(Pad("a", policies=(("BATTERY_LOW", "RETURN", None),)))
+    process = flown.start()
+    vehicle = begun(flown, "a", "tour 1")
+    vehicle.faults.set_battery(0.15)
+    assert process.end(PATIENCE) == 1, process.said
+    assert any("came home for its battery" in line for line in process.said), process.said
+    take_offs = sum(number == TAKE_OFF for _, number, _ in vehicle.autopilot.history)
+    again = flown.start("--resume")
+    assert again.end(PATIENCE) == 1, again.said
+    assert any("its battery is still at 1" in line for line in again.said), again.said
+    assert sum(number == TAKE_OFF for _, number, _ in vehicle.autopilot.history) == take_offs
+    vehicle.faults.set_battery(1.0)
+    assert flown.start("--resume").end(PATIENCE) == 0, flown.process.said
     assert judged(flown) is Outcome.SUCCESS
 
 

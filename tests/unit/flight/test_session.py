@@ -169,7 +169,7 @@ def test_another_battery_lets_it_go_on_and_be_watched_as_before(process, vehicle
     early = shared.crews.inboxes["alpha"].give(Order("resume"))
     until(lambda: early.confirmed is not None)
     assert not early.confirmed
-    assert re.fullmatch(r"the battery is still at [345]%", early.why)
+    assert re.fullmatch(r"its battery is still at [345]%", early.why)
     simulated.faults.set_battery(1.0)
     until(lambda: shared.crews.inboxes["alpha"].give(Order("resume")).confirmed or phase(shared) == WORKS)
     if left_alone:

@@ -38,11 +38,49 @@ def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
     run = suspended(live)
     ending = run.end()
     assert ending.suspended == ("a",)
+    assert ending.came_down == {"a": "came home for its battery"}
     assert ending.responses["a"] == "RETURN"
     assert ending.outcome is Outcome.INCOMPLETE
     assert run.script.robots["a"].stops == ["RETURN"]
     assert all(record.label != "fault" for record in run.records)
     assert replay(SURVEY, run.records, partial=True).accepted
+
+
+def test_where_a_robot_came_down_for_its_battery_is_told_by_what_happened(live):
+    run = live(SURVEY, Script(two=inf))
+    run.wait_for_step("a begin two")
+    run.script.robots["a"].astray = "it stands 30 m from its home: carry it home"
+    run.script.robots["a"].fail("BATTERY_LOW")
+    words = "came down for its battery, but it stands 30 m from its home: carry it home"
+    assert run.end().came_down == {"a": words}
+    assert f"'a': {words}; change it, then order resume, or start again with --resume" in run.said
+
+
+def test_a_robot_that_is_not_known_to_have_come_down_is_not_told_to_have(live):
+    run = live(SURVEY, Script(two=inf, stop_RETURN=inf))
+    run.wait_for_step("a begin two")
+    run.script.robots["a"].fail("BATTERY_LOW")
+    run.wait_for(lambda: run.script.robots["a"].stops == ["RETURN"])
+    run.script.robots["a"].fail("NO_PROGRESS")
+    ending = run.end()
+    assert (ending.suspended, ending.unconfirmed, dict(ending.came_down)) == (("a",), ("a",), {})
+
+
+def test_a_robot_that_confirms_a_later_order_counts_as_stopped(live):
+    run = live(TWO, Script(walk=inf, stop_HOLD=inf))
+    run.wait_for_step("a begin walk")
+    run.wait_for_step("b begin walk")
+    walker = run.script.robots["a"]
+    walker.fail("LINK_LOST")
+    run.wait_for(lambda: walker.stops == ["HOLD"])
+    walker.fail("NO_PROGRESS")
+    run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
+    walker.watched_for, walker.trouble = True, None
+    assert run.order(LAND, "a").confirmed
+    run.wait_for(lambda: "'a': has done LAND" in run.said)
+    walker.watched_for = False
+    run.order(LAND, "b")
+    assert run.end().unconfirmed == ()
 
 
 def test_a_low_battery_that_is_answered_in_the_air_is_a_fault(live):
