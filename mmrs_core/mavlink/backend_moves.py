@@ -32,15 +32,11 @@ from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.services.telling import words_of
 from mmrs_core.flight.services.uploads import Flight
 from mmrs_core.flight.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
+from mmrs_core.flight.steps.energy import FULL, RECHARGE_FACTOR
 from mmrs_core.flight.steps.responses import policy_for
 from mmrs_core.flight.vehicles.corners import goes_through
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_worker import Job
-
-FULL = 0.99
-RECHARGE_FACTOR = 3.0
-"""How many times as long as expected charging may take."""
-
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""

@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from math import hypot
 
-from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import distance_to_leg, ends_of, offset
+from mmrs_core.flight.policies import still_low
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from mmrs_core.flight.steps.rejoining import OFF_ITS_WAY, way_ahead
+from mmrs_core.flight.steps.responses import CONTINUE, policy_for
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend_worker import Job
@@ -33,12 +35,21 @@ class WayBack:
         on its way or ahead on the leg or run that it had begun, goes along that way. One that is anywhere
         else is refused, since nobody has checked a way from there.
 
+        Where the motors are off, the battery must not be low, unless a policy says to carry on with it.
+
         Args:
             passed: moves that the robot has ended, in order.
             begun: the move that it will begin once more; may be empty.
         """
         job = Job()
-        job.append(lambda: job.then(*self._parts(sortie_of(self._robot, passed), begun)))
+
+        def set_out() -> None:
+            parts = self._parts(sortie_of(self._robot, passed), begun)
+            if parts:
+                self._refuse_low()
+            job.then(*parts)
+
+        job.append(set_out)
         return job
 
     def check(self, passed: Sequence[str], begun: str) -> None:
@@ -103,6 +114,12 @@ class WayBack:
             return go
 
         return [leg(move, place) for move, place in way]
+
+    def _refuse_low(self) -> None:
+        state = self._vehicle.state()
+        why = "" if state.armed else still_low(state.energy, self._robot.reserve)
+        if why and policy_for(BATTERY_LOW, self._robot).response != CONTINUE:
+            raise Fault(BATTERY_LOW, why)
 
     def _refuse_far(self, away: float, limit: float) -> None:
         if away > limit:

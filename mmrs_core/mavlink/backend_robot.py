@@ -10,35 +10,23 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.crews import told_of
-from mmrs_core.flight.faults import (
-    BATTERY_LOW,
-    DEVICE_SILENT,
-    LINK_LOST,
-    POSITION_LOST,
-    TAKEN_OVER,
-    Displaced,
-)
+from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, Displaced
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
-from mmrs_core.flight.steps.ending import (
-    HEARD_SECONDS,
-    LEAST_HEARD_SECONDS,
-    LEAST_LISTEN_SECONDS,
-    LISTEN_SECONDS,
-)
-from mmrs_core.flight.steps.obeying import astray, obeying, undone
-from mmrs_core.flight.steps.responses import CONTINUE, NEEDS_POSITION, respond
+from mmrs_core.flight.steps.obeying import astray, obeying
+from mmrs_core.flight.steps.responses import CONTINUE
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.mavlink.backend_equipment import Equipment
 from mmrs_core.mavlink.backend_lost_link import LostLink
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_options import LinkOptions
+from mmrs_core.mavlink.backend_reach import Reach
 from mmrs_core.mavlink.backend_recovery import WayBack
+from mmrs_core.mavlink.backend_response import Response
 from mmrs_core.mavlink.backend_setup import Setup
 from mmrs_core.mavlink.backend_worker import Interrupted, Job, Worker
 
-HANDS_OFF = "NOTHING"
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""
 
@@ -62,15 +50,10 @@ class MavlinkBackend:
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
-        self._response = ""
-        self._instead = ""
+        self._response = Response(robot, equipment.vehicle, self._watch, self._moves, equipment.say)
+        self._reach = Reach(equipment.link, equipment.clock)
         self._tolerance = options.home_tolerance
-        self._lost: VehicleFault | None = None
-        self._listens = 0.0
-        self._shown: Callable[[], bool] = lambda: False
         self._brakes: Callable[[], bool] = lambda: False
-        self._holding = self._hands_off = False
-        self._handled: set[str] = set()
         self._seen: VehicleFault | None = None
         # Last: it looks at all of the above from now on.
         self._worker = Worker(
@@ -163,70 +146,49 @@ class MavlinkBackend:
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""
         found = self._worker.fault
-        back = found is not None and found.event == LINK_LOST and self.reachable(now)
-        if not back and response == self._response and (found is None or not self._worker.done):
+        if found is None and response == self._response.name:
             return
-        self._response, self._holding, self._under_way = response, False, ()
-        self._shown = self._brakes = lambda: False
-        self._handled.add("" if found is None else found.event)
-        self._watch.relax(self._handled, response)
-        if found is not None and found.event == LINK_LOST and not back:
-            return
-        if response == HANDS_OFF or (found is not None and found.event == TAKEN_OVER):
-            self._hands_off = True
-            self._with.say("hands off until its motors are off; it still hears heartbeats, so end this later")
-            self._watch.let_go()
-            self._worker.begin(Job(), afresh=True)
-            return
-        possible = self._possible(found, response)
-        self._shown = obeying(possible, self._robot, self._with.vehicle, self._moves.track)
-        self._instead = "" if possible == response else f"without a position, it does {possible}"
-        self._worker.begin(Job(lambda: self._respond(possible)), afresh=True)
-        self._with.link.wake()
+        self._under_way, self._brakes = (), lambda: False
+        job = self._response.begin(response, found, self._note_decision, heard=self._reach.is_heard)
+        if job is not None:
+            self._worker.begin(job, afresh=True)
+            self._with.link.wake()
 
     def obeys(self, now: float) -> bool:
         """Return whether the vehicle has carried out the response, or was seen to begin it since."""
         if self._worker.fault is not None or not self._worker.started:
             return False
-        return (self._worker.done or self._shown()) and not self.undone(now)
+        return (self._worker.done or self._response.is_shown) and not self._response.undone
 
     def undone(self, now: float) -> str:
         """Return why nothing is left to do, and the vehicle has not done what it was told."""
-        return self._instead or undone(self._response, self._robot, self._with.vehicle)
+        return self._response.undone
 
     def reachable(self, now: float) -> bool:
         """Return whether the vehicle was heard lately."""
-        limit = self._with.clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
-        return self._with.link.listening and self._with.link.silent_for() < limit
+        return self._reach.is_heard
 
     def in_doubt(self, now: float) -> bool:
         """Return whether the vehicle has left its mode and nobody knows why, or the program not yet."""
-        return self._watch.looking or (self._watch.taken and not self._hands_off)
+        return self._watch.looking or (self._watch.taken and not self._response.hands_off)
 
     def watched(self, now: float) -> bool:
         """Return whether the motors run, and the vehicle holds, a pilot has it, or its link is lost.
 
         Without the heartbeats of this process, it might fly away from the pilot.
         """
+        armed = self._with.vehicle.state().armed
         if (found := self._worker.fault) is not None:
-            return found.event == LINK_LOST and self._is_listened_to(found)
-        return self._holding or (self._hands_off and self._with.vehicle.state().armed)
-
-    def _is_listened_to(self, lost: VehicleFault) -> bool:
-        """Return whether a vehicle whose link was lost may still be heard, and given orders."""
-        now = self._with.clock.now()
-        if self._lost is not lost or self.reachable(now):
-            self._lost = lost
-            self._listens = now + self._with.clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
-        return self._with.vehicle.state().armed and now < self._listens
+            return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
+        return self._response.holds or (self._response.hands_off and armed)
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why there is no way back now; empty where there is one."""
         vehicle = self._with.vehicle
-        if not self.reachable(now):
+        if not self._reach.is_heard:
             return "its vehicle is not heard"
         if not vehicle.state().armed and (away := astray(self._robot, vehicle, self._tolerance)):
-            return away
+            return f"{away}: carry it home"
         try:
             self._way.check(passed, begun)
         except VehicleFault as fault:
@@ -239,8 +201,7 @@ class MavlinkBackend:
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
         """Begin to go back to where the program was broken off."""
-        self._response = ""
-        self._handled.clear()
+        self._response.forget()
         self._move = begun or (passed[-1] if passed else "")
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
@@ -259,7 +220,7 @@ class MavlinkBackend:
 
     def paused(self, now: float) -> bool:
         """Return whether the vehicle stands or was seen to brake since, and has not gone on."""
-        return self._worker.halted or self._brakes()
+        return self._worker.halted or (self._worker.started and self._brakes())
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""
@@ -268,7 +229,7 @@ class MavlinkBackend:
 
     def close(self) -> None:
         """End the worker and the link; the vehicle keeps whatever it does."""
-        if self._holding and self._worker.fault is None:
+        if self._response.holds and self._worker.fault is None:
             self._leave_it_holding()
         self._worker.close()
         self._with.let_go()
@@ -306,7 +267,7 @@ class MavlinkBackend:
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
-        if self._setup.is_done and not self._hands_off:
+        if self._setup.is_done and not self._response.hands_off:
             self._with.vehicle.rest(0.0)
         else:
             self._look()
@@ -322,20 +283,6 @@ class MavlinkBackend:
             time.sleep(0.01)
         if not self._worker.done:
             self._with.say("may not stay where it is when this program has ended")
-
-    def _possible(self, found: VehicleFault | None, response: str) -> str:
-        """Return the response, or to come down where nobody knows the position that it needs."""
-        lost = found is not None and found.event == POSITION_LOST
-        if not (lost and self._robot.vehicle == "copter" and response in NEEDS_POSITION):
-            return response
-        self._note_decision(POSITION_LOST, f"{response} needs a position", "LAND")
-        return "LAND"
-
-    def _respond(self, response: str) -> None:
-        self._watch.check_hands()
-        vehicle, track = self._with.vehicle, self._moves.track
-        self._holding = respond(response, self._robot, vehicle, track, lambda movement: movement())
-        self._watch.moving = self._holding
 
     def _begins_sortie(self, move: str) -> bool:
         """Return whether the robot leaves the ground, or the place where it was charged, with a move."""

@@ -87,12 +87,12 @@ class Setup:
 
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
-        resumed, tolerance = self._with.resumed, self._options.home_tolerance
+        resumed, vehicle = self._with.resumed, self._with.vehicle
         recognise(
             self._with.link,
-            self._with.vehicle,
+            vehicle,
             self._robot,
-            inf if resumed else tolerance,
+            inf if resumed and vehicle.state().armed else self._options.home_tolerance,
             under_way=resumed,
             system=self._with.system,
         )

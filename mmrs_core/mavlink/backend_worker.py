@@ -115,7 +115,8 @@ class Worker:
         """Halt in the middle of the job."""
         with self._news:
             if not self._holds:
-                self._holds = True
+                # It may have begun to go on since it stood, so that it has to come to a halt anew.
+                self._holds, self._halted = True, False
                 self._newest += 1
                 self._news.notify_all()
 
@@ -185,17 +186,21 @@ class Worker:
         self.changed()
 
     def _come_to_a_halt(self) -> None:
-        self._halting = True
+        with self._news:
+            if self._newest != self._running:
+                return
+            self._halting = True
         self._halt()
         with self._news:
-            self._halted = True
+            self._halted = self._halted or self._newest == self._running
         self.changed()
 
     def _carry_on(self) -> None:
         self._go_on()
         with self._news:
-            self._halting = self._halted = False
-            self._newest += 1
+            if self._newest == self._running:
+                self._halting = self._halted = False
+                self._newest += 1
         self.changed()
 
     def _fail(self, fault: Fault) -> None:

@@ -8,8 +8,9 @@ import pytest
 
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import distance, offset
+from mmrs_core.flight.program import Policy
 from mmrs_core.flight.vehicles.dry import DryVehicle
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_recovery import WayBack, sortie_of
@@ -61,7 +62,10 @@ class Vehicle(DryVehicle):
             longitude=ROBOT.home.longitude + east / 82_246.0,
             height=up,
         )
-        self.went = []
+        self.went, self.energy = [], None
+
+    def state(self):
+        return replace(super().state(), energy=self.energy)
 
     def take_off(self, height):
         self.went.append(("up", height))
@@ -73,11 +77,12 @@ class Vehicle(DryVehicle):
         super().go_to(place, speed, look, through)
 
 
-def recovered(passed_until, begun, vehicle, tolerance=20.0):
+def recovered(passed_until, begun, vehicle, tolerance=20.0, policies=()):
     """Return where a vehicle goes, after the log of a run that has ended moves up to that one."""
-    moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    robot = replace(ROBOT, policies=policies, reserve=0.2)
+    moves = Moves(robot, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
     passed = MOVES[: MOVES.index(passed_until) + 1]
-    WayBack(ROBOT, moves, vehicle, tolerance).job(passed, begun).run()
+    WayBack(robot, moves, vehicle, tolerance).job(passed, begun).run()
     return vehicle.went, [move for move, _ in moves.track]
 
 
@@ -85,6 +90,32 @@ def test_from_the_ground_it_flies_the_way_that_it_came():
     went, track = recovered("s1", "s2", Vehicle())
     assert went == [("up", 20.0), (0, 50, 20), (50, 50, 20)]
     assert track == ["up", "out", "s1"]
+
+
+@pytest.mark.parametrize(("energy", "flies"), [(0.19, False), (0.2, True), (None, True)])
+def test_it_takes_off_again_unless_its_battery_is_below_the_reserve(energy, flies):
+    vehicle = Vehicle()
+    vehicle.energy = energy
+    if flies:
+        assert recovered("s1", "s2", vehicle)[0][0] == ("up", 20.0)
+        return
+    with pytest.raises(Fault, match="its battery is still at 19%") as low:
+        recovered("s1", "s2", vehicle)
+    assert low.value.event == BATTERY_LOW
+    assert vehicle.went == []
+
+
+def test_a_battery_that_is_low_is_flown_with_where_a_policy_carries_on():
+    vehicle = Vehicle()
+    vehicle.energy = 0.1
+    went, _ = recovered("s1", "s2", vehicle, policies=(Policy(BATTERY_LOW, "CONTINUE"),))
+    assert went[0] == ("up", 20.0)
+
+
+def test_a_battery_that_is_low_keeps_nobody_from_being_charged():
+    vehicle = Vehicle()
+    vehicle.energy = 0.1
+    assert recovered("down", "charge", vehicle)[0] == []
 
 
 def test_a_sortie_begins_with_its_own_take_off():

@@ -16,7 +16,8 @@ class Yard:
 
     def __init__(self):
         self.did, self.news, self.trouble = [], threading.Event(), None
-        self.worker = Worker("of a test", self.watch, self.watch, self.do("halted"), self.do("went on"))
+        self.halt, self.go_on = self.do("halted"), self.do("went on")
+        self.worker = Worker("of a test", self.watch, self.watch, lambda: self.halt(), lambda: self.go_on())
         self.worker.changed = self.news.set
 
     def watch(self):
@@ -76,6 +77,26 @@ def test_a_pause_halts_and_the_interrupted_part_is_begun_again(yard):
     yard.worker.resume()
     yard.until(lambda: yard.worker.done)
     assert yard.did == ["before", "under way", "halted", "went on", "under way", "after"]
+
+
+def test_a_second_pause_while_it_goes_on_again_halts_once_more(yard):
+    yard.go_on = yard.wait("goes on")
+    yard.worker.pause()
+    yard.until(lambda: yard.worker.halted)
+    yard.worker.resume()
+    yard.until(lambda: "goes on" in yard.did)
+    yard.worker.pause()
+    assert not yard.worker.halted
+    yard.until(lambda: yard.worker.halted)
+    assert yard.did == ["halted", "goes on", "halted"]
+
+
+def test_a_halt_that_something_new_overtakes_does_not_count(yard):
+    yard.halt = lambda: yard.worker.begin(Job(yard.do("new")), afresh=True)
+    yard.worker.pause()
+    yard.until(lambda: yard.worker.done and "new" in yard.did)
+    assert yard.did == ["new"]
+    assert not yard.worker.halted
 
 
 def test_a_job_given_while_it_pauses_waits(yard):

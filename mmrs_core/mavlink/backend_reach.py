@@ -1,0 +1,37 @@
+"""Whether a vehicle is heard, and for how long one that is not is listened to."""
+
+from __future__ import annotations
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.steps.ending import (
+    HEARD_SECONDS,
+    LEAST_HEARD_SECONDS,
+    LEAST_LISTEN_SECONDS,
+    LISTEN_SECONDS,
+)
+
+
+class Reach:
+    """Knows how long ago a vehicle was heard."""
+
+    def __init__(self, link: Link, clock: Clock) -> None:
+        """Listen to the vehicle at the end of a link."""
+        self._link, self._clock = link, clock
+        self._lost: Fault | None = None
+        self._until = 0.0
+
+    @property
+    def is_heard(self) -> bool:
+        """Return whether it was heard lately."""
+        limit = self._clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
+        return self._link.listening and self._link.silent_for() < limit
+
+    def may_come_back(self, lost: Fault) -> bool:
+        """Return whether it may still be heard again, for some time after a link was lost or last heard."""
+        now = self._clock.now()
+        if self._lost is not lost or self.is_heard:
+            self._lost = lost
+            self._until = now + self._clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
+        return now < self._until

@@ -1,0 +1,88 @@
+"""What a robot does when its program is broken off, or has ended: how it responds, and what is seen of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_core.flight.policies import NOTHING
+from mmrs_core.flight.program import Robot
+from mmrs_core.flight.steps.obeying import obeying, undone
+from mmrs_core.flight.steps.responses import LAND, NEEDS_POSITION, respond
+from mmrs_core.flight.steps.watch import Decide, Watch
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
+from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend_worker import Job
+
+KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
+
+
+class Response:
+    """Has a vehicle respond, from any state.
+
+    Attributes:
+        name: of the response that it was told last; empty: it follows its program.
+        holds: whether it stays where it is with its motors running, so that somebody must watch it.
+        hands_off: whether somebody else has it.
+    """
+
+    def __init__(
+        self, robot: Robot, vehicle: MavlinkVehicle, watch: Watch, moves: Moves, say: Callable[[str], None]
+    ) -> None:
+        """Respond to nothing yet."""
+        self.name = ""
+        self.holds = self.hands_off = False
+        self._robot, self._vehicle, self._watch, self._moves, self._say = robot, vehicle, watch, moves, say
+        self._handled: set[str] = set()
+        self._shown: Callable[[], bool] = lambda: False
+        self._instead = ""
+
+    def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
+        """Return what is to be done about a fault; None where the vehicle cannot be told anything.
+
+        Args:
+            name: of the response, a literal of PolicyResponse or NOTHING.
+            found: None where somebody has ordered it.
+            decide: is told what is done instead.
+            heard: whether a vehicle whose link was lost is heard again.
+        """
+        self.name, self.holds, self._instead, self._shown = name, False, "", lambda: False
+        self._handled.add("" if found is None else found.event)
+        self._watch.relax(self._handled, name)
+        event = "" if found is None else found.event
+        if event == LINK_LOST and not heard:
+            return None
+        if name == NOTHING or event == TAKEN_OVER:
+            return self._let_go()
+        if event == POSITION_LOST and self._robot.vehicle == "copter" and name in NEEDS_POSITION:
+            decide(POSITION_LOST, f"{name} needs a position", LAND)
+            self._instead, name = f"without a position, it does {LAND}", LAND
+        self._shown = obeying(name, self._robot, self._vehicle, self._moves.track)
+        return Job(lambda: self._carry_out(name))
+
+    def forget(self) -> None:
+        """Be ready for whatever goes wrong next: the program goes on."""
+        self.name = ""
+        self._handled.clear()
+
+    @property
+    def is_shown(self) -> bool:
+        """Return whether the vehicle was seen to do it since it was told."""
+        return self._shown()
+
+    @property
+    def undone(self) -> str:
+        """Return why the vehicle has not done it, although nothing is left to do; empty where it has."""
+        return self._instead or undone(self.name, self._robot, self._vehicle)
+
+    def _let_go(self) -> Job:
+        self.hands_off = True
+        self._say(KEPT_UP)
+        self._watch.let_go()
+        return Job()
+
+    def _carry_out(self, name: str) -> None:
+        self._watch.check_hands()
+        track = self._moves.track
+        self.holds = respond(name, self._robot, self._vehicle, track, lambda movement: movement())
+        self._watch.moving = self.holds
