@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.links import SILENCE
 from fault_table.orders import RESUMED_AFTER, to_all
 from fault_table.process import Process
 from fault_table.row import Outcome, Row, leave_alone
-from fault_table.rows import SILENCE
 from fault_table.trial import Blow, fly
 from mmrs_core.flight.orders.ordering import give
 

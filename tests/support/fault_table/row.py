@@ -10,9 +10,17 @@ from mmrs_core.sitl import SimulatedVehicle
 
 Act = Callable[[SimulatedVehicle], object]
 
+AT, LEG, AUTO, UP = "at its place", "on a leg (GUIDED)", "on a mission (AUTO)", "climbing"
+"""Moments at which most faults happen."""
+
 
 def leave_alone(vehicle: SimulatedVehicle) -> None:
     """Do nothing to the vehicle: what goes wrong is elsewhere."""
+
+
+def policy(event: str, response: str, after: float | None = None) -> POLICY:
+    """Return what a model declares for an event."""
+    return (event, response, after)
 
 
 HASTE_SECONDS = 1.0

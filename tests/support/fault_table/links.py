@@ -1,0 +1,49 @@
+"""The part of the fault table about links that are lost."""
+
+from __future__ import annotations
+
+from fault_table import strikes
+from fault_table.row import AT, AUTO, LEG, UP, Row, policy
+
+SILENCE = 2.5
+"""Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
+
+
+def link_rows() -> list[Row]:
+    lost = [
+        (LEG, "RETURN", "home"),
+        (AT, "LAND", "here"),
+        (AUTO, "HOLD", "holds"),
+        (AT, "EMERGENCY_AREA", "meadow"),
+        (UP, "RETURN", "home"),
+    ]
+    rows = [
+        Row(
+            "link lost for good",
+            during,
+            policy("LINK_LOST", response, 3.0),
+            strikes.cut_link,
+            "LINK_LOST",
+            ends,
+            within=12.0,
+            least=SILENCE,
+            fast=response == "RETURN" and during == LEG,
+        )
+        for during, response, ends in lost
+    ]
+    rows += [
+        Row(
+            "link lost and back",
+            during,
+            policy("LINK_LOST", response, 20.0),
+            strikes.cut_link,
+            "",
+            "done",
+            within=None,
+            stay=15.0,
+            mends=(8.0, strikes.mend_link),
+            fast=during == LEG,
+        )
+        for during, response in ((LEG, "RETURN"), (AUTO, "LAND"), (AT, "EMERGENCY_AREA"))
+    ]
+    return rows

@@ -1,0 +1,77 @@
+"""What goes wrong with a vehicle."""
+
+from __future__ import annotations
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl import SimulatedVehicle
+
+PHOTO = 2000
+
+
+def cut_link(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.cut_link()
+
+
+def mend_link(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.mend_link()
+
+
+def stick(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.take_stick("loiter")
+
+
+def by_hand(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.take_stick("alt_hold")
+
+
+def battery(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.set_battery(0.15)
+
+
+def stick_and_battery(vehicle: SimulatedVehicle) -> None:
+    battery(vehicle)
+    stick(vehicle)
+
+
+def barely(vehicle: SimulatedVehicle) -> None:
+    """Leave a little more than the reserve, but not what the way back takes beside it."""
+    vehicle.faults.set_battery(0.215)
+
+
+def critical(vehicle: SimulatedVehicle) -> None:
+    """Have a vehicle that cannot measure its battery say all the same that it is nearly empty."""
+    said = mavlink.MAVLink_battery_status_message(
+        0, 0, 0, 32_767, [65_535] * 10, -1, -1, -1, -1, 0, mavlink.MAV_BATTERY_CHARGE_STATE_CRITICAL
+    )
+    with vehicle.lock:
+        for radio in vehicle.radios:
+            radio.send(said)
+
+
+def mute_camera(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.silence(PHOTO)
+
+
+def satellites(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.lose_position()
+
+
+def obstacle(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.meet_obstacle(2.0)
+
+
+def breach(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.breach_fence()
+
+
+def reset(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.restart(armed=True)
+
+
+def reboot(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.restart()
+
+
+def vehicle_clock(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.jump_clock(3600.0)
