@@ -56,7 +56,7 @@ def standard(identifier: str) -> Standard:
     """
     word, _, rest = identifier.partition(":")
     if not is_standard(identifier):
-        raise ValueError(f"{identifier!a}: no standard condition; there are {', '.join(_MAKE)}")
+        raise ValueError(f"{identifier!r}: no standard condition; there are {', '.join(_MAKE)}")
     return _MAKE[word](rest)
 
 
@@ -100,7 +100,7 @@ def awaiting(identifier: str) -> str:
     ("waits for an answer to 'go on?'", "waits until 'wind-above:8' is known")
     """
     question = question_of(identifier)
-    return f"waits for an answer to {question!a}" if question else f"waits until {identifier!a} is known"
+    return f"waits for an answer to {question!r}" if question else f"waits until {identifier!r} is known"
 
 
 def question_of(identifier: str) -> str:

@@ -175,7 +175,7 @@ def _object(line: bytes) -> dict[str, Any]:
 def _order(given: Mapping[str, Any]) -> Order:
     name = given.get("order")
     if name not in ORDERS:
-        raise ValueError(f"order: {name!a} is none of {', '.join(ORDERS)}")
+        raise ValueError(f"order: {name!r} is none of {', '.join(ORDERS)}")
     if name != ANSWER:
         return Order(str(name))
     question, answer = given.get("question"), given.get("answer")

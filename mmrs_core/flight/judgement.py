@@ -31,15 +31,15 @@ class Judgement:
 
     def _undecided(self, name: str) -> str:
         if self.conditions.get(name) is undecided:
-            return f"conditions.py: nobody has said yet when {name!a} holds"
+            return f"conditions.py: nobody has said yet when {name!r} holds"
         if name in self.conditions or is_standard(name):
             return ""
-        return f"conditions.py decides nothing for {name!a}"
+        return f"conditions.py decides nothing for {name!r}"
 
     def _not_found(self, name: str) -> str:
         if self.locators.get(name) is not_looked_for:
-            return f"objects.py: nobody has said yet how {name!a} is found"
-        return "" if name in self.locators else f"objects.py finds nothing for {name!a}"
+            return f"objects.py: nobody has said yet how {name!r} is found"
+        return "" if name in self.locators else f"objects.py finds nothing for {name!r}"
 
 
 def conditions_of(robots: Sequence[Robot]) -> set[str]:

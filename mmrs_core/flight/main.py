@@ -20,7 +20,7 @@ from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
 from .records.log import read
-from .screen import say
+from .screen import bear_all_characters, say
 from .session import Shared, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
@@ -41,6 +41,7 @@ def main(
         locators: what finds objects, by description.
         arguments: as on the command line; None: those of this process.
     """
+    bear_all_characters()
     parser = parser_for(robots)
     options = options_of(parser, robots, arguments)
     judgement = Judgement(conditions or {}, locators or {})

@@ -45,12 +45,12 @@ def place_of(target: Place | Object, locators: Mapping[str, Locator], state: Sta
     try:
         found = locators[target.description](state, target.expected)
     except Exception as error:
-        raise Fault(OBJECT_NOT_FOUND, f"object {target.description!a}: {error!r}") from error
+        raise Fault(OBJECT_NOT_FOUND, f"object {target.description!r}: {error!r}") from error
     if target.expected is not None and target.tolerance is not None:
         away = distance(target.expected, found)
         if away > target.tolerance:
             raise Fault(
-                OBJECT_NOT_FOUND, f"object {target.description!a}: {away:.1f} m from where it should be"
+                OBJECT_NOT_FOUND, f"object {target.description!r}: {away:.1f} m from where it should be"
             )
     return found
 

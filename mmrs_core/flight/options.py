@@ -107,7 +107,7 @@ class Options:
 def parser_for(robots: Sequence[Robot]) -> argparse.ArgumentParser:
     """Return the parser of the command line that runs these robots."""
     parser = argparse.ArgumentParser(
-        description=f"Flies {', '.join(ascii(robot.id) for robot in robots)}.",
+        description=f"Flies {', '.join(repr(robot.id) for robot in robots)}.",
         epilog="Exit codes: 0 done, 1 ended early, 2 usage, 5 link lost, 130 stopped."
         " While it runs: python -m mmrs_flight.control ORDER --log FOLDER.",
     )
@@ -241,10 +241,10 @@ def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -
         parser.error(f"--resume: {fault}")
     runs = sorted({str(step["run"]) for step in steps})
     if len(runs) > 1 or (runs and given.run and runs != [given.run]):
-        parser.error(f"--resume: the logs are of run {', '.join(map(ascii, runs))}")
+        parser.error(f"--resume: the logs are of run {', '.join(map(repr, runs))}")
     for robot in robots:
         if plan_of(black_box_path(given.log / robot.log)) not in ("", robot.plan):
-            parser.error(f"--resume: {robot.id!a} flew by another plan of the mission in {given.log}")
+            parser.error(f"--resume: {robot.id!r} flew by another plan of the mission in {given.log}")
     ends = (last_time(black_box_path(path)) for path in taken)
     start = max((*(float(step["time"]) for step in steps), *ends), default=0.0)
     return (runs[0] if runs else given.run or FIRST_RUN), start
@@ -272,12 +272,12 @@ def _links(
     for text in texts:
         robot, separator, reached = text.rpartition("=")
         if separator and robot not in links:
-            parser.error(f"--connect {text}: there is no robot {robot!a}")
+            parser.error(f"--connect {text}: there is no robot {robot!r}")
         if not separator and len(robots) > 1:
             parser.error(f"--connect {text}: which robot? say ROBOT={text}")
         name = robot or robots[0].id
         if name in given:
-            parser.error(f"--connect {text}: {name!a} is reached by {given[name]} already")
+            parser.error(f"--connect {text}: {name!r} is reached by {given[name]} already")
         given[name] = reached
         links[name] = _link(parser, reached)
     taken = [each for each in links.values() if each[1]]

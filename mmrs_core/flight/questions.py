@@ -55,7 +55,7 @@ class Questions:
         """Take an answer, in place of an earlier one; return why it is not wanted, empty where it is."""
         if question not in self._questions and not self._any:
             asked = ", ".join(map(ascii, self._questions))
-            return f"no choice asks {question!a}; {f'there is {asked}' if asked else 'none asks anything'}"
+            return f"no choice asks {question!r}; {f'there is {asked}' if asked else 'none asks anything'}"
         with self._lock:
             self._answers[question] = answer
         return ""

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import sys
 import threading
 from contextlib import suppress
 
 _print_lock = threading.Lock()
+
+
+def bear_all_characters() -> None:
+    """Have results and help shown on any terminal: what its encoding lacks, by its code."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def say(line: str) -> None:

@@ -78,11 +78,11 @@ def run_robot(robot: Robot, shared: Shared) -> int:
             order.receipt.refuse("its vehicle was not heard, and was told nothing")
         else:
             order.receipt.confirm("there was no vehicle yet")
-        say(f"{robot.id!a}: {order}")
+        say(f"{robot.id!r}: {order}")
         return CODES[order.event]
     except Fault as fault:
         shared.slots.leave(robot.id)
-        say(f"{robot.id!a}: {fault}")
+        say(f"{robot.id!r}: {fault}")
         return CODES.get(fault.event, FAILED)
 
 
@@ -184,7 +184,7 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
     if over.startswith("it has ended"):
         raise Refused(f"cannot go on: {over}")
     if over:
-        say(f"{robot.id!a}: {over}")
+        say(f"{robot.id!r}: {over}")
         return None
     box = _box(robot, options, stack)
     shared.rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
@@ -197,7 +197,7 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
 def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStack) -> Crew:
     options, inbox = shared.options, shared.crews.inboxes[robot.id]
     watch = Watch(robot, options.clock, shared.stop)
-    obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!a}: {line}"))
+    obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!r}: {line}"))
 
     stack.callback(obedience.close, "its program has ended")
     guard = guarding(watch, obedience)
@@ -230,7 +230,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch.track = lambda: pilot.track
     watch.unkept = lambda: shared.slots.trouble(robot.id)
     watch.decide = pilot.journal.decide
-    watch.say = lambda line: say(f"{robot.id!a} {line}")
+    watch.say = lambda line: say(f"{robot.id!r} {line}")
     return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
 
 
@@ -280,7 +280,7 @@ def _vehicle(robot: Robot, options: Options, guard: Callable[[], None], link: Li
         acceptance=near.place,
         travel=robot.travel,
         home_tolerance=near.home,
-        tell=lambda line: say(f"{robot.id!a}: {line}"),
+        tell=lambda line: say(f"{robot.id!r}: {line}"),
     )
 
 
@@ -290,7 +290,7 @@ def _link(robot: Robot, shared: Shared, guard: Callable[[], None], stack: ExitSt
     link = shared.radios.open(url, system)
     stack.callback(link.close)
     link.guard = guard
-    say(f"{robot.id!a}: waits for {f'system {system}' if system else 'a vehicle'} at {url}")
+    say(f"{robot.id!r}: waits for {f'system {system}' if system else 'a vehicle'} at {url}")
     shared.radios.meet(link, url, reach.patience * options.clock.speedup)
     return link
 

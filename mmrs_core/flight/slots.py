@@ -161,7 +161,7 @@ class BusSlots:
 
     def _wait(self, delivery: Delivery, guard: Guard) -> None:
         for owner, why in delivery.refusals.items():
-            raise Fault(PEER_LOST, f"{owner!a} refuses a notification: {why}")
+            raise Fault(PEER_LOST, f"{owner!r} refuses a notification: {why}")
         if delivery.lamport is None or delivery.waiting:
             self.node.await_change(GLANCE_SECONDS)
             guard(delivery.waiting)

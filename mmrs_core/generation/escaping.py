@@ -76,7 +76,7 @@ def python_lines(value: object, indent: int = 0, before: int = 0) -> Code:
 
 
 def _quoted(text: str) -> Code:
-    literal = ascii(text)
+    literal = repr(text)
     if literal.startswith('"'):
         return Code(literal)
     return Code('"' + literal[1:-1].replace("\\'", "'").replace('"', '\\"') + '"')
@@ -94,8 +94,8 @@ def json_literal(value: object, indent: int = 0) -> Code:
 
 
 def comment(value: object) -> Code:
-    """Return a value as printable ASCII on one line, which can end no comment and no docstring."""
-    shown = ascii(str(value))[1:-1].replace("\\'", "'").replace('"', "'")
+    """Return a value as printable characters on one line, which can end no comment and no docstring."""
+    shown = repr(str(value))[1:-1].replace("\\'", "'").replace('"', "'")
     return Code(shown.replace("*/", "* /").replace("`", "'").replace("\\", "/"))
 
 

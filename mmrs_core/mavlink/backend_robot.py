@@ -57,7 +57,7 @@ class MavlinkBackend:
         self._seen: VehicleFault | None = None
         # Last: it looks at all of the above from now on.
         self._worker = Worker(
-            f"robot {robot.id!a}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
+            f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
         )
         self._worker.changed = equipment.wake
         equipment.link.guard = self._worker.guard

@@ -31,9 +31,9 @@ class Answering:
         except Unreadable as error:
             return Answer("refused", why=f"not a request: {error}")
         if found.id.sender != sender:
-            return Answer("refused", why=f"{sender!a} cannot speak for {found.id.sender!a}")
+            return Answer("refused", why=f"{sender!r} cannot speak for {found.id.sender!r}")
         if owner not in self._owners or sender in self._owners:
-            return Answer("refused", why=f"{owner!a} is not to be asked here")
+            return Answer("refused", why=f"{owner!r} is not to be asked here")
         return found
 
     def answer(self, robot: str, request: Request, *, here: bool = False) -> Answer | None:
@@ -49,8 +49,8 @@ class Answering:
         except OSError:
             return None  # whoever watches the journal has told
         except Exception as error:
-            self._net.tell(f"{robot!a} cannot answer {request}: {error!r}")
-            return Answer("refused", why=f"{robot!a} cannot answer: {error!r}")
+            self._net.tell(f"{robot!r} cannot answer {request}: {error!r}")
+            return Answer("refused", why=f"{robot!r} cannot answer: {error!r}")
 
     def _answer(self, robot: str, request: Request, *, here: bool) -> Answer:
         if isinstance(request, Meet):

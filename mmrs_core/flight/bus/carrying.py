@@ -38,23 +38,23 @@ class Courier:
                 return  # as good as none: whoever needs one asks again
             taken(answer)
 
-        with self._net.under(f"asking {owner!a}"):
+        with self._net.under(f"asking {owner!r}"):
             self._carrier.ask(sender, owner, written(request), take)
 
     def publish(self, robot: str) -> None:
         """Tell whoever looks on that the state of a robot's slots has changed."""
-        with self._net.under(f"showing the slots of {robot!a}"):
+        with self._net.under(f"showing the slots of {robot!r}"):
             self._carrier.publish(robot)
 
     def appear(self, robot: str) -> None:
         """Tell everybody that a robot can be reached again."""
-        with self._net.under(f"coming back as {robot!a}"):
+        with self._net.under(f"coming back as {robot!r}"):
             self._carrier.appear(robot)
 
     def vanish(self, robots: Iterable[str]) -> None:
         """Tell everybody that robots can no longer be reached."""
         for robot in robots:
-            with self._net.under(f"leaving as {robot!a}"):
+            with self._net.under(f"leaving as {robot!r}"):
                 self._carrier.vanish(robot)
 
     def close(self) -> None:

@@ -99,17 +99,17 @@ class Gateway:
                 node = self._enter(_recorded_in(hello))
             except (OSError, ValueError) as error:
                 _send(connection, {"is": "wrong", "why": str(error)})
-                say(f"{self._robot!a}: a program was turned away: {error}")
+                say(f"{self._robot!r}: a program was turned away: {error}")
                 return
             connection.settimeout(None)
-            say(f"{self._robot!a}: a program has come")
+            say(f"{self._robot!r}: a program has come")
             self._session = Session(self._robot, self._run, node, connection, alive)
             try:
                 self._session.run(lines)
             finally:
                 node.close()
                 self._session = None
-            say(f"{self._robot!a}: the program has gone")
+            say(f"{self._robot!r}: the program has gone")
 
     def _hello(self, line: bytes) -> Mapping[str, Any]:
         """Return what a program says first.

@@ -186,7 +186,7 @@ class _Asking:
         answer = self._answer_to(self._request)
         if answer is None:
             self._ready = ()
-            return f"no answer from {self._first!a}"
+            return f"no answer from {self._first!r}"
         self._heard, self._ready = True, answer.ready
         missing = ", ".join(map(ascii, self.missing()))
         return f"{answer.why}; not yet: {missing}" if answer.why and missing else answer.why

@@ -154,7 +154,7 @@ class Node:
                 self.lock.wait(0.05)
             for news in told:
                 for owner, why in news.refusals.items():
-                    raise Unwelcome(f"{owner!a}: {why}")
+                    raise Unwelcome(f"{owner!r}: {why}")
 
     @property
     def robots(self) -> tuple[str, ...]:

@@ -243,15 +243,15 @@ class Owner:
     def _fault(self, id: CommandId, names: Sequence[str], active: bool) -> str:
         """Return what is wrong with a command; empty if nothing is."""
         if id.run != self._run and not self._trusting:
-            return f"run {id.run!a}: this is run {self._run!a}"
+            return f"run {id.run!r}: this is run {self._run!r}"
         if not self._trusting and not self._starts.admits(id):
-            return f"{id.sender!a} was started before in this run: resume it from its log"
+            return f"{id.sender!r} was started before in this run: resume it from its log"
         for name in names:
             if name not in self._slots:
-                return f"{self.robot!a} has no slot {name!a}"
+                return f"{self.robot!r} has no slot {name!r}"
             allowed = self._owned.setters if active else self._owned.resetters
             if id.sender not in allowed.get(name, ()) and not self._trusting:
-                return f"{id.sender!a} never {'sets' if active else 'resets'} slot {name!a} of {self.robot!a}"
+                return f"{id.sender!r} never {'sets' if active else 'resets'} slot {name!r} of {self.robot!r}"
         return ""
 
     def _keep_for(self, asked: Prepare, slots: Sequence[Slot], heard: float) -> Answer:
@@ -307,7 +307,7 @@ class Owner:
     def _take_up(self, line: Line) -> None:
         """Go through a line of the journal as through what it tells of."""
         if line.get("run", self._run) != self._run:
-            raise ValueError(f"{self.robot!a}: slots were kept in run {line['run']!a}, not {self._run!a}")
+            raise ValueError(f"{self.robot!r}: slots were kept in run {line['run']!r}, not {self._run!r}")
         self.used = self.used or tells_of_more_than_starts(line)
         if "started" in line:
             self.start = started_in(line, self.robot)

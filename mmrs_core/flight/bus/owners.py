@@ -159,5 +159,5 @@ class Owners:
     def _next_start(self, recorded: Mapping[str, Recorded]) -> int:
         for robot, owner in self._owners.items():
             if owner.start and owner.used and robot not in recorded:
-                raise ValueError(f"{robot!a}: its slots were kept by an earlier start; resume it")
+                raise ValueError(f"{robot!r}: its slots were kept by an earlier start; resume it")
         return 1 + max((owner.start for owner in self._owners.values()), default=0)

@@ -24,7 +24,7 @@ def started_in(line: Line, robot: str) -> int:
     """
     number = number_in(line, "started")
     if text_in(line, "robot") != robot:
-        raise Unreadable(f"of robot {line['robot']!a}, not {robot!a}")
+        raise Unreadable(f"of robot {line['robot']!r}, not {robot!r}")
     return number
 
 

@@ -72,7 +72,7 @@ class Sending:
             with self._lock:
                 errand.answered(message.owner, _round(message.request), answer, self._now())
                 if answer.what == "refused" and isinstance(message.request, Begin):
-                    self._net.tell(f"{message.owner!a} refuses {message.sender!a}: {answer.why}")
+                    self._net.tell(f"{message.owner!r} refuses {message.sender!r}: {answer.why}")
                 gone = self._outbox.sweep()
             self._courier.vanish(gone)
             self._changes.tell()

@@ -105,12 +105,12 @@ class Session:
             content = object_in(line)
             what = text_in(content, "do")
             if what not in self._ANSWERS:
-                raise Unreadable(f"{what!a}: nothing that can be done here")
+                raise Unreadable(f"{what!r}: nothing that can be done here")
             return self._ANSWERS[what](self, content)
         except (ValueError, OSError) as error:
             return {"is": "wrong", "why": str(error)}
         except Exception as error:
-            tell_people(f"{self._robot!a}: cannot answer its program: {error!r}")
+            tell_people(f"{self._robot!r}: cannot answer its program: {error!r}")
             return {"is": "wrong", "why": f"the gateway itself fails: {error!r}"}
 
     def _prepare(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -120,7 +120,7 @@ class Session:
         slots = _slots_in(content)
         for robot, _ in slots:
             if robot not in self._targets:
-                raise Unreadable(f"slots: {self._robot!a} never sets any of {robot!a}")
+                raise Unreadable(f"slots: {self._robot!r} never sets any of {robot!r}")
         self._latest = number
         id = CommandId(self._run, self._robot, "", number)
         self._deliveries[number] = self._node.prepare(id, slots, active)
@@ -150,7 +150,7 @@ class Session:
         slots = [(self._robot, name) for name in names_in(content, "slots")]
         for _, name in slots:
             if name not in self._slots:
-                raise Unreadable(f"{self._robot!a} has no slot {name!a}")
+                raise Unreadable(f"{self._robot!r} has no slot {name!r}")
         # A slot that was kept for a sender that is lost may be ahead of all that has happened.
         ahead = max((self._node.state(slot).lamport for slot in slots), default=0)
         lamport, most = number_in(content, "lamport"), max(self._node.lamport, ahead) + REACH
@@ -166,7 +166,7 @@ class Session:
         patience = number_in(content, "seconds", 60)
         robots = names_in(content, "robots")
         if self._robot not in robots:
-            raise Unreadable(f"robots: {self._robot!a} is not among them")
+            raise Unreadable(f"robots: {self._robot!r} is not among them")
         try:
             begun = begin_together(
                 self._node, self._robot, self._run, robots, lambda why: None, patience=patience
@@ -192,7 +192,7 @@ class Session:
             self._look.wait(WAITING_SECONDS if self._alive is None else WATCHING_SECONDS)
             self._look.clear()
             self._watch()
-            with net.under(f"telling the program of {self._robot!a} what is new"), self._turn:
+            with net.under(f"telling the program of {self._robot!r} what is new"), self._turn:
                 if self._changed:
                     self._changed = False
                     self._say({"is": "changed"})

@@ -116,7 +116,7 @@ class Keeping:
             self.kept(robot)
 
     def _words(self, robot: str, why: str) -> str:
-        return f"{robot!a} answers nobody until its slots can be kept again: {why}"
+        return f"{robot!r} answers nobody until its slots can be kept again: {why}"
 
 
 class _Watched:

@@ -43,7 +43,7 @@ class Watching:
             here: whether it is.
             now: seconds of the node's clock.
         """
-        words = f"{robot!a}: {what}"
+        words = f"{robot!r}: {what}"
         if here:
             self._odd.setdefault(words, now)
         else:

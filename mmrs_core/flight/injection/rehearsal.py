@@ -145,7 +145,7 @@ class Rehearsal:
             if fault.robot in ("", robot):
                 link.stations.deaf = deaf
                 if deaf and not link.stations.systems:
-                    self._say(f"{robot!a}: {fault.text}: {NO_STATION}")
+                    self._say(f"{robot!r}: {fault.text}: {NO_STATION}")
                     self._note((robot,), fault.text, {"state": "begins", "why": NO_STATION})
 
     def _switch(self, fault: Injection, on: bool) -> None:
@@ -157,7 +157,7 @@ class Rehearsal:
 
     def _switch_one(self, fault: Injection, robot: str, link: Link, on: bool) -> None:
         if not gps.switch(link, on):
-            self._say(f"{robot!a}: {fault.text}: {ONLY_SIMULATED}")
+            self._say(f"{robot!r}: {fault.text}: {ONLY_SIMULATED}")
             self._note((robot,), fault.text, {"state": "impossible", "why": ONLY_SIMULATED})
 
     def _tell(self, fault: Injection, state: str) -> None:

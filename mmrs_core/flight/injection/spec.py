@@ -133,10 +133,10 @@ def _seed(word: str) -> int:
 def _fault(robot: str, word: str) -> Injection:
     stranger, colon, rest = word.rpartition(":")
     if colon:
-        raise ValueError(f"{word}: there is no robot {stranger!a}")
+        raise ValueError(f"{word}: there is no robot {stranger!r}")
     found = _FAULT.fullmatch(rest)
     if found is None or found[1] not in NAMES:
-        raise ValueError(f"{word!a}: is not a fault; there are {', '.join(NAMES)} and seed")
+        raise ValueError(f"{word!r}: is not a fault; there are {', '.join(NAMES)} and seed")
     name, amount, spread, begins, sign, last = found.groups()
     if (name in TIMED) != (begins is not None):
         raise ValueError(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..screen import bear_all_characters
 from .orders import ANSWER, ORDERS
 
 PATTERN = "control*.json"
@@ -74,8 +75,8 @@ def give(
     found = channels(folder)
     missing = [robot for robot in robots if not any(robot in channel.robots for channel in found)]
     if missing:
-        known = ", ".join(ascii(robot) for channel in found for robot in channel.robots)
-        raise Unreachable(f"{', '.join(map(ascii, missing))}: not running; there are {known}")
+        known = ", ".join(repr(robot) for channel in found for robot in channel.robots)
+        raise Unreachable(f"{', '.join(map(repr, missing))}: not running; there are {known}")
     content = {"order": order, "question": question, "answer": answer, "seconds": seconds}
     with ExitStack() as stack:
         calls = [
@@ -94,6 +95,7 @@ def _of_those_who_ask(replies: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Give the order on the command line; return 0 if every robot has confirmed it."""
+    bear_all_characters()
     given = _parser().parse_args(arguments)
     if (given.order == ANSWER) != bool(given.question):
         _parser().error("answer needs --question QUESTION --says yes|no, and nothing else has it")
@@ -114,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def words(reply: dict[str, Any]) -> str:
     """Return what a robot says to an order, as people read it."""
-    robot = ascii(reply["robot"])
+    robot = repr(reply["robot"])
     if "confirmed" not in reply:
         rest = ", ".join(f"{name} {value}" for name, value in reply.items() if name != "robot")
         return f"{robot}: {rest}"
@@ -162,7 +164,7 @@ def _call(channel: Channel, content: dict[str, Any], seconds: float) -> socket.s
     try:
         connection = socket.create_connection(("127.0.0.1", channel.port), CALL_SECONDS)
     except OSError as error:
-        shown = ", ".join(map(ascii, channel.robots))
+        shown = ", ".join(map(repr, channel.robots))
         raise Unreachable(f"{shown}: no longer running: {error.strerror or error}") from error
     connection.settimeout(seconds + CALL_SECONDS)
     connection.sendall(json.dumps({"token": channel.token, **content}).encode("ascii") + b"\n")

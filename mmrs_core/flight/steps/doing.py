@@ -80,11 +80,11 @@ class Doing:
             self._vehicle.rest(action.seconds)
             self._journal.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):
-            self._desk.say(f"{self._robot.id!a} reports {action.name!a} {dict(action.pairs)!a}")
+            self._desk.say(f"{self._robot.id!r} reports {action.name!r} {dict(action.pairs)!r}")
             self._vehicle.tell_ground(words_of(self._robot.id, action.name, dict(action.pairs)))
             self._journal.record("reported", action.name, dict(action.pairs))
         elif isinstance(action, NoEffect):
-            self._desk.say(f"{self._robot.id!a} has no way to do {action.name!a}: {action.why}")
+            self._desk.say(f"{self._robot.id!r} has no way to do {action.name!r}: {action.why}")
 
     def _notify(self, action: Notify, detail: str) -> None:
         sign = "+" if action.active else "-"

@@ -61,7 +61,7 @@ class Crew:
 
     def say(self, words: str) -> None:
         """Tell people something about the robot."""
-        self.desk.say(f"{self.robot.id!a}: {words}")
+        self.desk.say(f"{self.robot.id!r}: {words}")
 
 
 class Ending:

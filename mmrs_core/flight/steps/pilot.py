@@ -105,7 +105,7 @@ class Pilot:
         """Set the vehicle up; again where it has started anew meanwhile."""
 
         def say(line: str) -> None:
-            self._desk.say(f"{self._robot.id!a}: {line}")
+            self._desk.say(f"{self._robot.id!r}: {line}")
 
         for _ in range(STARTS):
             self._watch.renew()
@@ -116,7 +116,7 @@ class Pilot:
         else:
             raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None and not self._desk.dry:
-            self._desk.say(f"{self._robot.id!a} does not tell its battery: nobody will notice when it is low")
+            self._desk.say(f"{self._robot.id!r} does not tell its battery: nobody will notice when it is low")
         self._watch.tell_missing()
 
     def _meet(self, meet: Meet) -> None:
@@ -131,13 +131,13 @@ class Pilot:
             self._vehicle.rest(0.0)
             if missing and missing not in told:
                 told.add(missing)
-                self._desk.say(f"{self._robot.id!a} is ready to begin with the others: {missing}")
+                self._desk.say(f"{self._robot.id!r} is ready to begin with the others: {missing}")
 
         try:
             begun = meet(guard)
         except Incomplete as error:
             raise Alone(str(error)) from None
-        self._desk.say(f"{self._robot.id!a}: begins together with the others, {begun}")
+        self._desk.say(f"{self._robot.id!r}: begins together with the others, {begun}")
         self.journal.decide("TOGETHER", str(begun), "begins")
 
     def _take_up_again(self) -> None:
@@ -145,7 +145,7 @@ class Pilot:
         records = self._desk.log.steps
         self.track = track_of(self._robot, records)
         step = self._steps[self.journal.move]
-        self._desk.say(f"{self._robot.id!a}: goes on with {step.move!a}")
+        self._desk.say(f"{self._robot.id!r}: goes on with {step.move!r}")
         self.journal.decide("resume", f"its log ends at {step.move}", "goes the way it came")
         if self.track and not self._is_down(step):
             self._watch.moving = True
@@ -309,8 +309,8 @@ class Pilot:
                 return
             self._vehicle.rest(min(5.0, seconds or 5.0))
         if left is None:
-            self._desk.say(f"{self._robot.id!a} has charged for {seconds:.0f} s; nobody knows how far")
+            self._desk.say(f"{self._robot.id!r} has charged for {seconds:.0f} s; nobody knows how far")
 
     def _tell(self, step: Step) -> None:
-        serves = f" for task {step.task!a}" if step.task else ""
-        self._desk.say(f"{self._robot.id!a}: {step.move!a} ({type(step.movement).__name__}){serves}")
+        serves = f" for task {step.task!r}" if step.task else ""
+        self._desk.say(f"{self._robot.id!r}: {step.move!r} ({type(step.movement).__name__}){serves}")

@@ -161,7 +161,7 @@ def _ends(here: Place, movement: GoTo) -> tuple[Place, ...]:
     target = movement.at
     if isinstance(target, Object):
         if target.expected is None:
-            raise Refused(f"object {target.description!a}: nobody knows where it was; start afresh")
+            raise Refused(f"object {target.description!r}: nobody knows where it was; start afresh")
         target = target.expected
     if isinstance(here, Local) != isinstance(target, Local):
         raise Refused(f"{target}: is not in the frame of the robot's home")

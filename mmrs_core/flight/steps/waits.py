@@ -73,7 +73,7 @@ class Waits:
             return
         self._borne.add(str(fault))
         self._journal.decide(fault.event, str(fault), CONTINUE)
-        self._desk.say(f"{self._robot.id!a} carries on although {fault}")
+        self._desk.say(f"{self._robot.id!r} carries on although {fault}")
 
     def patience(self, event: str, usual: float) -> float:
         """Return for how many seconds the robot bears an event; `usual` where policies do not say."""
@@ -85,7 +85,7 @@ class Waits:
         wanted = policy_for(LINK_LOST, self._robot, self.policies)
         policy = alone(wanted, self._robot)
         if policy != wanted:
-            self._desk.say(f"{self._robot.id!a}: {BLOCKED}")
+            self._desk.say(f"{self._robot.id!r}: {BLOCKED}")
         self._vehicle.answer_lost_link(policy.response, policy.after)
 
     def _follow(self, policies: tuple[Policy, ...]) -> None:
@@ -122,7 +122,7 @@ class Waits:
     def _tell_undecided(self, condition: str) -> None:
         words = awaiting(condition)
         self._desk.questions.asked = question_of(condition)
-        self._desk.say(f"{self._robot.id!a} {words}")
+        self._desk.say(f"{self._robot.id!r} {words}")
         self._journal.decide("CHOICE", condition, words)
 
     def _asked(self, condition: str) -> bool | None:
@@ -132,7 +132,7 @@ class Waits:
             found = self._desk.conditions[condition](state)
             holds = None if found is None else truth(found)
         except Exception as error:
-            raise Fault(CONDITION_FAILED, f"condition {condition!a} fails: {error!r}") from error
+            raise Fault(CONDITION_FAILED, f"condition {condition!r} fails: {error!r}") from error
         if holds is not None:
             self._desk.questions.use_up(heard)
         return holds
@@ -144,7 +144,7 @@ class Waits:
         told = False
         while not slots.take(self._robot.id, names, kept):
             if not told:
-                self._desk.say(f"{self._robot.id!a} waits for {', '.join(map(ascii, names))}")
+                self._desk.say(f"{self._robot.id!r} waits for {', '.join(map(ascii, names))}")
                 told = True
             if not self._orphaned(names):
                 alone = clock.now()

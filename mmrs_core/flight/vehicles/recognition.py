@@ -64,7 +64,7 @@ def refuse_neighbours(robot: Robot, here: Place) -> None:
     other, name = min(((_away(home, here), name) for name, home in robot.neighbours), default=(inf, ""))
     if away > AT_HOME and other < away:
         raise Refused(
-            f"the vehicle is {other:.0f} m from the home of {name!a} and {away:.0f} m from that of its "
+            f"the vehicle is {other:.0f} m from the home of {name!r} and {away:.0f} m from that of its "
             "program: are system ids or links swapped?"
         )
 

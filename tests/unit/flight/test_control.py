@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
 import stat
+import subprocess
+import sys
 import threading
 from contextlib import ExitStack
 
@@ -141,6 +144,17 @@ def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
     opened(inboxes)
     assert main(["status", "--log", str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[0] == "'alpha': mode guided, energy 0.5"
+
+
+@pytest.mark.parametrize(
+    ("encoding", "shown"), [("utf-8", "'Ärger': mode guided"), ("ascii", "'\\xc4rger': mode guided")]
+)
+def test_names_are_shown_as_they_are_written_where_the_terminal_can(tmp_path, opened, encoding, shown):
+    opened({"Ärger": Inbox("Ärger", questions=Questions())})
+    order = [sys.executable, "-m", "mmrs_core.flight.control", "status", "--log", str(tmp_path)]
+    environment = {**os.environ, "PYTHONIOENCODING": encoding}
+    done = subprocess.run(order, capture_output=True, env=environment, check=True, timeout=60)
+    assert done.stdout.decode(encoding).startswith(shown)
 
 
 def test_who_does_not_know_the_token_is_not_obeyed(tmp_path, opened, inboxes):

@@ -50,10 +50,15 @@ def test_a_python_literal_evaluates_to_its_value(value):
 
 
 @given(texts)
-def test_a_python_literal_is_one_line_of_ascii(text):
+def test_a_python_literal_is_one_line_that_can_be_read(text):
     literal = python_literal(text)
-    assert literal.isascii()
+    assert literal.isprintable()
     assert len(literal.splitlines()) == 1
+
+
+def test_names_stay_as_people_write_them():
+    assert python_literal("Ärger") == '"Ärger"'
+    assert comment("Bucht \u202eÄrger") == "Bucht /u202eÄrger"
 
 
 @pytest.mark.parametrize("number", [inf, -inf, nan])
