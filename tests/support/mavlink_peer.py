@@ -6,8 +6,9 @@ import queue
 import struct
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from types import SimpleNamespace
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -17,7 +18,7 @@ from mmrs_core.flight.links.ports import NOTHING, Received
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.retries import Retries
 
-HERE = ("10.0.0.1", 14_550)
+HERE, THERE = ("10.0.0.1", 14_550), ("10.0.0.2", 14_550)
 ARDUPILOT, PX4 = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_AUTOPILOT_PX4
 QUICK = Retries(tries=3, answer=0.15, item=0.1)
 Answer = Callable[[object], Iterable[object]]
@@ -122,6 +123,23 @@ def linked(
         yield link, wire
     finally:
         link.close()
+
+
+@contextmanager
+def two_linked(clock: Clock) -> Iterator[SimpleNamespace]:
+    """Give a wire, and on it links to the vehicles 1 and 2, which speak from different addresses."""
+    wire = Wire()
+    radio = Radio(wire, clock)
+    first, second = (Link(radio, clock, system, retries=QUICK) for system in (1, 2))
+    wire.beat(system=1, sender=HERE)
+    wire.beat(system=2, sender=THERE)
+    for link in (first, second):
+        eventually(lambda link=link: link.component)
+    try:
+        yield SimpleNamespace(wire=wire, clock=clock, first=first, second=second)
+    finally:
+        first.close()
+        second.close()
 
 
 def eventually(test: Callable[[], object], seconds: float = 5.0) -> object:

@@ -200,13 +200,18 @@ def test_a_choice_that_comes_round_again_asks_again(controllers):
     assert chosen == ["true", "true", "false"]
 
 
-def test_an_answer_to_a_question_that_nobody_asks_is_refused(controllers):
+def asking(question: str):
+    """A climb, a place to which the robot goes only if it is answered yes, and a landing."""
     robot = robot_program(
         "alpha",
         [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), LAND],
-        transitions={1: Transition(1, 2, condition="answer:go on?", otherwise=3)},
+        transitions={1: Transition(1, 2, condition=f"answer:{question}", otherwise=3)},
     )
-    made = controllers(program(robot))
+    return program(robot)
+
+
+def test_an_answer_to_a_question_that_nobody_asks_is_refused(controllers):
+    made = controllers(asking("go on?"))
     with made.start("fleet.py", "--dry-run") as process:
         assert any("waits for an answer to 'go on?'" in line for line in process.stderr)
         refused = order(made, "answer", question="go on", answer=True)
@@ -218,12 +223,7 @@ def test_an_answer_to_a_question_that_nobody_asks_is_refused(controllers):
 
 
 def test_an_answer_decides_a_choice_that_waited_for_it(controllers):
-    robot = robot_program(
-        "alpha",
-        [take_off("up", 5.0), go_to("a", (4.0, 6.0, 5.0)), LAND],
-        transitions={1: Transition(1, 2, condition="answer:is it safe", otherwise=3)},
-    )
-    made = controllers(program(robot))
+    made = controllers(asking("is it safe"))
     with made.start("fleet.py", "--dry-run") as process:
         assert any("waits for an answer to 'is it safe'" in line for line in process.stderr)
         assert order(made, "answer", question="is it safe", answer=False)["confirmed"]

@@ -122,19 +122,11 @@ def test_a_vehicle_that_is_there_obeys_as_soon_as_it_is_heard():
         assert evidence.bound_for(HOME, 5.0)
 
 
-def test_set_points_that_move_towards_the_place_are_those_of_a_px4_that_goes_there():
+@pytest.mark.parametrize(("moved", "goes"), [(ON_ITS_WAY, True), (OTHERWISE, False)], ids=["to", "away"])
+def test_set_points_that_move_towards_the_place_are_those_of_a_px4_that_goes_there(moved, goes):
     offboard = px4_number(*PX4_MODES[GUIDED])
     with watched(mode=offboard, autopilot=PX4) as (evidence, say, _):
         say(target(HOME.latitude))
         assert not evidence.bound_for(FAR, 5.0)
-        say(target(ON_ITS_WAY))
-        assert evidence.bound_for(FAR, 5.0)
-
-
-def test_set_points_that_move_away_are_not():
-    offboard = px4_number(*PX4_MODES[GUIDED])
-    with watched(mode=offboard, autopilot=PX4) as (evidence, say, _):
-        say(target(HOME.latitude))
-        assert not evidence.bound_for(FAR, 5.0)
-        say(target(OTHERWISE))
-        assert not evidence.bound_for(FAR, 5.0)
+        say(target(moved))
+        assert evidence.bound_for(FAR, 5.0) == goes

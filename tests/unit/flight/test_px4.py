@@ -122,15 +122,20 @@ def test_without_a_speed_the_set_point_is_the_target(px4):
     eventually(lambda: autopilot.points[-1].lat_int == 423_710_000)
 
 
+def assert_silent(autopilot) -> None:
+    """Fail where set-points still come, once those on their way have."""
+    threading.Event().wait(0.05)
+    count = len(autopilot.points)
+    threading.Event().wait(0.2)
+    assert len(autopilot.points) == count
+
+
 def test_set_points_end_after_another_mode_is_there(px4):
     helm, telemetry, autopilot = px4
     helm.enter(modes.GUIDED)
     helm.enter(modes.HOLD)
     assert telemetry.mode() == LOITER
-    threading.Event().wait(0.05)
-    count = len(autopilot.points)
-    threading.Event().wait(0.2)
-    assert len(autopilot.points) == count
+    assert_silent(autopilot)
 
 
 def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
@@ -141,10 +146,7 @@ def test_set_points_end_when_somebody_else_has_the_vehicle(px4):
     with pytest.raises(Fault, match="somebody else has taken over") as fault:
         helm.check()
     assert fault.value.event == "TAKEN_OVER"
-    threading.Event().wait(0.05)
-    count = len(autopilot.points)
-    threading.Event().wait(0.2)
-    assert len(autopilot.points) == count
+    assert_silent(autopilot)
 
 
 def test_a_take_off_goes_straight_up_to_a_height_above_sea_level_and_may_change_modes(px4):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import threading
-from types import SimpleNamespace
 
 import pytest
-from mavlink_peer import HERE, QUICK, Wire, eventually, heartbeat, linked
+from mavlink_peer import HERE, QUICK, THERE, Wire, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
@@ -18,7 +17,7 @@ from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.vehicles.preparation import HEARING_SECONDS, hear_out
 
-THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
+ELSEWHERE = ("10.0.0.3", 14_550)
 ITEM = mavlink.MAVLink_mission_current_message(3)
 NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise!!"
 
@@ -26,16 +25,8 @@ NOISE = b"\xfd\x05\x00\x00\x00\x01\x01\x00\x00\x00noise!!"
 @pytest.fixture
 def shared():
     """Return a wire with two links on it, to systems 1 and 2 at different addresses."""
-    wire, clock = Wire(), Clock()
-    radio = Radio(wire, clock)
-    links = [Link(radio, clock, system, retries=QUICK) for system in (1, 2)]
-    wire.beat(system=1, sender=HERE)
-    wire.beat(system=2, sender=THERE)
-    for link in links:
-        assert link.wait(lambda link=link: link.component, 5.0)
-    yield SimpleNamespace(wire=wire, first=links[0], second=links[1])
-    for link in links:
-        link.close()
+    with two_linked(Clock()) as made:
+        yield made
 
 
 def test_each_link_hears_its_own_vehicle_only(shared):

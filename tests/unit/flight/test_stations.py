@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import threading
-from types import SimpleNamespace
 
 import pytest
 from flight_crew import robot_of
-from mavlink_peer import HERE, PX4, QUICK, Wire, eventually, heartbeat, linked
+from mavlink_peer import HERE, PX4, THERE, eventually, heartbeat, linked, two_linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM, Radio
+from mmrs_core.flight.links.radio import GROUND_COMPONENT, GROUND_SYSTEM
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.steps.ground import ANY_STATION, SAME_SYSTEM, Ground
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 
-THERE, ELSEWHERE = ("10.0.0.2", 14_550), ("10.0.0.3", 14_550)
+ELSEWHERE = ("10.0.0.3", 14_550)
 STATION = heartbeat(kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID)
 FIVE = Policy("GROUND_LOST", "RETURN", 5.0)
 
@@ -36,16 +34,9 @@ class HandClock(Clock):
 @pytest.fixture
 def ears():
     """Return a wire with the links of two vehicles, at different addresses, and their clock."""
-    wire, clock = Wire(), HandClock()
-    radio = Radio(wire, clock)
-    links = [Link(radio, clock, system, retries=QUICK) for system in (1, 2)]
-    wire.beat(system=1, sender=HERE)
-    wire.beat(system=2, sender=THERE)
-    for link in links:
-        eventually(lambda link=link: link.component)
-    yield SimpleNamespace(wire=wire, clock=clock, first=links[0], second=links[1], number=100)
-    for link in links:
-        link.close()
+    with two_linked(HandClock()) as made:
+        made.number = 100
+        yield made
 
 
 def beat(ears, system: int = 254, component: int = 190, sender=HERE) -> None:
@@ -98,22 +89,16 @@ def test_nothing_is_lost_that_was_never_there(ears):
     assert ground.silence(FIVE) == ""
 
 
-def test_a_station_counts_as_lost_after_the_seconds_of_the_policy(ears):
+@pytest.mark.parametrize(
+    ("policy", "seconds"), [(FIVE, 5), (Policy("GROUND_LOST", "RETURN"), 10)], ids=["its own", "none: ten"]
+)
+def test_a_station_counts_as_lost_after_the_seconds_of_the_policy(ears, policy, seconds):
     ground = Ground(ears.first)
     beat(ears)
-    pass_seconds(ears, 5)
-    assert ground.silence(FIVE) == ""
-    pass_seconds(ears, 1)
-    assert ground.silence(FIVE) == "nothing heard of ground station 254 for 6 s"
-
-
-def test_a_policy_without_seconds_bears_ten(ears):
-    ground, policy = Ground(ears.first), Policy("GROUND_LOST", "RETURN")
-    beat(ears)
-    pass_seconds(ears, 10)
+    pass_seconds(ears, seconds)
     assert ground.silence(policy) == ""
     pass_seconds(ears, 1)
-    assert ground.silence(policy)
+    assert ground.silence(policy) == f"nothing heard of ground station 254 for {seconds + 1} s"
 
 
 def test_a_station_that_comes_back_in_time_is_not_lost(ears):
