@@ -105,9 +105,9 @@ def mmrs_commands() -> Iterable[Command]:  # type: ignore[empty-body]
 
 @hookspec
 def mmrs_stage_finished(stage: str, result: object) -> None:
-    """Observe that a stage of the pipeline has finished, with what it returned."""
+    """Observe that a stage of the pipeline has finished, with what it returned; what this raises is told."""
 
 
 @hookspec
 def mmrs_step_executed(record: StepRecord) -> None:
-    """Observe a step that the interpreter has executed."""
+    """Observe a step that the interpreter executes; what this raises is told, and ends nothing."""

@@ -33,13 +33,25 @@ class Plugins:
     distributions: Mapping[str, str]
     _manager: pluggy.PluginManager = field(repr=False)
 
-    def observe_stage(self, stage: str, result: object) -> None:
-        """Tell every observer that a stage has finished."""
-        self._manager.hook.mmrs_stage_finished(stage=stage, result=result)
+    def observe_stage(self, stage: str, result: object) -> Mapping[str, BaseException]:
+        """Tell every observer that a stage has finished; return what they raised, by who they are."""
+        return self._observed("mmrs_stage_finished", stage=stage, result=result)
 
-    def observe_step(self, record: StepRecord) -> None:
-        """Tell every observer that a step was executed."""
-        self._manager.hook.mmrs_step_executed(record=record)
+    def observe_step(self, record: StepRecord) -> Mapping[str, BaseException]:
+        """Tell every observer that a step was executed; return what they raised, by who they are."""
+        return self._observed("mmrs_step_executed", record=record)
+
+    def _observed(self, hook: str, **seen: object) -> Mapping[str, BaseException]:
+        """Call a hook for one plug-in after another, so that none keeps the others from seeing it."""
+        failed: dict[str, BaseException] = {}
+        for implementation in getattr(self._manager.hook, hook).get_hookimpls():
+            name = implementation.plugin_name
+            others = [each for each in self._manager.get_plugins() if each is not implementation.plugin]
+            try:
+                self._manager.subset_hook_caller(hook, others)(**seen)
+            except (Exception, SystemExit) as error:
+                failed[f"plug-in '{name}' of distribution '{self.distributions[name]}'"] = error
+        return failed
 
 
 def load_plugins(*, only_core: bool = False, extra: Mapping[str, object] | None = None) -> Plugins:

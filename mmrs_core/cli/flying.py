@@ -21,6 +21,7 @@ from mmrs_core.cli.flown_before import end_of, resumed_steps
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.observing import Observer
+from mmrs_core.cli.onlookers import Gallery
 from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import say, tell, unfailing
 from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, robots_of, stop_response
@@ -96,7 +97,8 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         bus = bus_for(program, here, run, wishes.folder, wishes.bus, given, wrap)
         stack.callback(bus.close)
         writer = stack.enter_context(LogWriter(wishes.folder, resumed=wishes.resume))
-        observer = Observer(workshop, writer, program)
+        gallery = Gallery(workshop.onlookers)
+        observer = Observer(gallery, writer, program)
         venture = Venture(
             program,
             inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
@@ -120,6 +122,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         stack.enter_context(hear_orders(wishes.folder, run, here, orders, status))
         stack.enter_context(_stopping(orders, here))
         stack.enter_context(unfailing())
+        stack.callback(gallery.close)
         ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.cli.interruption import interrupted
+from mmrs_core.cli.onlookers import Onlookers
 from mmrs_core.cli.output import progress, report, tell
 from mmrs_core.cli.protection import files_of
 from mmrs_core.cli.settings import Settings
@@ -67,6 +68,11 @@ class Workshop:
         """Return the plug-ins."""
         return self._settings.plugins()
 
+    @cached_property
+    def onlookers(self) -> Onlookers:
+        """Return those of the plug-ins that observe."""
+        return Onlookers(self.plugins)
+
     @property
     def contributions(self) -> Contributions:
         """Return what the plug-ins contribute."""
@@ -82,7 +88,7 @@ class Workshop:
             result = make()
         if interrupted():
             raise KeyboardInterrupt
-        self.plugins.observe_stage(name, result)
+        self.onlookers.see_stage(name, result)
         return result
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from mmrs_core.behaviour.log import LogWriter
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Program
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.onlookers import Gallery
 
 FEEDBACK = (BEHAVIOUR, "Feedback")
 
@@ -15,9 +15,9 @@ FEEDBACK = (BEHAVIOUR, "Feedback")
 class Observer:
     """Is told every step that a robot makes."""
 
-    def __init__(self, workshop: Workshop, writer: LogWriter, program: Program) -> None:
-        """Have seen nothing of that behaviour yet; plug-ins of the workshop are told, too."""
-        self._workshop, self._writer = workshop, writer
+    def __init__(self, gallery: Gallery, writer: LogWriter, program: Program) -> None:
+        """Have seen nothing of that behaviour yet; who is in the gallery is shown all of it, too."""
+        self._gallery, self._writer = gallery, writer
         self._actions = _actions_of(program)
         self._last: dict[str, StepRecord] = {}
         self._reported: dict[str, Mapping[str, object]] = {}
@@ -32,7 +32,7 @@ class Observer:
                 "name": action.name,
                 "content": dict(action.parameters),
             }
-        self._workshop.plugins.observe_step(record)
+        self._gallery.show(record)
 
     def status(self, robot: str) -> Mapping[str, object]:
         """Return what a robot did last, and what it has reported last if it has; empty before it began."""

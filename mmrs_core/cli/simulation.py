@@ -84,7 +84,7 @@ def fly(
             backend=chosen.backend,
             options=chosen.options,
             assume=conditions,
-            observe=workshop.plugins.observe_step,
+            observe=workshop.onlookers.see_step,
         ),
     )
 

@@ -49,7 +49,7 @@ def test_an_example_is_a_plugin_that_loads(example, tmp_path):
         assert declared
         expected = re.search(r"Iterable\[(\w+)\]", signature_of(name)).group(1)
         assert {type(each).__name__ for each in declared} == {expected}
-    plugins.observe_stage("plan", None)
+    assert plugins.observe_stage("plan", None) == {}
 
 
 def test_every_field_of_what_is_declared_is_told():

@@ -134,7 +134,7 @@ def test_hook_mmrs_commands():
 def test_hook_mmrs_stage_finished():
     seen = []
     plugin = plugin_with("mmrs_stage_finished", lambda stage, result: seen.append((stage, result)))
-    load_plugins(only_core=True, extra={"kites": plugin}).observe_stage("plan", 42)
+    assert load_plugins(only_core=True, extra={"kites": plugin}).observe_stage("plan", 42) == {}
     assert seen == [("plan", 42)]
 
 
@@ -142,8 +142,25 @@ def test_hook_mmrs_step_executed():
     seen = []
     record = StepRecord("run", "kite", 0, 1, 0.0, "begin", "start")
     plugin = plugin_with("mmrs_step_executed", lambda record: seen.append(record))
-    load_plugins(only_core=True, extra={"kites": plugin}).observe_step(record)
+    assert load_plugins(only_core=True, extra={"kites": plugin}).observe_step(record) == {}
     assert seen == [record]
+
+
+@pytest.mark.parametrize("error", [OSError(28, "no space left"), SystemExit(3), KeyError("kite")])
+def test_an_observer_that_fails_is_named_and_keeps_no_other_from_seeing(error):
+    seen = []
+
+    def fail(stage, result):
+        raise error
+
+    first = plugin_with("mmrs_stage_finished", lambda stage, result: seen.append("first"))
+    broken = plugin_with("mmrs_stage_finished", fail)
+    last = plugin_with("mmrs_stage_finished", lambda stage, result: seen.append("last"))
+    loaded = load_plugins(only_core=True, extra={"a": first, "broken": broken, "z": last})
+    assert loaded.observe_stage("plan", 42) == {
+        "plug-in 'broken' of distribution 'given by the caller'": error
+    }
+    assert sorted(seen) == ["first", "last"]
 
 
 def test_two_rules_for_one_metaclass_name_both_plug_ins():
