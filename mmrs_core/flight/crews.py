@@ -9,7 +9,7 @@ from .orders.orders import Inbox, Receipt
 from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS
 from .questions import Questions
 from .records.blackbox import plain
-from .records.journal import Journal
+from .steps.journal import Journal
 from .vehicles.vehicle import State
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from ..links.autopilots import is_px4
 from ..links.link import Link, Message
-from ..vehicles.modes import is_px4
 
 ROUNDS = 2
 """How often parameters are asked for that a vehicle may not have."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from ..desk import Desk
 from ..faults import DEVICE_SILENT, Fault
 from ..program import Action, Measure, NoEffect, Notify, Operate, Report, Robot
-from ..records.journal import Journal
 from ..services.commands import Unanswered
 from ..services.telling import words_of
 from ..vehicles.vehicle import Vehicle
+from .journal import Journal
 from .waits import Waits
 
 SILENCE_SECONDS = 5.0

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..faults import GROUND_LOST
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..links.radio import GROUND_SYSTEM
 from ..program import Policy, Robot
-from ..vehicles.modes import is_px4
 from .responses import CONTINUE, policy_for
 
 GROUND_SECONDS = 10.0

@@ -13,7 +13,6 @@ from ..orders.obedience import Obedience
 from ..places import at_height, distance, ends_of
 from ..policies import still_low
 from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
-from ..records.journal import Journal
 from ..records.recording import fix
 from ..services.uploads import Flight, uploads_of
 from ..vehicles.corners import goes_through
@@ -21,6 +20,7 @@ from ..vehicles.vehicle import Vehicle
 from .doing import Doing
 from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
+from .journal import Journal
 from .rejoining import OFF_ITS_WAY, rest_of_way, way_ahead
 from .resuming import still_on, track_of
 from .waits import Waits

@@ -10,8 +10,8 @@ from ..conditions import awaiting, question_of, truth
 from ..desk import Desk
 from ..faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from ..program import Choose, Policy, Robot, Then
-from ..records.journal import Journal
 from ..vehicles.vehicle import Vehicle
+from .journal import Journal
 from .responses import BLOCKED, CONTINUE, alone, policy_for
 
 GLANCE_SECONDS = 0.1

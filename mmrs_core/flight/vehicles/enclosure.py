@@ -12,12 +12,12 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 
 from ..faults import Refused
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..places import distance, offset
 from ..program import Geographic, Place
 from ..services import parameters
 from ..services.items import Item
-from .modes import is_px4
 
 HEIGHT, CIRCLE, POLYGONS = 1, 2, 4
 MARGIN = 2.0

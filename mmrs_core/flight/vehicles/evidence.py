@@ -14,6 +14,7 @@ from math import cos, hypot, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..places import distance, offset
 from ..program import Place
@@ -80,7 +81,7 @@ class LinkEvidence:
         away = hypot(*offset(aim, place)[:2])
         if self._first is None:
             self._first = away
-        steps = modes.is_px4(self._link) and away <= self._first - ADVANCE
+        steps = is_px4(self._link) and away <= self._first - ADVANCE
         return away <= THERE or steps
 
     def _hurries_to(self, place: Place, speed: float | None) -> bool:

@@ -9,6 +9,7 @@ from math import inf
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services.commands import ask, command
 from . import modes
@@ -57,7 +58,7 @@ class Helm:
     def habits(self) -> Habits:
         """Return how the vehicle is steered, once its heartbeat has told what it is."""
         if self._habits is None:
-            px4 = modes.is_px4(self._link)
+            px4 = is_px4(self._link)
             self._habits = Px4(self._link, self._telemetry) if px4 else ArduPilot(self._link)
         return self._habits
 

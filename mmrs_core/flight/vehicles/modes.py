@@ -10,6 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
 from ..faults import LINK_LOST as LOST_LINK
+from ..links.autopilots import is_px4
 from ..links.link import Link
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
@@ -233,12 +234,6 @@ PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
 
 PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), mavlink.MAV_PARAM_TYPE_INT32)
 """Types of parameters that are not of single precision."""
-
-
-def is_px4(link: Link) -> bool:
-    """Return whether the autopilot is a PX4, as its heartbeat says."""
-    beat = link.latest("HEARTBEAT")
-    return beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_PX4
 
 
 def lost_link_answers(link: Link, kind: str) -> Answers:

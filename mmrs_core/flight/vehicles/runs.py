@@ -15,10 +15,10 @@ from collections.abc import Sequence
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import Refused
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters
 from ..services.items import Item
-from .modes import is_px4
 
 LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
 """Items with higher commands are carried out on the way; the vehicle goes nowhere for them."""

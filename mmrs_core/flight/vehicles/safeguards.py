@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters
-from .modes import is_px4
 
 
 @dataclass(frozen=True, slots=True)

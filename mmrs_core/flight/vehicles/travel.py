@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..program import Travel
 from ..services import parameters
-from .modes import is_px4
 
 _CENTIMETRES = 100.0
 

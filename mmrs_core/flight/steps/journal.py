@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from ..desk import Desk
 from ..orders.orders import Receipt
 from ..program import Robot
-from ..steps.resuming import progress_of
 from ..vehicles.vehicle import Vehicle
+from .resuming import progress_of
 
 
 class Journal:
