@@ -40,13 +40,15 @@ def control(
     """
     from mmrs_core.errors import LinkLostError
     from mmrs_core.flight.orders.ordering import Unreachable, words
+    from mmrs_core.flight.orders.orders import STATUS
+    from mmrs_core.flight.orders.standing import lines_of
 
     _check(order, question, says)
     replies = []
     try:
         for reply in _replies(log, order, robots or [], question, says == "yes", seconds):
             replies.append(reply)
-            if not json:
+            if not json and order != STATUS:
                 say(words(reply))
     except (Unreachable, OSError) as error:
         raise LinkLostError(str(error)) from error
@@ -54,6 +56,9 @@ def control(
         raise typer.BadParameter(str(error)) from error
     if json:
         say_json({"order": order, "robots": replies})
+    elif order == STATUS:
+        for line in lines_of(replies):
+            say(line)
     return 0 if all(reply.get("confirmed", True) for reply in replies) else 1
 
 

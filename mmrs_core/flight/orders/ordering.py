@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ..screen import bear_all_characters
-from .orders import ANSWER, ORDERS
+from .orders import ANSWER, ORDERS, STATUS
+from .standing import lines_of
 
 PATTERN = "control*.json"
 CALL_SECONDS = 5.0
@@ -108,6 +109,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             answer=WORDS[given.says],
             seconds=given.seconds,
         )
+        if given.order == STATUS:
+            print(*lines_of([*replies]), sep="\n")
+            return 0
         return _tell(replies)
     except (Unreachable, ValueError, OSError) as error:
         print(f"{error}", file=sys.stderr)
@@ -115,11 +119,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def words(reply: dict[str, Any]) -> str:
-    """Return what a robot says to an order, as people read it."""
+    """Return what a robot says to an order that it may obey, as people read it."""
     robot = repr(reply["robot"])
-    if "confirmed" not in reply:
-        rest = ", ".join(f"{name} {value}" for name, value in reply.items() if name != "robot")
-        return f"{robot}: {rest}"
     why = f" ({reply['why']})" if reply["why"] else ""
     if reply["confirmed"]:
         return f"{robot}: {reply['order']} confirmed after {reply['seconds']:.3f} s{why}"
@@ -130,7 +131,7 @@ def _tell(replies: Iterator[dict[str, Any]]) -> int:
     confirmed = True
     for reply in replies:
         print(words(reply))
-        confirmed = confirmed and reply.get("confirmed", True)
+        confirmed = confirmed and reply["confirmed"]
     return 0 if confirmed else 1
 
 

@@ -143,11 +143,11 @@ def test_a_robot_that_has_ended_takes_no_answer(tmp_path, opened, inboxes):
 def test_status_tells_of_each_robot(tmp_path, opened, inboxes, capsys):
     opened(inboxes)
     assert main(["status", "--log", str(tmp_path)]) == 0
-    assert capsys.readouterr().out.splitlines()[0] == "'alpha': mode guided, energy 0.5"
+    assert capsys.readouterr().out.splitlines()[0] == "'alpha'  guided  battery 50%"
 
 
 @pytest.mark.parametrize(
-    ("encoding", "shown"), [("utf-8", "'Ärger': mode guided"), ("ascii", "'\\xc4rger': mode guided")]
+    ("encoding", "shown"), [("utf-8", "'Ärger'  guided"), ("ascii", "'\\xc4rger'  guided")]
 )
 def test_names_are_shown_as_they_are_written_where_the_terminal_can(tmp_path, opened, encoding, shown):
     opened({"Ärger": Inbox("Ärger", questions=Questions())})
