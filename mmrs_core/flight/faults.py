@@ -23,6 +23,9 @@ ORDERED = "ORDERED"
 LOG_FAILED = "LOG_FAILED"
 CRASHED = "CRASHED"
 
+FAILURES = (Exception, SystemExit)
+"""What may come out of code that is wrong, or somebody else's: what it raises must end no thread unseen."""
+
 
 class Fault(Exception):  # noqa: N818  # the word that policies and logs use
     """Something went wrong; `event` says what, and the robot's policies say what it does about it.

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from math import isfinite
 
-from .faults import OBJECT_NOT_FOUND, Fault
+from .faults import FAILURES, OBJECT_NOT_FOUND, Fault
 from .places import distance
 from .program import Look, Object, Place
 from .vehicles.vehicle import State
@@ -43,8 +44,8 @@ def place_of(target: Place | Object, locators: Mapping[str, Locator], state: Sta
     if not isinstance(target, Object):
         return target
     try:
-        found = locators[target.description](state, target.expected)
-    except Exception as error:
+        found = _somewhere(locators[target.description](state, target.expected), state.place)
+    except FAILURES as error:
         raise Fault(OBJECT_NOT_FOUND, f"object {target.description!r}: {error!r}") from error
     if target.expected is not None and target.tolerance is not None:
         away = distance(target.expected, found)
@@ -52,6 +53,17 @@ def place_of(target: Place | Object, locators: Mapping[str, Locator], state: Sta
             raise Fault(
                 OBJECT_NOT_FOUND, f"object {target.description!r}: {away:.1f} m from where it should be"
             )
+    return found
+
+
+def _somewhere(found: Place, here: Place) -> Place:
+    """Return what a function of the user's has found.
+
+    Raises:
+        ValueError: it is no place, or not in the frame of the robot's program, or its numbers are none.
+    """
+    if not isfinite(distance(here, found)):
+        raise ValueError(f"{found} is nowhere")
     return found
 
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from traceback import format_exception
 
@@ -14,7 +15,7 @@ from .bus import begin_together
 from .conditions import Condition
 from .crews import Crews
 from .desk import Desk, Meet
-from .faults import CRASHED, Alone, Fault, Refused, Strange
+from .faults import CRASHED, FAILURES, Alone, Fault, Refused, Strange
 from .injection import Rehearsal
 from .judgement import Judgement
 from .links.link import Link
@@ -29,7 +30,17 @@ from .records.recording import Recording
 from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
-from .steps.ending import CODES, FAILED, HEARD_SECONDS, LEAST_HEARD_SECONDS, OK, Crew, Ending
+from .steps.ending import (
+    CODES,
+    FAILED,
+    HEARD_SECONDS,
+    LEAST_HEARD_SECONDS,
+    LEAST_LISTEN_SECONDS,
+    LISTEN_SECONDS,
+    OK,
+    Crew,
+    Ending,
+)
 from .steps.guarding import guarding
 from .steps.obeying import astray
 from .steps.pilot import Pilot
@@ -67,23 +78,34 @@ def run_robot(robot: Robot, shared: Shared) -> int:
     try:
         with ExitStack() as stack:
             stack.callback(shared.crews.dismiss, robot.id)
-            session = _open(robot, shared, stack)
-            code, over = session.run() if session is not None else (OK, True)
-            if over:
-                shared.slots.leave(robot.id)
-            return code
-    except Ordered as order:
+            code, over = _run(robot, shared, stack)
+    except Fault as fault:
+        say(f"{robot.id!r}: {fault}")
+        code, over = CODES.get(fault.event, FAILED), True
+    except FAILURES as error:
+        say(f"{robot.id!r}: the program itself fails: {''.join(format_exception(error))}")
+        code, over = FAILED, True
+    if over:
         shared.slots.leave(robot.id)
+    return code
+
+
+def _run(robot: Robot, shared: Shared, stack: ExitStack) -> tuple[int, bool]:
+    """Return the exit code of a robot, and whether its program is over: one that is suspended is not.
+
+    Raises:
+        Fault: its log or its link cannot be opened, or its program has ended otherwise.
+    """
+    try:
+        session = _open(robot, shared, stack)
+    except Ordered as order:
         if shared.options.resume:
             order.receipt.refuse("its vehicle was not heard, and was told nothing")
         else:
             order.receipt.confirm("there was no vehicle yet")
         say(f"{robot.id!r}: {order}")
-        return CODES[order.event]
-    except Fault as fault:
-        shared.slots.leave(robot.id)
-        say(f"{robot.id!r}: {fault}")
-        return CODES.get(fault.event, FAILED)
+        return CODES[order.event], True
+    return session.run() if session is not None else (OK, True)
 
 
 class Session:
@@ -117,14 +139,46 @@ class Session:
         try:
             self._crew.pilot.fly()
         except (Strange, Alone) as fault:
-            return ending.refuse(fault)
+            return self._end(ending, partial(ending.refuse, fault))
         except Fault as fault:
-            return ending.end(fault)
-        except Exception as error:
-            say("".join(format_exception(error)))
-            return ending.end(Fault(CRASHED, f"the program itself fails: {error!r}"))
+            return self._end(ending, partial(ending.end, fault))
+        except FAILURES as error:
+            return self._end(ending, partial(ending.end, self._failure(error)))
         self._crew.say("done")
         return OK
+
+    def _end(self, ending: Ending, end: Callable[[], int]) -> int:
+        """Return the exit code of how a program is ended; where that fails itself, of what is left to do."""
+        try:
+            return end()
+        except FAILURES as error:
+            fault = self._failure(error)
+        if not self._crew.obedience.hands_off:
+            try:
+                return ending.end(fault)
+            except FAILURES as error:
+                self._failure(error)
+        self._stay_on()
+        return FAILED
+
+    def _failure(self, error: BaseException) -> Fault:
+        """Tell where the program itself has failed, and return that as a fault."""
+        trace = "".join(format_exception(error))
+        say(trace)
+        self._crew.desk.box.write("failed", error=repr(error), trace=trace)
+        return Fault(CRASHED, f"the program itself fails: {error!r}")
+
+    def _stay_on(self) -> None:
+        """Send nothing but heartbeats until the motors are off, or the vehicle is not heard any more."""
+        crew, shared = self._crew, self._shared
+        if crew.link is None:
+            return
+        crew.say("is told nothing any more: take over by hand; heartbeats go on until its motors are off")
+        limit = crew.desk.clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
+        while crew.vehicle.state().armed and crew.link.listening and crew.link.silent_for() < limit:
+            crew.obedience.refuse_all("its program itself has failed")
+            if shared.abandon.wait(GLANCE_SECONDS):
+                return
 
     def _lose(self) -> bool:
         """Have it known that the robot's link is lost; return whether others still work."""
@@ -231,7 +285,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch.unkept = lambda: shared.slots.trouble(robot.id)
     watch.decide = pilot.journal.decide
     watch.say = lambda line: say(f"{robot.id!r} {line}")
-    return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop)
+    return Crew(robot, vehicle, link, watch, obedience, desk, pilot, options.on_stop, options.tolerances.home)
 
 
 def _meeting(robot: Robot, shared: Shared) -> Meet | None:

@@ -8,7 +8,8 @@ from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
 from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.steps.obeying import obeying, undone
-from mmrs_core.flight.steps.responses import LAND, NEEDS_POSITION, respond
+from mmrs_core.flight.steps.responding import respond
+from mmrs_core.flight.steps.responses import LAND, NEEDS_POSITION
 from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend_moves import Moves
@@ -27,12 +28,19 @@ class Response:
     """
 
     def __init__(
-        self, robot: Robot, vehicle: MavlinkVehicle, watch: Watch, moves: Moves, say: Callable[[str], None]
+        self,
+        robot: Robot,
+        vehicle: MavlinkVehicle,
+        watch: Watch,
+        moves: Moves,
+        say: Callable[[str], None],
+        near_home: float,
     ) -> None:
-        """Respond to nothing yet."""
+        """Respond to nothing yet; within `near_home` metres from home, it has come home."""
         self.name = ""
         self.holds = self.hands_off = False
         self._robot, self._vehicle, self._watch, self._moves, self._say = robot, vehicle, watch, moves, say
+        self._near_home = near_home
         self._handled: set[str] = set()
         self._shown: Callable[[], bool] = lambda: False
         self._instead = ""
@@ -73,7 +81,7 @@ class Response:
     @property
     def undone(self) -> str:
         """Return why the vehicle has not done it, although nothing is left to do; empty where it has."""
-        return self._instead or undone(self.name, self._robot, self._vehicle)
+        return self._instead or undone(self.name, self._robot, self._vehicle, self._near_home)
 
     def _let_go(self) -> Job:
         self.hands_off = True

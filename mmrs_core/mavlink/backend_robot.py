@@ -50,9 +50,11 @@ class MavlinkBackend:
         self._move = ""
         self._passed: set[str] = set()
         self._under_way: tuple[str, ...] = ()
-        self._response = Response(robot, equipment.vehicle, self._watch, self._moves, equipment.say)
-        self._reach = Reach(equipment.link, equipment.clock)
         self._tolerance = options.home_tolerance
+        self._response = Response(
+            robot, equipment.vehicle, self._watch, self._moves, equipment.say, self._tolerance
+        )
+        self._reach = Reach(equipment.link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
         self._seen: VehicleFault | None = None
         # Last: it looks at all of the above from now on.

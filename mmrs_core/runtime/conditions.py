@@ -8,7 +8,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.conditions import is_standard, standard, truth
-from mmrs_core.flight.faults import CONDITION_FAILED
+from mmrs_core.flight.faults import CONDITION_FAILED, FAILURES
 
 
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
@@ -43,7 +43,7 @@ def decided(condition: Condition, know: Callable[[], RobotState]) -> bool | Faul
         return truth(condition.holds(state))
     except LinkLostError:
         raise
-    except Exception as error:  # a condition is foreign code: whatever it raises is the robot's fault
+    except FAILURES as error:  # a condition is foreign code: whatever it raises is the robot's fault
         return Fault(CONDITION_FAILED, f"condition '{identifier}' fails: {type(error).__name__}: {error}")
 
 

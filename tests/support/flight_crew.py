@@ -74,8 +74,8 @@ def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
         Step(name, movement, then=then)
         for (name, movement), then in zip(moves, [*following, None], strict=True)
     )
-    given = {"home": HOME, "start": "start", "reserve": 0.1} | more
-    return Robot(id, f"{id}.jsonl", "copter", steps=steps, policies=policies, fleet=(id,), **given)
+    given = {"home": HOME, "start": "start", "reserve": 0.1, "vehicle": "copter"} | more
+    return Robot(id, f"{id}.jsonl", steps=steps, policies=policies, fleet=(id,), **given)
 
 
 @dataclass

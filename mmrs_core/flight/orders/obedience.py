@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from ..clock import Clock
 from ..faults import ORDERED, STOPPED, Fault, Stopped
+from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .orders import HOLD, LAND, RESUME, STOP, Inbox, Receipt
+from .orders import HOLD, RESUME, STOP, Inbox, Receipt
 
+OVERTAKEN = "something else was ordered since"
 GLANCE_SECONDS = 0.1
 """Real seconds between two looks into the inbox while the robot is held."""
-
-OBEYED_IN = {
-    HOLD: frozenset({"hold", "surface"}),
-    LAND: frozenset({"land", "surface", "hold"}),
-}
-"""Modes in which a vehicle that was told so does what it was told."""
 
 
 class Again(Exception):  # noqa: N818  # no error: what was interrupted is to be done once more
@@ -47,7 +43,9 @@ class Obedience:
     """Takes orders from a robot's inbox, in the robot's own thread.
 
     A hold is obeyed inside the wait that it meets: the vehicle halts, the hold is confirmed, and the
-    wait goes on after `resume`; a movement is then begun again. All other orders end the program.
+    wait goes on after `resume`; a movement is then begun again. All other orders end the program. Whatever
+    it takes from the inbox is answered: when the vehicle is seen to obey, when something else is ordered
+    or happens before, or when it is closed.
 
     Attributes:
         ended: whether the program has ended, so that it cannot go on.
@@ -127,16 +125,23 @@ class Obedience:
         self._vehicle.regain()
 
     def expect(self, receipt: Receipt, obeyed: Callable[[], bool]) -> None:
-        """Confirm an order as soon as the vehicle is seen to obey it."""
+        """Confirm an order as soon as the vehicle is seen to obey it; refuse the one before it."""
+        if self._pending is not None and self._pending is not receipt:
+            self._pending.refuse(OVERTAKEN)
         self._pending, self._obeyed = receipt, obeyed
 
-    def settle(self, refusal: str = "") -> None:
-        """Confirm, or refuse, an order that was expected and not seen to be obeyed."""
+    def conclude(self, undone: str = "") -> None:
+        """Confirm the order that was expected: all is done, and was seen; or refuse it, as `undone` says."""
         pending, self._pending = self._pending, None
-        if pending is not None and refusal:
-            pending.refuse(refusal)
+        if pending is not None and undone:
+            pending.refuse(undone)
         elif pending is not None:
             pending.confirm()
+
+    def overtake(self, by: Fault) -> None:
+        """Refuse the order that was expected, as it is overtaken, unless that is what has happened."""
+        if self._pending is not None and not (isinstance(by, Ordered) and by.receipt is self._pending):
+            self.conclude(str(by))
 
     def awaits_resume(self, why_not: Callable[[str], str]) -> Receipt | None:
         """Return the order by which a robot on the ground is to go on, having looked into the inbox once.
@@ -152,7 +157,7 @@ class Obedience:
             return None
         name = receipt.order.name
         if name == STOP:
-            raise Ordered(receipt)
+            raise self._ends(receipt)
         if why := why_not(name):
             receipt.refuse(why)
         elif name == RESUME:
@@ -163,8 +168,8 @@ class Obedience:
 
     def close(self, why: str) -> None:
         """Refuse what was taken and will not be obeyed any more."""
-        self.settle(why)
         self._forget_early(why)
+        self.conclude(why)
 
     def refuse_all(self, why: str) -> None:
         """Refuse what was ordered since."""
@@ -180,13 +185,18 @@ class Obedience:
         if name == HOLD:
             self._hold(receipt)
         elif name != RESUME:
-            self._forget_early("something else was ordered since")
-            raise Ordered(receipt)
+            self._forget_early(OVERTAKEN)
+            raise self._ends(receipt)
         elif self._early:
             self._forget_early("it is to go on")
             receipt.confirm("it goes on once there is a vehicle")
         else:
             receipt.refuse("its program has ended" if self._over else "it is not held")
+
+    def _ends(self, receipt: Receipt) -> Ordered:
+        """Return that an order ends the program; who carries it out knows how it is seen to be obeyed."""
+        self.expect(receipt, lambda: False)
+        return Ordered(receipt)
 
     def _forget_early(self, why: str) -> None:
         while self._early:
@@ -200,27 +210,34 @@ class Obedience:
             self._early.append(receipt)
             return
         self._held, moving = True, self._moving
+        taken = [receipt, *others]
         try:
-            evidence = vehicle.evidence()
-            self.expect(receipt, lambda: evidence.in_mode(OBEYED_IN[HOLD]))
-            vehicle.hold()
-            self.settle()
-            for other in others:
-                other.confirm()
+            self._halt(vehicle, taken)
             if self._over:
                 return
             self._say("is held; waits for an order")
-            self.expect(self._await_resume(vehicle), lambda: False)
-            vehicle.carry_on()
-            self.settle()
-            self._say("goes on")
+            taken.append(self._await_resume(vehicle))
+            self._go_on(vehicle, taken[-1])
         finally:
             self._held = False
-            self.settle("something else has happened")
-            for other in others:
-                other.refuse("something else has happened")
+            for each in taken:
+                each.refuse("something else has happened")
         if moving:
             raise Again
+
+    def _halt(self, vehicle: Vehicle, receipts: Sequence[Receipt]) -> None:
+        """Have the vehicle halt, and confirm the orders to."""
+        evidence = vehicle.evidence()
+        self.expect(receipts[0], lambda: evidence.in_mode(modes.HOLD))
+        vehicle.hold()
+        for each in receipts:
+            each.confirm()
+
+    def _go_on(self, vehicle: Vehicle, receipt: Receipt) -> None:
+        """Have the vehicle be steered again, and confirm the order to."""
+        vehicle.carry_on()
+        receipt.confirm()
+        self._say("goes on")
 
     def _await_resume(self, vehicle: Vehicle) -> Receipt:
         """Return the order to go on; a stop ends the waiting unless it came before the hold."""
@@ -235,7 +252,7 @@ class Obedience:
             elif receipt.order.name == RESUME:
                 return receipt
             else:
-                raise Ordered(receipt)
+                raise self._ends(receipt)
         raise Stopped()
 
     def _confirm_what_is_seen(self) -> None:

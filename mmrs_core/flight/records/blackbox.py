@@ -10,6 +10,7 @@ Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every li
 ``upload``    what, items, seconds
 ``parameter`` name, value, was
 ``decision``  what, why, response
+``failed``    error, trace: what has gone wrong in the program itself
 ``order``     order, confirmed, seconds, why
 ``injected``  fault, state: what was made to go wrong on purpose
 ``wait``      slots, seconds
@@ -43,7 +44,7 @@ LONGEST_END = 1 << 16
 """Bytes at either end of a file in which its first and last lines are looked for."""
 
 DIGITS = 9
-KEPT_AT_ONCE = frozenset({"start", "decision", "order"})
+KEPT_AT_ONCE = frozenset({"start", "decision", "failed", "order"})
 """Kinds that are on the disk when they have been written."""
 
 

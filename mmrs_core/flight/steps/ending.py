@@ -23,7 +23,8 @@ from ..program import Robot
 from ..vehicles.vehicle import Vehicle
 from .obeying import obeying, undone
 from .pilot import Pilot
-from .responses import HOLD, respond, response_to
+from .responding import respond
+from .responses import HOLD, response_to
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -48,6 +49,7 @@ class Crew:
     Attributes:
         link: None in a dry run.
         on_stop: the response when somebody asks the robot to stop.
+        near_home: metres from home within which it has come home.
     """
 
     robot: Robot
@@ -58,6 +60,7 @@ class Crew:
     desk: Desk
     pilot: Pilot
     on_stop: str
+    near_home: float = 20.0
 
     def say(self, words: str) -> None:
         """Tell people something about the robot."""
@@ -94,6 +97,7 @@ class Ending:
         self._leave = leave
         self._lose = lose
         self._handled: set[str] = set()
+        self._logged = False
 
     def end(self, fault: Fault) -> int:
         """Respond to what has ended the program; return the exit code."""
@@ -102,7 +106,7 @@ class Ending:
         self._tell(fault, response)
         if not self.suspended:
             self._log(fault)
-        crew.obedience.settle(str(fault))
+        crew.obedience.overtake(fault)
         self.down = False
         first = fault
         while True:
@@ -110,7 +114,7 @@ class Ending:
                 self._carry_out(fault, response)
                 break
             except Fault as other:
-                crew.obedience.settle(str(other))
+                crew.obedience.overtake(other)
                 if isinstance(other, Ordered):
                     first = other if self.suspended else first
                 elif other.event == LINK_LOST:
@@ -132,7 +136,7 @@ class Ending:
         A log that others will go on with, or which can still begin, is left as it is.
         """
         self._tell(fault, NOTHING)
-        self._crew.obedience.settle(str(fault))
+        self._crew.obedience.overtake(fault)
         if self.down:
             self.suspended = True
             return FAILED
@@ -162,7 +166,7 @@ class Ending:
             seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
             crew.obedience.expect(fault.receipt, seen)
         holds = respond(response, crew.robot, crew.vehicle, crew.pilot.track, crew.obedience.repeat)
-        crew.obedience.settle(undone(response, crew.robot, crew.vehicle))
+        crew.obedience.conclude(undone(response, crew.robot, crew.vehicle, crew.near_home))
         crew.watch.moving = holds
         if holds and fault.event == STOPPED:
             self._leave_it_holding()
@@ -184,6 +188,10 @@ class Ending:
         self._crew.pilot.journal.decide(fault.event, str(fault), response)
 
     def _log(self, fault: Fault) -> None:
+        """Log what has ended the program; nothing that comes after that is logged."""
+        if self._logged:
+            return
+        self._logged = True
         try:
             self._crew.pilot.journal.fail(fault.event)
         except Fault as error:

@@ -5,18 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import hypot
 
-from ..orders.obedience import OBEYED_IN
-from ..orders.orders import HOLD, LAND
 from ..places import offset
-from ..policies import COMES_DOWN
 from ..program import Robot
 from ..vehicles.vehicle import Vehicle
-from .ways import Track, way_back
-
-STOP_THRUST = "STOP_THRUST"
-RETURN = "RETURN"
-AT_HOME = 20.0
-"""Metres from home within which a robot has come home, as far as positions tell."""
+from .responding import OFF, course_of
+from .responses import RETURN
+from .ways import Track
 
 
 def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Callable[[], bool]:
@@ -28,22 +22,19 @@ def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Call
         vehicle: that carries it out.
         track: the places that the robot has passed, by which it goes back.
     """
-    if response == STOP_THRUST:
-        return lambda: not vehicle.state().armed
-    evidence = vehicle.evidence()
-    goal = next(way_back(robot, response, track, vehicle.state().place), None)
-    if goal is None:
-        wanted = OBEYED_IN[LAND if response in COMES_DOWN else HOLD]
-        return lambda: evidence.in_mode(wanted)
-    return lambda: evidence.bound_for(goal, robot.cruise)
+    evidence, course = vehicle.evidence(), course_of(response, robot, vehicle, track)
+    if course.places:
+        _, goal = course.places[0]
+        return lambda: evidence.bound_for(goal, robot.cruise)
+    return evidence.is_off if course.rest == OFF else lambda: evidence.in_mode(course.rest)
 
 
-def undone(response: str, robot: Robot, vehicle: Vehicle) -> str:
+def undone(response: str, robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
     """Return why a vehicle has not done what it was told to, although nothing is left to do; or nothing.
 
-    One whose motors are off elsewhere than at home does not return.
+    One whose motors are off further from home than `tolerance`, metres, does not return.
     """
-    away = astray(robot, vehicle, AT_HOME)
+    away = astray(robot, vehicle, tolerance)
     return away if response == RETURN and not vehicle.state().armed else ""
 
 

@@ -154,7 +154,7 @@ class Pilot:
             for action in still_on(self._robot, records):
                 self._doing.operate(action)
 
-        self._obedience.settle()
+        self._obedience.conclude()
 
     def lacks_energy(self) -> str:
         """Return why the battery is not to be flown with; empty where it is, or nobody knows."""

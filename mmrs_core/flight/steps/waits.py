@@ -8,7 +8,7 @@ from math import inf
 
 from ..conditions import awaiting, question_of, truth
 from ..desk import Desk
-from ..faults import CONDITION_FAILED, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
+from ..faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
 from ..program import Choose, Policy, Robot, Then
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
@@ -131,7 +131,7 @@ class Waits:
         try:
             found = self._desk.conditions[condition](state)
             holds = None if found is None else truth(found)
-        except Exception as error:
+        except FAILURES as error:
             raise Fault(CONDITION_FAILED, f"condition {condition!r} fails: {error!r}") from error
         if holds is not None:
             self._desk.questions.use_up(heard)

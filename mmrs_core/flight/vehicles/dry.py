@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 
 from ..clock import Clock
 from ..places import at_height, bearing, distance
@@ -122,9 +122,13 @@ class DryVehicle:
         """Return itself: it does what it is told."""
         return self
 
-    def in_mode(self, wanted: Collection[str]) -> bool:
-        """Return whether it is in one of these modes."""
-        return self._mode in wanted
+    def in_mode(self, mode: str) -> bool:
+        """Return whether it is in a mode."""
+        return self._mode == mode
+
+    def is_off(self) -> bool:
+        """Return that it is: there are no motors."""
+        return True
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
         """Return that it goes wherever it was told."""

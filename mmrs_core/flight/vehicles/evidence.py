@@ -9,7 +9,6 @@ nothing drifts.
 from __future__ import annotations
 
 import time
-from collections.abc import Collection
 from math import cos, hypot, radians
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -49,12 +48,17 @@ class LinkEvidence:
         self._asked: dict[str, float] = {}
         self._first: float | None = None
 
-    def in_mode(self, wanted: Collection[str]) -> bool:
-        """Return whether a heartbeat has shown one of these modes since, in the runtime's words."""
-        if self._told_since(HEARTBEAT):
-            return modes.word_of(self._link, self._kind, self._telemetry.mode()) in wanted
-        self._ask(HEARTBEAT)
-        return False
+    def in_mode(self, mode: str) -> bool:
+        """Return whether a heartbeat has shown since that it is in a mode, in the runtime's words.
+
+        Where it has no mode in which to surface, it holds instead.
+        """
+        wanted = mode if mode in modes.modes_of(self._link, self._kind) else modes.HOLD
+        return self._beats() and self._word() == wanted
+
+    def is_off(self) -> bool:
+        """Return whether a heartbeat has shown since that the motors are off."""
+        return self._beats() and not self._telemetry.armed()
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
         """Return whether the vehicle is steered, and goes to a place, or is there.
@@ -63,7 +67,7 @@ class LinkEvidence:
             place: that it was told.
             speed: metres per second that it was told; None: as fast as it goes.
         """
-        if modes.word_of(self._link, self._kind, self._telemetry.mode()) != modes.GUIDED:
+        if self._word() != modes.GUIDED:
             return False
         if self._link.clock.now() - self._link.silent_for() <= self._begun:
             return False
@@ -90,6 +94,16 @@ class LinkEvidence:
         needed = BRISK if speed is None else max(SLOWEST, min(BRISK, speed / 2.0))
         along = sum(p * q for p, q in zip(way, velocity, strict=True))
         return pace >= needed and along >= STRAIGHT * pace * hypot(*way)
+
+    def _word(self) -> str:
+        return modes.word_of(self._link, self._kind, self._telemetry.mode())
+
+    def _beats(self) -> bool:
+        """Return whether a heartbeat has come since; if not, ask for one."""
+        if self._told_since(HEARTBEAT):
+            return True
+        self._ask(HEARTBEAT)
+        return False
 
     def _told_since(self, kind: str) -> bool:
         return self._link.clock.now() - self._link.since(kind) > self._begun

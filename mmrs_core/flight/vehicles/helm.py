@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..services.commands import ask, command
+from ..services.commands import Unanswered, ask, command
 from . import modes
 from .habits import ArduPilot, Habits
 from .px4 import Px4
@@ -52,6 +52,7 @@ class Helm:
         self._habits: Habits | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
+        self._arming = False
         self.insists: Callable[[Fault], bool] = lambda fault: False
 
     @property
@@ -202,14 +203,17 @@ class Helm:
         """
         if self._telemetry.armed():
             return
+        self._arming = True
         try:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
         except Refused as error:
+            self._arming = isinstance(error, Unanswered)
             self._link.wait(lambda: None, WORDS_SECONDS)
             said = self._telemetry.texts.refusals(REPEATED_SECONDS)
             why = "; ".join(said or self._telemetry.lacks())
             raise Refused(f"{error}{': ' if why else ''}{why}") from error
         self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
+        self._arming = False
 
     def leave_ground(self, height: float) -> None:
         """Arm and take off, again where the vehicle has disarmed itself in between.
@@ -243,6 +247,22 @@ class Helm:
         """
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
         self.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to disarm")
+
+    def motors_may_run(self) -> bool:
+        """Return whether the vehicle is armed, or was told to arm, and may be by now."""
+        return self._telemetry.armed() or self._arming
+
+    def stops_motors(self) -> bool:
+        """Stop the motors of a vehicle on the ground; return whether they are off.
+
+        One that is leaving the ground, although it did not say so yet, refuses.
+        """
+        try:
+            self.disarm()
+        except Refused:
+            return False
+        self._arming = False
+        return True
 
     def pace(self, speed: float | None) -> None:
         """Go at a speed in metres per second from now on; None: as before."""

@@ -247,7 +247,7 @@ class MavlinkVehicle:
         tell(self._link, text)
 
     def hold(self) -> bool:
-        """Halt and stay, and return when the vehicle does; on the ground, disarm.
+        """Halt and stay, and return when the vehicle does; on the ground, when its motors are off.
 
         Returns:
             Whether it is still armed, so that somebody must watch it.
@@ -255,17 +255,16 @@ class MavlinkVehicle:
         Raises:
             Refused: it does not halt.
         """
-        if not self._telemetry.armed():
+        if not self._helm.motors_may_run():
             return False
-        if self._telemetry.grounded():
-            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+        if (self._telemetry.grounded() or not self._telemetry.armed()) and self._helm.stops_motors():
             return False
         self._helm.enter(modes.HOLD)
         begun = self._link.clock.now()
         stands = partial(self._telemetry.still_since, begun, STILL)
         if not self._link.wait(stands, PATIENCE_SECONDS, heard=True):
             raise Refused("the vehicle does not come to a halt")
-        return True
+        return self._telemetry.armed()
 
     def carry_on(self) -> None:
         """Go on being steered after a hold, where the vehicle is; nothing happens on the ground."""
@@ -308,6 +307,7 @@ class MavlinkVehicle:
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""
         command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
+        self._helm.until(lambda: not self._telemetry.armed(), MODE_SECONDS, "to stop its motors")
 
     def finish(self) -> None:
         """End the mission: a vehicle that does not fly is disarmed, one that does is not."""

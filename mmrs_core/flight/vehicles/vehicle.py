@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -46,8 +46,12 @@ class State:
 class Evidence(Protocol):
     """Shows whether a vehicle obeys, by what it has told since an instant."""
 
-    def in_mode(self, wanted: Collection[str]) -> bool:
-        """Return whether it has shown one of these modes since, in the runtime's words."""
+    def in_mode(self, mode: str) -> bool:
+        """Return whether it has shown since that it is in a mode, in the runtime's words."""
+        ...
+
+    def is_off(self) -> bool:
+        """Return whether it has shown since that its motors are off."""
         ...
 
     def bound_for(self, place: Place, speed: float | None) -> bool:
@@ -111,7 +115,7 @@ class Vehicle(Protocol):
         ...
 
     def hold(self) -> bool:
-        """Halt and stay, and return when it does; say whether it must be watched from then on."""
+        """Halt and stay, on the ground with the motors off; return, when it does, whether they run."""
         ...
 
     def carry_on(self) -> None:

@@ -223,7 +223,7 @@ def test_an_order_that_another_fault_overtakes_before_it_is_seen_is_not_confirme
 class Unseen:
     """Shows nothing, as a vehicle that tells no target."""
 
-    def in_mode(self, wanted):
+    def in_mode(self, mode):
         return False
 
     def bound_for(self, place, speed):

@@ -57,10 +57,10 @@ def beat(mode: int):
 
 def test_a_mode_that_was_shown_before_the_order_proves_nothing():
     with watched(mode=COPTER_BRAKE) as (evidence, say, wire):
-        assert not evidence.in_mode({HOLD})
+        assert not evidence.in_mode(HOLD)
         say(beat(COPTER_BRAKE))
-        assert evidence.in_mode({HOLD})
-        assert not evidence.in_mode({GUIDED})
+        assert evidence.in_mode(HOLD)
+        assert not evidence.in_mode(GUIDED)
         (asked,) = wire.of("COMMAND_LONG")
         assert (asked.command, asked.param1) == (mavlink.MAV_CMD_REQUEST_MESSAGE, 0)
 

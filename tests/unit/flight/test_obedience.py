@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import pytest
-from flight_crew import NORTH, in_background
+from flight_crew import NORTH, in_background, manned
 from patience import until
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Stopped
+from mmrs_core.flight.faults import Fault, Stopped
 from mmrs_core.flight.orders.obedience import Obedience, Ordered
 from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.places import distance
+from mmrs_core.flight.services.uploads import Uploads
+
+ARM = (400, 1.0)
+"""MAV_CMD_COMPONENT_ARM_DISARM, and its first parameter."""
 
 
 @pytest.fixture
@@ -90,6 +95,40 @@ def test_a_hold_before_the_vehicle_is_known_is_confirmed_by_motors_that_are_off(
     done.result(20.0)
 
 
+def test_a_hold_while_the_motors_start_is_confirmed_when_they_are_seen_to_be_off(tmp_path):
+    with manned(tmp_path) as made:
+        crew, seen = made.crew, []
+
+        def arms(message, outgoing):
+            if outgoing and message.get_type() == "COMMAND_LONG" and (message.command, message.param1) == ARM:
+                seen or seen.append(made.inbox.give(Order("hold")))
+
+        crew.vehicle.prepare(Uploads())
+        crew.link.observe(arms)
+        done = in_background(lambda: crew.obedience.repeat(lambda: crew.vehicle.take_off(10.0)))
+        until(lambda: seen and seen[0].confirmed is not None)
+        assert seen[0].confirmed
+        until(lambda: any(number == ARM[0] for _, number, _ in made.simulated.autopilot.history))
+        time.sleep(0.2)
+        assert not made.simulated.autopilot.armed
+        resumed = made.inbox.give(Order("resume"))
+        done.result(20.0)
+        assert resumed.confirmed
+        assert made.simulated.autopilot.body.position[2] == pytest.approx(10.0, abs=0.6)
+
+
+def test_a_hold_of_a_robot_that_is_just_leaving_the_ground_keeps_it_in_the_air(robot):
+    told = robot.crew.vehicle.telemetry
+    told.grounded = lambda: True
+    held = robot.inbox.give(Order("hold"))
+    done = in_background(lambda: robot.crew.vehicle.rest(1.0))
+    until(lambda: held.confirmed is not None)
+    assert (held.confirmed, robot.mode) == (True, "brake")
+    assert robot.simulated.autopilot.armed
+    robot.inbox.give(Order("resume"))
+    done.result(20.0)
+
+
 @pytest.mark.parametrize("name", ["return", "land"])
 def test_an_order_that_ends_the_program_ends_a_hold_too(robot, name):
     done = go_north(robot)
@@ -154,8 +193,27 @@ def test_what_was_expected_and_never_seen_is_refused_with_the_reason(robot):
     robot.crew.obedience.expect(receipt, lambda: False)
     robot.crew.obedience.check()
     assert receipt.confirmed is None
-    robot.crew.obedience.settle("the link is lost")
+    robot.crew.obedience.overtake(Fault("LINK_LOST", "the link is lost"))
     assert (receipt.confirmed, receipt.why) == (False, "the link is lost")
+
+
+def test_an_order_is_refused_when_another_one_comes_before_it_was_seen_to_be_obeyed(alone):
+    obedience, inbox = alone
+    given = [inbox.give(Order(name)) for name in ("return", "land")]
+    for _ in given:
+        with pytest.raises(Ordered):
+            obedience.check()
+    assert (given[0].confirmed, given[0].why) == (False, "something else was ordered since")
+    assert given[1].confirmed is None
+
+
+def test_an_order_that_nobody_has_carried_out_is_refused_at_the_end(alone):
+    obedience, inbox = alone
+    given = inbox.give(Order("land"))
+    with pytest.raises(Ordered):
+        obedience.check()
+    obedience.close("its program has ended")
+    assert (given.confirmed, given.why) == (False, "its program has ended")
 
 
 @pytest.fixture

@@ -1,0 +1,112 @@
+"""Carries out what a robot does when something has gone wrong, or when somebody orders it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from ..policies import NOTHING
+from ..program import Place, Robot
+from ..vehicles import modes
+from ..vehicles.vehicle import Vehicle
+from .responses import ESCAPE, LAND, RETURN
+from .ways import Track, steps_back
+
+SURFACE = "SURFACE"
+STOP_THRUST = "STOP_THRUST"
+OFF = "off"
+"""To stop the motors, whatever happens then."""
+
+RESTS: Mapping[str, Mapping[str, str]] = {
+    "copter": {LAND: modes.LAND, SURFACE: modes.HOLD},
+    "sub": {LAND: modes.SURFACE, SURFACE: modes.SURFACE},
+    "rover": {LAND: modes.HOLD, SURFACE: modes.HOLD},
+}
+"""The mode in which each kind of vehicle comes down, or up: a rover stops, and a copter cannot surface."""
+
+Movement = Callable[[], None]
+Repeat = Callable[[Movement], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """What a response comes to, for one robot where it is.
+
+    Attributes:
+        places: that it goes to first, each with its number in the track; None: not on it.
+        rest: the mode in which it comes to rest then, or `OFF`.
+        stays: whether somebody must watch it there, as long as its motors run.
+    """
+
+    places: tuple[tuple[int | None, Place], ...]
+    rest: str
+    stays: bool
+
+
+def course_of(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Course:
+    """Return what a response comes to now.
+
+    Args:
+        response: as in policies, but not ``NOTHING``.
+        robot: its program.
+        vehicle: that carries it out.
+        track: the places that the robot has passed, by which it goes back.
+    """
+    down = RESTS[robot.vehicle]
+    if response in (RETURN, ESCAPE):
+        flies, state = robot.vehicle == "copter", vehicle.state()
+        if (flies and not state.armed) or not (track or flies):
+            return Course((), modes.HOLD, True)
+        return Course(tuple(steps_back(robot, response, track, state.place)), down[LAND], False)
+    if response == STOP_THRUST:
+        return Course((), OFF, False)
+    return Course((), down.get(response, modes.HOLD), response not in down)
+
+
+def respond(
+    response: str, robot: Robot, vehicle: Vehicle, track: list[tuple[str, Place]], repeat: Repeat
+) -> bool:
+    """Carry out a response.
+
+    Args:
+        response: as in policies, or ``NOTHING``.
+        robot: whose program it was.
+        vehicle: its vehicle.
+        track: the places it has passed, with the moves that ended there; what it has gone back is
+            taken off, so that another response begins where this one was left.
+        repeat: carries out a movement, again if it was held in the middle of it.
+
+    Returns:
+        Whether the vehicle now holds and somebody must watch it.
+
+    Raises:
+        Fault: the response cannot be carried out either.
+    """
+    if response == NOTHING:
+        return False
+    vehicle.take_back()
+    course = course_of(response, robot, vehicle, track)
+    for index, place in course.places:
+        repeat(partial(vehicle.go_to, place, robot.cruise, None, True))
+        if index is not None:
+            del track[index + 1 :]
+    if course.stays:
+        return vehicle.hold()
+    _come_to_rest(course.rest, vehicle, repeat)
+    return False
+
+
+def _come_to_rest(rest: str, vehicle: Vehicle, repeat: Repeat) -> None:
+    if rest == modes.LAND:
+        repeat(vehicle.land)
+    elif rest == modes.SURFACE:
+        repeat(vehicle.surface)
+    elif rest == OFF:
+        vehicle.disarm()
+    else:
+        repeat(lambda: _halt(vehicle))
+
+
+def _halt(vehicle: Vehicle) -> None:
+    vehicle.hold()
