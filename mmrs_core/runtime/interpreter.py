@@ -258,20 +258,23 @@ class _Run:
         event = robot.next_event(robot.looked)
         if event is None or event <= robot.looked:
             event = now + PACE
-        unsure = robot.notify.delivery is not None or robot.wait.question or robot.held
+        unsure = robot.notify.delivery is not None or robot.wait.question
         if unsure or (not self._whole and robot.point.phase is Phase.OUT):
             event = min(event, now + PACE)
         return event
 
     def _next_wake(self) -> float:
         """Return when to look again; inf where nothing is foreseen."""
-        looks = min(self._patience_ends(), self._next_look_at_stopped())
+        looks = min(self._patience_ends(), self._next_look_around())
         if self._is_quiet() and not self._is_patient():
             return looks
         return min(self._agenda.next_time, looks)
 
-    def _next_look_at_stopped(self) -> float:
-        if self._stopping.busy:
+    def _next_look_around(self) -> float:
+        """Return when to look again at robots that have stopped, or have still to be seen to obey."""
+        if not self._clock.passes_by_itself:
+            return inf
+        if self._stopping.busy or self._obedience.busy:
             return self._clock.now() + PACE
         return self._clock.now() + WATCH_PACE if self._stopping.watching else inf
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 
 from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.policies import NOTHING
+from mmrs_core.flight.policies import COMES_DOWN, NOTHING
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -25,27 +26,29 @@ class Obedience:
         self._open: list[Order] = []
         self._waiting: list[tuple[Order, str]] = []
 
+    @property
+    def busy(self) -> bool:
+        """Return whether an order waits, or has still to be seen to be obeyed."""
+        return bool(self._open)
+
     def obey(self) -> tuple[str, ...]:
         """Have robots do what was ordered, and see who has; return the robots to be looked at."""
-        concerned: list[str] = []
         for order in self._orders.taken():
             self._open.append(order)
-            concerned += (id for id in order.robots if id in self._robots)
             self._waiting += ((order, id) for id in order.robots)
-        waiting, self._waiting = self._waiting, []
-        for order, id in waiting:
-            if self._in_doubt(id):
-                self._waiting.append((order, id))
-            else:
-                self._begin(order, id)
+        begun = self._due()
+        for order, id in begun:
+            self._begin(order, id)
         for order in self._open:
             self._look(order)
             self._note(order)
         self._open = [order for order in self._open if not order.settled.is_set()]
-        return tuple(concerned)
+        return tuple(id for _, id in begun if id in self._robots)
 
     def stopped(self, id: str, stopping: bool, trouble: Fault | None) -> None:
         """Tell the orders that ended a robot's program what became of it."""
+        robot = self._robots[id]
+        robot.down = not stopping and trouble is None and robot.response in COMES_DOWN
         for order in self._open:
             began = (order, id) not in self._waiting
             if id in order.responses and id in order.open and began and not stopping:
@@ -61,6 +64,20 @@ class Obedience:
         for order in self._open:
             for id in order.open:
                 order.refuse(id, "the run has ended")
+
+    def _due(self) -> list[tuple[Order, str]]:
+        """Return the orders that wait no longer, in the order in which they were given."""
+        doubtful = {id for _, id in self._waiting if self._in_doubt(id)}
+        begun = [(order, id) for order, id in self._waiting if id not in doubtful]
+        self._waiting = [(order, id) for order, id in self._waiting if id in doubtful]
+        return begun
+
+    def _overtake(self, robot: RunningRobot, by: Order, *kinds: str) -> None:
+        """Refuse what a robot was ordered before and was not seen to do, since it now does something else."""
+        before = takewhile(lambda order: order is not by, self._open)
+        for order in before:
+            if order.kind in kinds and robot.id in order.open and (order, robot.id) not in self._waiting:
+                order.refuse(robot.id, f"{by.kind} was ordered since")
 
     def _note(self, order: Order) -> None:
         for id in {*order.confirmed, *order.refused}:
@@ -87,6 +104,7 @@ class Obedience:
         elif self._stands(robot):
             self._obey_on_the_ground(order, robot)
         else:
+            self._overtake(robot, order, HOLD, RESUME)
             which = STOPPED if order.kind == STOP else ORDERED
             order.responses[id] = self._orders.response(order.kind)
             robot.end_by(Fault(which, f"order to {order.kind}"), order.responses[id])
@@ -108,6 +126,7 @@ class Obedience:
         elif not isinstance(robot.backend, Pausable):
             order.refuse(robot.id, "its backend cannot pause")
         else:
+            self._overtake(robot, order, RESUME)
             robot.held = True
             robot.backend.pause(self._clock.now())
 
@@ -121,6 +140,7 @@ class Obedience:
         elif robot.suspended:
             self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
+            self._overtake(robot, order, HOLD)
             robot.backend.resume(self._clock.now())
             robot.held = False
         else:
@@ -128,8 +148,11 @@ class Obedience:
 
     def _stands(self, robot: RunningRobot) -> bool:
         """Return whether it came down for its battery, and is there."""
-        still_flies = isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is True
-        return robot.suspended and not (robot.stopping or robot.is_watched(self._clock.now()) or still_flies)
+        if not robot.suspended or robot.stopping or robot.is_watched(self._clock.now()):
+            return False
+        return robot.down or (
+            isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is False
+        )
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
@@ -198,8 +221,17 @@ class Obedience:
         if robot.ordered is not None:
             return
         if robot.response != order.responses[robot.id]:
-            order.refuse(robot.id, f"something else has happened since: {robot.response}")
-        elif robot.stopping and isinstance(robot.backend, Watched) and robot.backend.obeys(now):
+            order.refuse(robot.id, _since(robot))
+        elif not robot.stopping:
+            self._settle(order, robot)
+        elif isinstance(robot.backend, Watched) and robot.backend.obeys(now):
+            order.confirm(robot.id)
+
+    def _settle(self, order: Order, robot: RunningRobot) -> None:
+        """Answer an order to a robot that nobody waits for: it is taken at its word, or out of reach."""
+        if self._clock.passes_by_itself:
+            order.refuse(robot.id, "its link is lost")
+        else:
             order.confirm(robot.id)
 
     def _goes_on(self, robot: RunningRobot, now: float) -> bool:
@@ -212,8 +244,15 @@ class Obedience:
         """Return why a robot that has stopped has not done what was ordered; empty where it has."""
         robot = self._robots[id]
         if robot.response != order.responses[id]:
-            return f"something else has happened since: {robot.response}"
+            return _since(robot)
         return robot.backend.undone(self._clock.now()) if isinstance(robot.backend, Watched) else ""
+
+
+def _since(robot: RunningRobot) -> str:
+    """Return in words what a robot does instead of what it was ordered."""
+    if robot.response == NOTHING:
+        return "a pilot has taken over"
+    return f"something else has happened since: {robot.response or 'it goes on'}"
 
 
 def _unless_hold(response: str) -> str:

@@ -112,7 +112,7 @@ class Orders:
         """
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
-        order = Order(kind, tuple(robots), question, answer, told)
+        order = Order(kind, tuple(dict.fromkeys(robots)), question, answer, told)
         self._waiting.append(order)
         if self._closed:
             self.close(self._closed)

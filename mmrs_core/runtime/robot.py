@@ -69,6 +69,7 @@ class RunningRobot:
         suspended: whether its program is broken off, until its battery was changed, or because it could not
             be taken up again.
         stopping: whether it has still to confirm that it has stopped.
+        down: whether it has come down, as it was told to, and not gone on since.
         recovering: whether it is on its way back to where its program was broken off.
         questions: that its choices ask the operator.
     """
@@ -85,7 +86,7 @@ class RunningRobot:
         self.number = 0
         self.response = self.broken_off = ""
         self.ordered: tuple[Fault, str] | None = None
-        self.released = self.held = self.suspended = self.stopping = self.recovering = False
+        self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
         conditions = (transition.condition for transition in program.transitions.values())
         self.questions = Questions(each for each in conditions if each is not None)
         self._chosen: bool | None = None
@@ -158,7 +159,7 @@ class RunningRobot:
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
         self.fault, self.suspended, self.response, self.broken_off = None, False, "", ""
-        self.released = False
+        self.released = self.down = False
         self._answered.clear()
         self._forget()
         if isinstance(self.backend, Recovering):

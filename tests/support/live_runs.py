@@ -95,6 +95,9 @@ class Walker:
     def moves(self, now):
         return self.armed
 
+    def told(self):
+        return {"armed": self.armed} if self.heard else {}
+
     def pause(self, now):
         self.halted = True
 

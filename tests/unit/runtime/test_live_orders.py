@@ -165,6 +165,47 @@ def test_no_order_is_obeyed_while_nobody_knows_whether_a_pilot_has_the_robot(liv
     assert walker.stops == ["NOTHING"]
 
 
+def test_an_order_is_obeyed_as_soon_as_it_is_known_that_no_pilot_has_the_robot(live):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].doubted = True
+    order = run.orders.give(LAND, ["r"])
+    time.sleep(0.2)
+    run.script.robots["r"].doubted = False
+    assert order.settled.wait(20.0)
+    assert list(order.confirmed) == ["r"]
+    assert run.script.robots["r"].stops == ["LAND"]
+
+
+def test_a_hold_is_refused_once_the_robot_may_go_on_before_it_was_seen_to_halt(live):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].paused = lambda now: False
+    held = run.orders.give(HOLD, ["r"])
+    assert list(run.order(RESUME).confirmed) == ["r"]
+    assert held.settled.wait(20.0)
+    assert held.refused == {"r": "resume was ordered since"}
+
+
+def test_going_on_is_refused_once_the_robot_is_held_again_before_it_was_seen_to_go_on(live):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    walker = run.script.robots["r"]
+    run.order(HOLD)
+    walker.resume = lambda now: None
+    resumed = run.orders.give(RESUME, ["r"])
+    assert list(run.order(HOLD).confirmed) == ["r"]
+    assert resumed.settled.wait(20.0)
+    assert resumed.refused == {"r": "hold was ordered since"}
+
+
+def test_a_robot_that_is_named_twice_obeys_once(live):
+    run = live(WALK, Script(walk=inf))
+    run.wait_for_step("r begin walk")
+    assert list(run.order(HOLD, "r", "r").confirmed) == ["r"]
+    assert run.order(RESUME, "r", "r").refused == {}
+
+
 def test_a_robot_that_waits_for_slots_obeys_too(live):
     behaviour = program(
         robot("a", [do("h")], waits={"h": ["s"]}), robot("b", [do("walk", after=(notify("a.s"),))])
@@ -322,9 +363,9 @@ def test_people_who_ask_are_told_how_robots_are_in_the_words_of_controllers(live
     behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:go on?", "x", "stop")}))
     run = live(behaviour, Script(ready=0.3), conditions=standard_conditions(["answer:go on?"]))
     standing = run.venture.standing
-    assert standing.status("r") == {"phase": "waits for its vehicle"}
+    assert standing.status("r")["phase"] == "waits for its vehicle"
     run.wait_for(lambda: "asks" in standing.status("r"))
-    assert standing.status("r") == {"phase": "works", "move": "h", "asks": "go on?"}
+    assert standing.status("r") == {"phase": "works", "move": "h", "armed": True, "asks": "go on?"}
     run.orders.give("answer", ["r"], question="go on?", answer=True)
     run.end()
     assert standing.status("r")["phase"] == "has ended"

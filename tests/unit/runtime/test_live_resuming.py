@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from math import inf
 
@@ -11,7 +12,7 @@ from live_runs import TWO, WALK, Script, do
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.orders import HOLD, LAND, RESUME, STOP
+from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.run import inputs_of
 from mmrs_core.runtime.slots import InProcessBus
@@ -127,6 +128,46 @@ def test_a_battery_that_was_not_changed_is_told_and_nothing_moves(live):
     run.script.charge = 0.15
     assert run.order(RESUME, "a").refused == {"a": "its battery is still at 15%"}
     assert run.script.robots["a"].recovered is None
+
+
+def test_a_resume_is_confirmed_when_the_motors_run_and_not_only_when_the_way_back_was_flown(live):
+    run = suspended(live, patience=20.0)
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run.script.seconds["recovered"] = inf
+    walker = run.script.robots["a"]
+    walker.armed = False
+    order = run.orders.give(RESUME, ["a"])
+    run.wait_for(lambda: walker.recovered is not None)
+    time.sleep(0.2)
+    assert order.open == ("a",)
+    walker.armed = True
+    assert order.settled.wait(20.0)
+    assert list(order.confirmed) == ["a"]
+    assert walker.begun[-1] == "recovered"
+
+
+@pytest.mark.parametrize(("kind", "response"), [(HOLD, "HOLD"), (LAND, "LAND"), (RETURN, "RETURN")])
+def test_a_robot_that_failed_to_come_down_for_its_battery_obeys_in_the_air(live, kind, response):
+    run = live(SURVEY, Script(two=inf, stop_RETURN=inf), patience=20.0)
+    run.wait_for_step("a begin two")
+    walker = run.script.robots["a"]
+    walker.fail("BATTERY_LOW")
+    run.wait_for(lambda: walker.stops == ["RETURN"])
+    walker.fail("CRASHED")
+    run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
+    assert list(run.order(kind, "a").confirmed) == ["a"]
+    assert walker.stops == ["RETURN", response]
+
+
+@pytest.mark.parametrize("kind", [HOLD, LAND, RETURN])
+def test_a_robot_that_came_down_stands_also_where_its_motors_are_not_said_to_be_off(live, kind):
+    run = suspended(live, patience=20.0)
+    walker = run.script.robots["a"]
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    assert walker.armed
+    assert list(run.order(kind, "a").confirmed) == ["a"]
+    assert walker.stops == ["RETURN"]
+    assert run.order(RESUME, "a").confirmed
 
 
 def test_a_run_is_resumed_from_its_log(live):
