@@ -276,6 +276,7 @@ class Robot:
         reserve: part of the energy that must be left.
         endurance: seconds that a full battery lasts at the type's mean power; None where nobody knows.
         cruise: metres per second at which the robot goes back; None: the vehicle's own.
+        fastest: metres per second that its type can do through air or water; None where nobody knows.
         descent: metres per second at which it comes down; None where nobody knows.
         fence: polygons to stay out of; tight: what people must know of them.
         rally: places to go to in an emergency.
@@ -312,6 +313,7 @@ class Robot:
     fleet: tuple[str, ...] = field(default=(), kw_only=True)
     neighbours: tuple[tuple[str, Place], ...] = field(default=(), kw_only=True)
     travel: Travel = field(default=Travel(), kw_only=True)
+    fastest: float | None = field(default=None, kw_only=True)
 
     def step(self, move: str) -> Step:
         """Return the step of that move."""

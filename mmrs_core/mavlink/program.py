@@ -222,6 +222,7 @@ def _endurance(context: RobotContext) -> Iterator[tuple[str, object]]:
     for name, value in (
         ("endurance", capability.lifetime),
         ("cruise", metres(cruise)),
+        ("fastest", metres(fastest)),
         ("descent", capability.descent_rate if context.vehicle.flies else None),
     ):
         if value is not None:

@@ -9,6 +9,7 @@ from ..policies import COMES_DOWN
 from ..program import Place, Robot
 from ..vehicles.vehicle import State
 from .ways import Track, way_back
+from .winds import MeanWind
 
 MARGIN = 0.05
 """Part of the whole battery that must be left when the robot has come down."""
@@ -47,6 +48,7 @@ class Reserve:
         self._begun: tuple[float, float] | None = None
         self._counted = -inf
         self._seconds = 0.0
+        self._wind = MeanWind()
 
     def begin(self) -> None:
         """Begin a new sortie, or a new battery."""
@@ -60,7 +62,7 @@ class Reserve:
             response: what it does when the battery is low.
             track: the places that it has passed in this sortie.
         """
-        left = state.energy
+        left, state = state.energy, self._wind.heed(state)
         if left is None or not state.armed:
             return ""
         if self._begun is None:
@@ -82,7 +84,7 @@ class Reserve:
         endurance = None if left is None or self._begun is None else self._endurance(state.time, left)
         if left is None or endurance is None or response not in COMES_DOWN:
             return ""
-        needed = seconds_back(self._robot, state, response, track) / endurance
+        needed = seconds_back(self._robot, self._wind.heed(state), response, track) / endurance
         if left >= needed:
             return ""
         return f"{left:.0%} of the energy is left, and {response} takes {needed:.0%}"
@@ -117,8 +119,8 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
 
 
 def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:
-    way = distance(a, b)
-    pace = (robot.cruise or USUAL_CRUISE) - _headwind(state, a, b)
+    way, cruise = distance(a, b), robot.cruise or USUAL_CRUISE
+    pace = min(cruise, max(cruise, robot.fastest or 0.0) - _headwind(state, a, b))
     if way == 0.0:
         return 0.0
     return way / pace if pace >= SLOWEST else inf

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from math import cos, inf, radians
+
 import pytest
 
 from mmrs_core.flight.program import Local, Robot
 from mmrs_core.flight.steps.energy import TURNING_SECONDS, Reserve, seconds_back
 from mmrs_core.flight.steps.ways import way_back
+from mmrs_core.flight.steps.winds import MeanWind
 from mmrs_core.flight.vehicles.vehicle import State
 
 HOME = Local(0.0, 0.0, 0.0)
@@ -61,6 +64,44 @@ def test_a_battery_that_empties_faster_than_the_type_says_is_believed():
 
 def test_there_is_no_point_of_no_return_for_who_stays():
     assert Reserve(robot()).low(state(0.11), "HOLD", TRACK) == ""
+
+
+def test_a_robot_that_can_do_more_keeps_its_pace_against_the_wind_as_long_as_that_suffices():
+    def against(wind):
+        known = state(0.5, wind=wind, wind_from=180.0)
+        return seconds_back(robot(fastest=10.0), known, "RETURN", TRACK)
+
+    calm = 400.0 / 5.0 + TURNING_SECONDS + 10.0
+    assert against(4.0) == pytest.approx(calm)
+    assert against(8.0) == pytest.approx(calm - 300.0 / 5.0 + 300.0 / 2.0)
+    assert against(9.8) == inf
+
+
+def test_a_gust_is_not_the_wind_of_the_whole_way_back():
+    watched = Reserve(robot(fastest=10.0))
+    for second in range(60):
+        now = state(0.9, time=float(second), wind=11.0 if second % 10 == 9 else 4.0, wind_from=180.0)
+        assert watched.low(now, "RETURN", TRACK) == "", second
+
+
+def test_a_wind_that_stays_is_believed_within_a_minute():
+    watched = Reserve(robot(fastest=10.0))
+    for second in range(300):
+        watched.low(state(0.9, time=float(second), wind=4.0, wind_from=180.0), "RETURN", TRACK)
+    whys = [
+        watched.low(state(0.9, time=300.0 + second, wind=14.0, wind_from=180.0), "RETURN", TRACK)
+        for second in range(60)
+    ]
+    assert (whys[0], "the wind is stronger" in whys[-1]) == ("", True)
+
+
+def test_a_wind_that_turns_is_averaged_as_what_it_does():
+    mean = MeanWind()
+    for second in range(0, 20, 2):
+        mean.heed(state(0.9, time=float(second), wind=6.0, wind_from=350.0))
+        found = mean.heed(state(0.9, time=second + 1.0, wind=6.0, wind_from=10.0))
+    assert found.wind_from == pytest.approx(0.0, abs=1.0) or found.wind_from == pytest.approx(360.0, abs=1.0)
+    assert found.wind == pytest.approx(6.0 * cos(radians(10.0)), abs=0.1)
 
 
 def test_a_wind_that_is_too_strong_is_a_reason_to_turn_round_at_once():
