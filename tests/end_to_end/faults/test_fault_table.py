@@ -77,6 +77,7 @@ def test_every_order_is_obeyed_in_every_state_in_less_than_a_second(ordered, row
 
 def drilled(drill, execution, folder) -> None:
     outcomes = drill.fly(execution, folder)
+    assert outcomes
     assert [(outcome.title, outcome.problems) for outcome in outcomes if outcome.problems] == []
 
 

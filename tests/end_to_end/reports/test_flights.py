@@ -82,7 +82,9 @@ def test_a_flight_is_told_as_it_went(told):
 
 
 def test_vehicles_that_fly_what_was_planned_are_near_their_ways(told):
-    for deviation in told()["deviations"]:
+    deviations = told()["deviations"]
+    assert deviations
+    for deviation in deviations:
         assert deviation["fixes"] > 50
         assert deviation["sideways"]["most"] < 1.0
         assert deviation["upwards"]["most"] < 1.5
@@ -92,6 +94,7 @@ def test_distances_as_flown_are_near_those_as_planned(told, mmrs, project):
     mmrs("simulate", project, "-o", project / "simulated")
     _, out, _ = mmrs("report", project, project / "simulated", "--json")
     planned = json.loads(out)["report"]["approaches"]
+    assert planned
     for one, other in zip(told()["approaches"], planned, strict=True):
         assert (one["robot"], one["area"], one["required"]) == (
             other["robot"],

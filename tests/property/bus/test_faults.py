@@ -20,6 +20,7 @@ def check(program, seed, faults):
     world = World(program, Random(seed))
     spoil(world, faults)
     records = world.records()
+    assert {record.robot for record in records} == {robot.id for robot in program.robots}
     result = replay(program, records)
     assert result.complaints == (), "\n".join(map(str, result.complaints))
     for process in world.processes:
