@@ -70,11 +70,19 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """A robot that waits after a move, and the own slots that it lacks."""
+    """A robot that waits after a move, and the own slots that it lacks.
+
+    >>> print(Waiting("Brezza", "goto_3", ("north ended by Alba", "go")))
+    'Brezza' waits after 'goto_3' for 'north ended by Alba', 'go'
+    """
 
     robot: str
     move: str
     slots: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """Return it as people read it."""
+        return f"{self.robot!r} waits after {self.move!r} for {', '.join(map(repr, self.slots))}"
 
 
 @dataclass(frozen=True, slots=True)

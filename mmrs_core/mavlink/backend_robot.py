@@ -205,6 +205,9 @@ class MavlinkBackend:
         """Begin to go back to where the program was broken off."""
         self._response.forget()
         self._move = begun or (passed[-1] if passed else "")
+        if self._move:
+            self._with.say(f"goes on {'with' if begun else 'after'} {self._move!r}")
+            self._note_decision("resume", f"its log ends at {self._move}", "goes the way it came")
         job = self._way.job(passed, begun)
         job.first(self._setup.take_up)
         self._begin(job, afresh=True)

@@ -217,6 +217,8 @@ def test_a_battery_that_was_not_changed_is_not_flown_with_by_a_new_process_eithe
     assert sum(number == TAKE_OFF for _, number, _ in vehicle.autopilot.history) == take_offs
     vehicle.faults.set_battery(1.0)
     assert flown.start("--resume").end(PATIENCE) == 0, flown.process.said
+    assert any(line.startswith("'a': goes on with ") for line in flown.process.said)
+    assert any(line.get("what") == "resume" for line in flown.box("a"))
     assert judged(flown) is Outcome.SUCCESS
 
 
