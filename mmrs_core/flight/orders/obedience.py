@@ -10,7 +10,7 @@ from ..clock import Clock
 from ..faults import ORDERED, STOPPED, Fault, Stopped
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .orders import HOLD, RESUME, STOP, Inbox, Receipt
+from .orders import ENDINGS, HOLD, RESUME, STOP, Inbox, Receipt
 
 OVERTAKEN = "something else was ordered since"
 GLANCE_SECONDS = 0.1
@@ -184,9 +184,11 @@ class Obedience:
         name = receipt.order.name
         if name == HOLD:
             self._hold(receipt)
-        elif name != RESUME:
+        elif name in ENDINGS:
             self._forget_early(OVERTAKEN)
             raise self._ends(receipt)
+        elif name != RESUME:
+            receipt.refuse("nobody here obeys that")
         elif self._early:
             self._forget_early("it is to go on")
             receipt.confirm("it goes on once there is a vehicle")

@@ -29,6 +29,9 @@ ORDERS = {
 }
 """What can be ordered, and what it means."""
 
+ENDINGS = frozenset({RETURN, LAND, STOP})
+"""Orders that end a robot's program."""
+
 
 @dataclass(frozen=True, slots=True)
 class Order:
@@ -110,6 +113,7 @@ class Inbox:
         self._answered = answered
         self._waiting: deque[Receipt] = deque()
         self._closed = ""
+        self._lock = threading.Lock()
 
     def give(self, order: Order, reply: Callable[[Receipt], None] = lambda receipt: None) -> Receipt:
         """Give the robot an order; `reply` is called when it has obeyed or refused."""
@@ -119,16 +123,13 @@ class Inbox:
             reply(receipt)
 
         receipt = Receipt(self.robot, order, answered)
-        if self._closed:
-            receipt.refuse(self._closed)
-        elif order.name == ANSWER and self.questions is not None:
-            why = self.questions.give(order.question, order.answer)
-            if why:
+        if order.name == ANSWER and self.questions is not None and not self._closed:
+            if why := self.questions.give(order.question, order.answer):
                 receipt.refuse(why)
             else:
                 receipt.confirm()
-        else:
-            self._waiting.append(receipt)
+        elif not self._keep(receipt):
+            receipt.refuse(self._closed)
         self._arrived()
         return receipt
 
@@ -141,6 +142,14 @@ class Inbox:
 
     def close(self, why: str) -> None:
         """Refuse all orders from now on, and those that were not taken."""
-        self._closed = why
+        with self._lock:
+            self._closed = why
         while (receipt := self.take()) is not None:
             receipt.refuse(why)
+
+    def _keep(self, receipt: Receipt) -> bool:
+        """Put an order where the robot takes it from, unless nobody looks there any more."""
+        with self._lock:
+            if not self._closed:
+                self._waiting.append(receipt)
+            return not self._closed

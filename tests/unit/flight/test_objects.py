@@ -1,0 +1,48 @@
+"""What becomes of what the user's functions find, or fail to find."""
+
+from __future__ import annotations
+
+import sys
+from math import nan
+
+import pytest
+from flight_crew import HOME, NORTH
+
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.objects import place_of
+from mmrs_core.flight.program import Geographic, Local, Object
+from mmrs_core.flight.vehicles.vehicle import State
+
+HERE = State(0.0, HOME, 0.0, 0.0, 1.0)
+
+
+def found(locate, expected=None, tolerance=None):
+    return place_of(Object("the hive", expected, tolerance), {"the hive": locate}, HERE)
+
+
+def test_an_object_is_where_it_was_found():
+    assert found(lambda state, expected: NORTH) == NORTH
+
+
+@pytest.mark.parametrize(
+    "locate",
+    [
+        lambda state, expected: None,
+        lambda state, expected: (42.0, 13.0),
+        lambda state, expected: Local(0.0, 0.0, 0.0),
+        lambda state, expected: Geographic(nan, 13.0, 0.0),
+        lambda state, expected: Geographic("north", 13.0, 0.0),
+        lambda state, expected: 1 / 0,
+        lambda state, expected: sys.exit(),
+    ],
+)
+@pytest.mark.parametrize("expected", [None, NORTH])
+def test_a_function_of_the_users_that_finds_no_place_ends_the_program_by_a_fault_of_its_own(locate, expected):
+    with pytest.raises(Fault, match="object 'the hive': ") as fault:
+        found(locate, expected, 5.0)
+    assert fault.value.event == "OBJECT_NOT_FOUND"
+
+
+def test_an_object_too_far_from_where_it_should_be_is_not_gone_to():
+    with pytest.raises(Fault, match=r"22\.\d m from where it should be"):
+        found(lambda state, expected: HOME, Geographic(NORTH.latitude, NORTH.longitude, 0.0), 5.0)
