@@ -70,10 +70,11 @@ def stop_response(word: str) -> str:
 
 
 def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, ...]) -> None:
-    """Refuse links and faults that nobody can understand.
+    """Refuse links, faults and keys that nobody can understand.
 
     Raises:
         typer.BadParameter: if there are any.
+        OSError: if a key cannot be read.
     """
     if wishes.backend != "mavlink":
         return
@@ -81,6 +82,7 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
     from mmrs_core.flight.links.ports import address_of, split_system
 
     _refuse_options(wishes.options)
+    _refuse_key(wishes.options.get("signing-key"))
     reached: dict[tuple[str, int], str] = {}
     for robot, text in links.items():
         try:
@@ -105,7 +107,17 @@ def _refuse_options(given: Mapping[str, str]) -> None:
     try:
         link_options(given)
     except UnsupportedError as error:
-        raise typer.BadParameter(f"--backend-option {error}") from error
+        raise typer.BadParameter(f"--backend-option {str(error).removeprefix('option ')}") from error
+
+
+def _refuse_key(path: str | None) -> None:
+    from mmrs_core.flight.links.signing import signer_for
+
+    try:
+        if path is not None:
+            signer_for(Path(path))
+    except ValueError as error:
+        raise typer.BadParameter(f"--signing-key {error}") from error
 
 
 def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:

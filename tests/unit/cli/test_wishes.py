@@ -17,8 +17,17 @@ LINK = "udpin:127.0.0.1:14550"
 )
 def test_an_option_of_the_backend_that_makes_no_sense_is_wrong_usage(options):
     (name,) = options
-    with pytest.raises(typer.BadParameter, match=f"--backend-option option '{name}'"):
+    with pytest.raises(typer.BadParameter, match=f"--backend-option '{name}'"):
         check_mavlink(Wishes(Path("logs"), options=options), {}, ("alpha",))
+
+
+def test_a_key_of_the_wrong_length_is_wrong_usage_and_one_that_is_not_there_cannot_be_read(tmp_path):
+    key = tmp_path / "short.key"
+    key.write_bytes(b"abc")
+    with pytest.raises(typer.BadParameter, match="--signing-key .*short.key: holds 3 bytes instead of 32"):
+        check_mavlink(Wishes(Path("logs"), options={"signing-key": str(key)}), {}, ("alpha",))
+    with pytest.raises(FileNotFoundError):
+        check_mavlink(Wishes(Path("logs"), options={"signing-key": str(tmp_path / "no")}), {}, ("alpha",))
 
 
 def test_two_robots_with_one_system_at_one_link_are_wrong_usage():
