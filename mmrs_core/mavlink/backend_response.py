@@ -66,7 +66,7 @@ class Response:
             decide(POSITION_LOST, f"{name} needs a position", LAND)
             self._instead, name = f"without a position, it does {LAND}", LAND
         self._shown = obeying(name, self._robot, self._vehicle, self._moves.track)
-        return Job(lambda: self._carry_out(name))
+        return Job(lambda: self._carry_out(name, event))
 
     def forget(self) -> None:
         """Be ready for whatever goes wrong next: the program goes on."""
@@ -89,8 +89,8 @@ class Response:
         self._watch.let_go()
         return Job()
 
-    def _carry_out(self, name: str) -> None:
-        self._watch.check_hands()
+    def _carry_out(self, name: str, event: str) -> None:
+        self._watch.check_hands(event)
         track = self._moves.track
         self.holds = respond(name, self._robot, self._vehicle, track, lambda movement: movement())
         self._watch.moving = self.holds

@@ -10,7 +10,7 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.crews import told_of
-from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, Displaced
+from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, VEHICLE_RESTARTED, Displaced
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
@@ -263,11 +263,18 @@ class MavlinkBackend:
         self.note("decision", {"what": what, "why": why, "response": response})
 
     def _look(self) -> None:
-        """Look after the vehicle, whatever it does; what it has left by itself is begun again."""
+        """Look after the vehicle, whatever it does; what it has left by itself is begun again.
+
+        One that has started anew before its take-off is first set up again.
+        """
         try:
             self._watch.check()
-        except Displaced:
-            self._with.vehicle.regain()
+        except Displaced as displaced:
+            if displaced.event == VEHICLE_RESTARTED:
+                self._with.vehicle.take_back()
+                self._worker.first(self._setup.begin_sortie)
+            else:
+                self._with.vehicle.regain()
             raise Interrupted from None
 
     def _idle(self) -> None:

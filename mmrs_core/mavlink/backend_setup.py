@@ -68,7 +68,7 @@ class Setup:
         self.is_done = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")
-        self._watch.tell_missing()
+        self._watch.forewarn()
 
     def take_up(self) -> None:
         """Heed everything again, and go on with the sortie."""

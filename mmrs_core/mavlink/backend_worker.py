@@ -88,6 +88,12 @@ class Worker:
             self._newest += 1
             self._news.notify_all()
 
+    def first(self, part: Callable[[], None]) -> None:
+        """Do this part of the present job next, once what is being done is interrupted."""
+        with self._news:
+            if self._job is not None:
+                self._job.first(part)
+
     @property
     def done(self) -> bool:
         """Return whether the job given last has been done."""

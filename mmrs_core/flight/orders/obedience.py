@@ -49,6 +49,7 @@ class Obedience:
 
     Attributes:
         ended: whether the program has ended, so that it cannot go on.
+        held_for: seconds for which the robot was held so far, halting and going on included.
         hands_off: whether orders are looked at elsewhere, since the vehicle may not be told anything.
     """
 
@@ -56,6 +57,7 @@ class Obedience:
         """Obey nobody yet: there is no vehicle; `stop` ends a hold, too."""
         self.ended = False
         self.hands_off = False
+        self.held_for = 0.0
         self._inbox = inbox
         self._clock = clock
         self._stop = stop
@@ -211,7 +213,7 @@ class Obedience:
             self._say("will hold as soon as there is a vehicle")
             self._early.append(receipt)
             return
-        self._held, moving = True, self._moving
+        self._held, moving, begun = True, self._moving, self._clock.now()
         taken = [receipt, *others]
         try:
             self._halt(vehicle, taken)
@@ -222,6 +224,7 @@ class Obedience:
             self._go_on(vehicle, taken[-1])
         finally:
             self._held = False
+            self.held_for += self._clock.now() - begun
             for each in taken:
                 each.refuse("something else has happened")
         if moving:

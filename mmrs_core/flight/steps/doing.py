@@ -42,7 +42,7 @@ class Doing:
         if isinstance(action, Notify):
             self._notify(action, detail)
             return
-        begun = self._desk.clock.now()
+        begun = self._waits.now()
         while not self._done(action, begun):
             continue
         self._journal.write("act", detail)
@@ -62,7 +62,7 @@ class Doing:
         try:
             self._do(action)
         except Unanswered as error:
-            if not isinstance(action, Measure) and self._desk.clock.now() - begun < self._silence():
+            if not isinstance(action, Measure) and self._waits.now() - begun < self._silence():
                 return False
             self._waits.raise_unless_carried_on(Fault(DEVICE_SILENT, f"{_device(action)}{error}"))
         return True

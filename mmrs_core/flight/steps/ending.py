@@ -14,6 +14,8 @@ from ..faults import (
     TAKEN_OVER,
     Alone,
     Fault,
+    Refused,
+    Stopped,
     Strange,
 )
 from ..links.link import Link
@@ -149,6 +151,8 @@ class Ending:
 
     def _carry_out(self, fault: Fault, response: str) -> None:
         crew = self._crew
+        if crew.obedience.has_vehicle and fault.event != LINK_LOST and response != NOTHING:
+            crew.watch.check_hands(fault.event)
         self._handled.add(fault.event)
         crew.watch.relax(self._handled, response)
         crew.obedience.ended = not self.suspended
@@ -161,7 +165,6 @@ class Ending:
         if response == NOTHING:
             self._stand_back()
             return
-        crew.watch.check_hands()
         if isinstance(fault, Ordered):
             seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
             crew.obedience.expect(fault.receipt, seen)
@@ -214,16 +217,18 @@ class Ending:
         That lasts while others work, or for some time, and then until its motors are off.
 
         Raises:
-            Fault: somebody has ordered something, or a pilot has taken it over.
+            Fault: somebody has ordered something, or wants all to stop, or a pilot has taken it over.
         """
         crew, clock = self._crew, self._crew.desk.clock
         if crew.link is None:
             return
+        # A stop from before the link was lost is not one that ends the listening.
+        stopped = crew.desk.stop.is_set()
         limit, told = clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS), False
         until = clock.now() + limit
         try:
-            while crew.link.listening and not crew.desk.stop.is_set():
-                heard = crew.link.silent_for() < clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
+            while crew.link.listening and not crew.desk.abandon.is_set():
+                heard = self._is_heard(crew.link, again=not told)
                 if heard and not told:
                     crew.watch.accept()
                     crew.say(f"is heard again, in mode {crew.vehicle.state().mode}: orders are obeyed")
@@ -231,6 +236,10 @@ class Ending:
                     crew.watch.lose()
                     crew.obedience.refuse_all("its link is lost")
                 told, crew.obedience.hands_off = heard, not heard
+                if crew.desk.stop.is_set() and not stopped:
+                    if heard:
+                        raise Stopped()
+                    return
                 until = clock.now() + limit if heard else until
                 others_work = self._lose()
                 over = clock.now() > until and not others_work
@@ -240,6 +249,11 @@ class Ending:
         finally:
             crew.obedience.hands_off = False
             crew.watch.find()
+
+    def _is_heard(self, link: Link, *, again: bool) -> bool:
+        """Return whether a vehicle is heard; `again`: a heartbeat shows in which mode it is by now."""
+        limit = self._crew.desk.clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
+        return (link.since("HEARTBEAT") if again else link.silent_for()) < limit
 
     def _tell_undone(self, fault: Fault, response: str) -> None:
         why = f"{response} cannot be carried out: {fault}"
@@ -278,14 +292,12 @@ class Ending:
         """Have a vehicle that was stopped stay where it is when nobody talks to it any more.
 
         Raises:
-            Fault: somebody has ordered something meanwhile, or has taken over.
+            Fault: somebody has ordered something meanwhile, or has taken over, or the link is lost.
         """
         try:
             self._crew.vehicle.answer_lost_link(HOLD)
-        except Fault as fault:
-            if isinstance(fault, Ordered) or fault.event == TAKEN_OVER:
-                raise
-            self._crew.say(f"{fault}: it may not stay where it is when this program has ended")
+        except Refused as refusal:
+            self._crew.say(f"{refusal}: it may not stay where it is when this program has ended")
 
     def _stand_back(self) -> None:
         """Send nothing but heartbeats until the motors are off: without them, the vehicle might fly away."""

@@ -54,7 +54,7 @@ class Pilot:
     ) -> None:
         """Take a program, a vehicle and what is needed to work; `fence`: whether to upload it."""
         self.journal = Journal(robot, vehicle, desk)
-        self.waits = Waits(robot, vehicle, desk, self.journal)
+        self.waits = Waits(robot, vehicle, desk, self.journal, lambda: obedience.held_for)
         self.track: list[tuple[str, Place]] = []
         self._doing = Doing(robot, vehicle, desk, self.journal, self.waits)
         self._robot = robot
@@ -117,7 +117,7 @@ class Pilot:
             raise Refused("the vehicle starts anew again and again")
         if self._vehicle.state().energy is None and not self._desk.dry:
             self._desk.say(f"{self._robot.id!r} does not tell its battery: nobody will notice when it is low")
-        self._watch.tell_missing()
+        self._watch.forewarn()
 
     def _meet(self, meet: Meet) -> None:
         """Begin together with all other robots.
@@ -224,8 +224,13 @@ class Pilot:
             self._obedience.repeat(partial(self._vehicle.turn, look))
 
     def _take_off(self, height: float) -> None:
+        def leave_ground() -> None:
+            if self._watch.restarted and not self._vehicle.state().armed:
+                self._begin_sortie()
+            self._vehicle.take_off(height)
+
         self._begin_sortie()
-        self._obedience.repeat(partial(self._vehicle.take_off, height))
+        self._obedience.repeat(leave_ground)
         self._passed(self._vehicle.state().place)
 
     def _begin_sortie(self) -> None:

@@ -8,7 +8,7 @@ from math import inf
 
 from ..conditions import awaiting, question_of, truth
 from ..desk import Desk
-from ..faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault, Stopped
+from ..faults import CONDITION_FAILED, FAILURES, LINK_LOST, PEER_LOST, WAIT_TOO_LONG, Fault
 from ..program import Choose, Policy, Robot, Then
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
@@ -21,19 +21,27 @@ LEAST_PEER_SECONDS = 2.0
 
 
 class Waits:
-    """Waits, and knows how long a robot bears what goes wrong meanwhile.
+    """Waits, and knows how long a robot bears what goes wrong meanwhile; time in which it is held counts not.
 
     Attributes:
         policies: of the wait that the robot is in; they go before the robot's own.
     """
 
-    def __init__(self, robot: Robot, vehicle: Vehicle, desk: Desk, journal: Journal) -> None:
-        """Wait for nothing yet."""
+    def __init__(
+        self,
+        robot: Robot,
+        vehicle: Vehicle,
+        desk: Desk,
+        journal: Journal,
+        held: Callable[[], float],
+    ) -> None:
+        """Wait for nothing yet; `held` tells for how many seconds the robot was held so far."""
         self.policies: tuple[Policy, ...] = ()
         self._robot = robot
         self._vehicle = vehicle
         self._desk = desk
         self._journal = journal
+        self._held = held
         self._borne: set[str] = set()
 
     def leave(self, then: Then | Choose) -> str:
@@ -51,13 +59,17 @@ class Waits:
         self._follow(())
         return following
 
+    def now(self) -> float:
+        """Return the seconds since the run began in which nobody held the robot: others answer for these."""
+        return self._desk.clock.now() - self._held()
+
     def delivery(self) -> Callable[[tuple[str, ...]], None]:
         """Return what is to be called with the robots that have not answered a notification yet."""
-        begun = self._desk.clock.now()
+        begun = self.now()
 
         def check(silent: tuple[str, ...]) -> None:
             self._vehicle.rest(0.0)
-            if self._desk.clock.now() - begun > self._peer_seconds():
+            if self.now() - begun > self._peer_seconds():
                 why = f"no answer from {_listed(silent)}"
                 if unseen := self._desk.slots.unseen(silent):
                     why += f"; {_listed(unseen)} never came while this robot was there, or had ended before"
@@ -106,7 +118,7 @@ class Waits:
 
     def _decided(self, condition: str) -> bool:
         """Return whether a condition holds, once that can be said."""
-        begun = self._desk.clock.now()
+        begun = self.now()
         told = False
         try:
             while (holds := self._asked(condition)) is None:
@@ -140,34 +152,33 @@ class Waits:
     def _await(self, names: tuple[str, ...], record: Callable[[int], None] | None) -> None:
         slots, clock = self._desk.slots, self._desk.clock
         kept = record if record is not None else (lambda lamport: None)
-        begun = alone = clock.now()
+        since = clock.now()
+        begun = alone = self.now()
         told = False
         while not slots.take(self._robot.id, names, kept):
             if not told:
                 self._desk.say(f"{self._robot.id!r} waits for {', '.join(map(ascii, names))}")
                 told = True
             if not self._orphaned(names):
-                alone = clock.now()
+                alone = self.now()
             self._check(names, begun, alone)
             slots.await_change(GLANCE_SECONDS)
             self._vehicle.rest(0.0)
         if told:
-            self._journal.waited(names, clock.now() - begun)
+            self._journal.waited(names, clock.now() - since)
 
     def _check(self, names: tuple[str, ...], begun: float, alone: float) -> None:
         shown = ", ".join(map(ascii, names))
         self._check_patience(shown, begun)
-        if self._desk.clock.now() - alone > self._peer_seconds():
+        if self.now() - alone > self._peer_seconds():
             self.raise_unless_carried_on(Fault(PEER_LOST, f"no robot is left that sets {shown}"))
 
     def _peer_seconds(self) -> float:
         return self._desk.clock.patience(self.patience(PEER_LOST, PEER_SECONDS), LEAST_PEER_SECONDS)
 
     def _check_patience(self, what: str, begun: float) -> None:
-        if self._desk.stop.is_set():
-            raise Stopped()
         limit = self.patience(WAIT_TOO_LONG, inf)
-        if self._desk.clock.now() - begun > limit:
+        if self.now() - begun > limit:
             self.raise_unless_carried_on(Fault(WAIT_TOO_LONG, f"waited more than {limit:.0f} s for {what}"))
 
     def _orphaned(self, names: tuple[str, ...]) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Sequence
-from math import inf
 
 from ..clock import Clock
 from ..faults import (
@@ -26,24 +25,19 @@ from ..program import Policy, Robot
 from ..vehicles import modes
 from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
+from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
-from .responses import CONTINUE, LAND, policy_for
+from .responses import CONTINUE, HOLD, LAND, policy_for
 from .ways import Track
 
 SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0
+BEAT_SECONDS = 3.0
+"""For how long a heartbeat tells the mode of a vehicle that was out of reach, and is waited for."""
+
 LASTING = {POSITION_LOST: 2.0}
 """Seconds that something must last before it counts, where policies do not say; else none."""
-
-CAUSE_SECONDS = 1.5
-"""For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
-
-RESTART_SECONDS = 4.0
-"""For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
-
-FIRST_MODE = 0
-"""The mode that ArduPilot starts in unless it is told otherwise."""
 
 TOUCHING = 1.0
 """Metres above home below which a vehicle that lands may stop its motors any moment."""
@@ -54,6 +48,10 @@ COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
 """Responses that need neither a position nor much energy."""
 
+DOWN = {"copter": LAND, "sub": "SURFACE", "rover": HOLD}
+"""What is done, by kind of vehicle, where nothing can be carried on: without a position, too."""
+
+GROUND_ONLY = f"carries on after {VEHICLE_RESTARTED} before it sets out only; on its way it does {{}} then"
 CRITICAL = ("critical", "emergency")
 """What vehicles say of batteries that are nearly empty; of others, policies know better what to do."""
 
@@ -70,8 +68,6 @@ class Watch:
         decide: is told what was decided without ending the program: event, reason, response.
         say: tells people what the robot hears.
         moving: whether the robot is under way; one that stands on the ground may start anew.
-        looking: whether it looks for the cause of a change of mode, while nothing may be sent.
-        taken: whether it has found that a pilot has taken over.
         silence: whether the vehicle may be silent, as while its battery is changed.
     """
 
@@ -91,25 +87,26 @@ class Watch:
         self._link: Link | None = None
         self._vehicle: MavlinkVehicle | None = None
         self._signs: Signs | None = None
+        self._departures: Departures | None = None
         self._ground: Ground | None = None
         self._heeded: frozenset[str] | None = None
-        self._hands_off = False
+        self._hands_off = self._alone = False
         self._response = ""
-        self._taken_back = -inf
-        self.looking = False
-        self.taken = False
-        self._flown = False
+        self._flown = self._anew = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle, too."""
         self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
+        self._departures = Departures(self._robot, link, vehicle, self._signs, self._answers)
         self._ground = Ground(link)
         vehicle.insist(self._insists)
 
-    def tell_missing(self) -> None:
-        """Tell people before the robot moves that none of their ground stations is heard."""
+    def forewarn(self) -> None:
+        """Tell people before the robot moves what of its policies does not count, or not yet."""
+        if policy_for(VEHICLE_RESTARTED, self._robot).response == CONTINUE:
+            self.say(GROUND_ONLY.format(DOWN[self._robot.vehicle]))
         if self._ground is not None and (missing := self._ground.missing(self._robot)):
             self.say(missing)
 
@@ -136,39 +133,56 @@ class Watch:
         self.silence = self._hands_off = True
 
     def accept(self) -> None:
-        """Take a vehicle that was out of reach as it is, in whatever mode its own answer has put it.
+        """Let a vehicle that was out of reach go on with what it does about that by itself.
 
         Raises:
-            Fault: a pilot has it.
+            Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
         """
-        self.check_hands()
-        if self._vehicle is not None:
-            self._vehicle.accept_own_modes()
-        self._hands_off = False
+        link, vehicle, departures = self._link, self._vehicle, self._departures
+        if link is not None and vehicle is not None and departures is not None:
+            limit = self._clock.patience(BEAT_SECONDS, 1.0)
+            if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
+                raise Fault(LINK_LOST, "its heartbeat is not heard")
+            if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
+                departures.find(moving=self.moving)
+            vehicle.accept_own_modes()
+        self._hands_off, self._alone = False, True
 
     def find(self) -> None:
         """Heed the link, and who has the vehicle, again."""
-        self.silence = self._hands_off = False
+        self.silence = self._hands_off = self._alone = False
 
     def tighten(self) -> None:
         """Heed everything again: the robot goes on with its program."""
-        self._heeded, self._hands_off, self.silence, self._response = None, False, False, ""
+        self._heeded, self._response = None, ""
+        self.find()
         self.renew()
 
     def renew(self) -> None:
         """Forget what was: the vehicle is set up, or has another battery."""
-        self.taken = False
         self._since.clear()
         self._borne.clear()
-        self._flown = False
+        self._flown = self._anew = False
         self._reserve.begin()
         if self._signs is not None:
             self._signs.renew()
+        if self._departures is not None:
+            self._departures.taken = False
 
     @property
     def restarted(self) -> bool:
         """Return whether the vehicle has started anew since `renew`."""
-        return self._signs is not None and self._signs.restarted
+        return self._anew or (self._signs is not None and self._signs.restarted)
+
+    @property
+    def looking(self) -> bool:
+        """Return whether it looks for the cause of a change of mode, while nothing may be sent."""
+        return self._departures is not None and self._departures.looking
+
+    @property
+    def taken(self) -> bool:
+        """Return whether it has found that a pilot has taken over."""
+        return self._departures is not None and self._departures.taken
 
     def check(self) -> None:
         """Raise what should end a wait.
@@ -176,20 +190,27 @@ class Watch:
         Raises:
             Fault: something should.
         """
-        if self._stop.is_set() and self._heeded is None:
-            raise Stopped()
         if self.looking:
             return
-        if self._link is None or self._vehicle is None or self._signs is None:
+        stops = self._stop.is_set() and self._heeded is None
+        link, vehicle, signs, departures = self._link, self._vehicle, self._signs, self._departures
+        if link is None or vehicle is None or signs is None or departures is None:
+            if stops:
+                raise Stopped()
             self._weigh(LOG_FAILED, self.unkept())
             return
-        self._check_link(self._link)
+        if not stops:
+            self._check_link(link)
         if self._hands_off:
             return
-        # Whoever has the vehicle goes before all policies, also where both are seen at once.
-        self._check_pilot(self._vehicle, self._link, self._signs)
-        self._check_motors(self._vehicle)
-        for event, why in (*self._signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
+        # Whoever has the vehicle goes before all policies and stops, also where both are seen at once.
+        departure = departures.find(moving=self.moving)
+        if stops:
+            raise Stopped()
+        if departure is not None:
+            self._answer(*departure, vehicle, departures)
+        self._check_motors(vehicle)
+        for event, why in (*signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
             self._weigh(event, why)
         self._weigh(LOG_FAILED, self.unkept())
         if self._ground is not None:
@@ -244,6 +265,8 @@ class Watch:
 
     def _judge(self, event: str, why: str, policy: Policy) -> None:
         """Raise a fault, or keep that it is borne."""
+        if event == VEHICLE_RESTARTED:
+            self._note_restart()
         if policy.response != CONTINUE:
             raise Fault(event, why)
         self._borne.add(event)
@@ -262,46 +285,69 @@ class Watch:
             why = f" ({link.trouble})" if link.trouble else ""
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
-    def _check_pilot(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> None:
-        """Raise a fault where the vehicle has left its mode: by its own failsafe, or by a pilot.
+    def _answer(self, event: str, said: str, vehicle: MavlinkVehicle, departures: Departures) -> None:
+        """Answer what the vehicle has answered by leaving its mode, as policies say.
 
-        What it has answered by itself is answered as policies say. Where the robot bears that, or does
-        so already, the vehicle is taken back, if that makes sense.
+        Where the robot bears that, or does so already, the vehicle is taken back, if that makes sense; one
+        that was out of reach, or stands still where it may start anew, is let be.
+
+        Raises:
+            Fault: what is to be answered, or Displaced.
         """
-        left = _left(vehicle)
-        if left is None:
+        if self._alone:
+            vehicle.accept_own_modes()
             return
-        self.looking = True
-        try:
-            found = self._find_cause(vehicle, link, signs)
-        finally:
-            self.looking = False
-        if found is None:
-            self.taken = True
-            raise _taken_over(left, vehicle)
-        event, why = found[0], f"{found[1]}; by itself it has gone into mode {vehicle.state().mode}"
+        why = f"{said}; by itself it has gone into mode {vehicle.state().mode}"
+        if event == VEHICLE_RESTARTED:
+            self._note_restart()
+            if not self.moving:
+                vehicle.take_back()
+                return
         if self._answers(event):
-            self._taken_back = self._clock.now()
+            departures.taken_back = self._clock.now()
             raise Fault(event, why)
-        if hindrance := self._hindrance(event, found[1], vehicle):
+        if event == VEHICLE_RESTARTED:
+            self._check_stands(said, vehicle)
+        elif hindrance := self._hindrance(event, said, vehicle):
             raise Fault(event, f"{why}; {hindrance}", LAND)
         self._take_back(event, why)
         raise Displaced(event, why)
 
+    def _check_stands(self, said: str, vehicle: MavlinkVehicle) -> None:
+        """Make sure that a vehicle that has started anew has yet to take off, and so can begin anew.
+
+        Raises:
+            Fault: it was on its way: it has forgotten what it was doing, and may not know where it is.
+        """
+        armed, kind = vehicle.telemetry.armed(), self._robot.vehicle
+        if armed or self._flown or kind != "copter":
+            motors = "on" if armed else "off"
+            why = f"{said} on its way, with its motors {motors}: nothing can be carried on"
+            raise Fault(VEHICLE_RESTARTED, why, DOWN[kind] if armed else HOLD)
+
+    def _note_restart(self) -> None:
+        """Take a restart for known, which explains no other mode after this; the vehicle is to be set up."""
+        self._anew = True
+        if self._signs is not None:
+            self._signs.renew()
+
     def _insists(self, fault: Fault) -> bool:
         """Return whether a vehicle that goes elsewhere by itself, while it is told a mode, is told again."""
         assert self._vehicle is not None
+        assert self._departures is not None
         event, said = fault.event, self._vehicle.telemetry.announcements.of_this_mode
-        if event == TAKEN_OVER or self._answers(event) or not (why := said(event, self._taken_back)):
+        if event == TAKEN_OVER or self._answers(event):
             return False
-        if self._hindrance(event, why, self._vehicle):
+        why = said(event, self._departures.taken_back)
+        if not why or self._hindrance(event, why, self._vehicle):
             return False
         self._take_back(event, f"{why}; {fault}")
         return True
 
     def _take_back(self, event: str, why: str) -> None:
         goes_on = self._response or CONTINUE
-        self._taken_back = self._clock.now()
+        if self._departures is not None:
+            self._departures.taken_back = self._clock.now()
         self.decide(event, why, goes_on)
         self.say(f"takes its vehicle back, {goes_on} goes on: {event}: {why}")
 
@@ -322,72 +368,22 @@ class Watch:
         short = self._reserve.short(vehicle.state(), self._response, self.track())
         return f"it is not taken back: {short}" if short else ""
 
-    def check_hands(self) -> None:
+    def check_hands(self, event: str = "") -> None:
         """Make sure, right before the vehicle is told how to respond, that no pilot has just taken it.
 
-        Without waiting: modes into which vehicles also go by themselves may be what is responded to.
+        Args:
+            event: that is responded to; a mode in which the vehicle answers it by itself is no pilot's.
 
         Raises:
             Fault: one has.
         """
-        if self._link is None or self._vehicle is None or self.restarted:
-            return
-        left, tells = _left(self._vehicle), self._vehicle.telemetry
-        by_themselves = modes.of_failsafes(self._link, self._robot.vehicle)
-        if left is not None and tells.armed() and tells.mode() not in by_themselves:
-            self.taken = True
-            raise _taken_over(left, self._vehicle)
-
-    def _find_cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
-        """Wait for the cause of a change of mode as long as it may still be on its way."""
-        tells = vehicle.telemetry
-        if not tells.armed() or tells.mode() == FIRST_MODE:
-            # One that has started anew has lost its position, too: that is no cause.
-            if link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS)):
-                return self._restart()
-            return None
-        by_itself = tells.mode() in modes.of_failsafes(link, self._robot.vehicle)
-        seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
-        return link.wait(lambda: self._cause(vehicle, link, signs), seconds)
-
-    def _cause(self, vehicle: MavlinkVehicle, link: Link, signs: Signs) -> tuple[str, str] | None:
-        """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
-        if signs.restarted and self.moving:
-            return self._restart()
-        mode, tells = vehicle.telemetry.mode(), vehicle.telemetry.announcements
-        told = [(event, text.text) for event, text in tells.recent()]
-        for event, why in (*signs.seen(moving=self.moving), *told):
-            said = tells.of_this_mode(event, self._taken_back)
-            if why and mode in modes.answers_to(link, self._robot.vehicle, event, (said,)):
-                if self._answers(event):
-                    return event, why
-                if said:
-                    return event, said
-        return None
-
-    def _restart(self) -> tuple[str, str] | None:
-        """Return that the vehicle has started anew, unless the robot does not heed it, or carries on."""
-        why = "the vehicle has started anew"
-        return (VEHICLE_RESTARTED, why) if self._answers(VEHICLE_RESTARTED) else None
+        if event == LINK_LOST:
+            self.accept()
+            self.find()
+        elif self._departures is not None:
+            self._departures.check(event, moving=self.moving)
 
     def _answers(self, event: str) -> bool:
         """Return whether the robot is to answer an event that happens now."""
         borne = policy_for(event, self._robot, self.current()).response == CONTINUE
         return self._heeds(event) and not borne
-
-
-def _taken_over(left: Fault, vehicle: MavlinkVehicle) -> Fault:
-    """Return that a pilot has taken over, in the words of why the vehicle is elsewhere, if these say so."""
-    if left.event == TAKEN_OVER:
-        return left
-    mode = vehicle.state().mode
-    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: somebody else has taken over")
-
-
-def _left(vehicle: MavlinkVehicle) -> Fault | None:
-    """Return why the vehicle is no longer in the mode that it should be in; None if it is."""
-    try:
-        vehicle.check()
-    except Fault as fault:
-        return fault
-    return None

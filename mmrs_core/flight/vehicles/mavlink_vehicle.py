@@ -6,14 +6,14 @@ between them is in ``habits.py`` and ``px4.py``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import NO_PROGRESS, Fault, Refused
+from ..faults import LINK_LOST, NO_PROGRESS, Fault, Refused
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
 from ..places import at_height
@@ -77,6 +77,7 @@ class MavlinkVehicle:
         self._home_tolerance = home_tolerance
         self._mission: Sequence[Item] = ()
         self._mark = 0
+        self._alone: frozenset[int] = frozenset()
 
     def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
@@ -125,7 +126,12 @@ class MavlinkVehicle:
         Raises:
             Refused: it cannot respond so, or does not say that it will.
         """
+        told = modes.lost_link_answers(self._link, self._kind).get(response, {})
+        alone = modes.alone(self._link, self._kind, told)
+        # Until it confirms, it may do the one or the other.
+        self._alone |= alone
         otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
+        self._alone = alone
         if otherwise:
             self._tell(otherwise)
 
@@ -279,9 +285,25 @@ class MavlinkVehicle:
         except Fault:
             self._helm.let_go()
 
+    @property
+    def modes_alone(self) -> frozenset[int]:
+        """Return the numbers of the modes into which it goes when it hears nobody, as it was told."""
+        return self._alone
+
+    def answers_to(self, event: str, said: Iterable[str]) -> frozenset[int]:
+        """Return the numbers of the modes into which it goes by itself when an event happens.
+
+        Args:
+            event: of policies.
+            said: what it has just said about that.
+        """
+        if event == LINK_LOST:
+            return self._alone
+        return modes.answers_to(self._link, self._kind, event, said)
+
     def accept_own_modes(self) -> None:
-        """Accept, until it is told something, that it is in a mode into which it goes by itself."""
-        self._helm.accept(modes.of_failsafes(self._link, self._kind))
+        """Accept, until it is told something, that it is as it is, or does what it does alone."""
+        self._helm.accept(self._alone)
 
     def regain(self) -> None:
         """Have the vehicle again in the mode that it has left by itself, and stay where it is in GUIDED.

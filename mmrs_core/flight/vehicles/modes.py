@@ -194,6 +194,41 @@ rover heeds its action only where the failsafe of the ground station is switched
 not at first.
 """
 
+ALONE: Mapping[str, tuple[str, Mapping[int, frozenset[int]]]] = {
+    "copter": (
+        ON_LOST_LINK,
+        {
+            1: frozenset({6, 9}),
+            2: frozenset({3, 6, 9}),
+            3: frozenset({6, 9, 21}),
+            4: frozenset({9, 21}),
+            5: frozenset({9}),
+            6: frozenset({3, 6, 9}),
+            7: frozenset({9, 17}),
+        },
+    ),
+    "sub": (ON_LOST_LINK, {3: frozenset({2}), 4: frozenset({9})}),
+    "rover": (
+        ON_ANY_LOSS,
+        {
+            1: frozenset({4, 11}),
+            2: frozenset({4}),
+            3: frozenset({4, 11, 12}),
+            4: frozenset({4, 12}),
+            6: frozenset({4, 5}),
+        },
+    ),
+}
+"""Modes into which an ArduPilot goes when it no longer hears the ground: the parameter, and by its value.
+
+With what it does where the first of them is not possible; in other modes it stays as it is, or disarms.
+"""
+
+PX4_ALONE: tuple[str, Mapping[int, tuple[tuple[int, int], ...]]] = (
+    "NAV_DLL_ACT",
+    {1: ((4, 3),), 2: ((4, 5), (4, 6)), 3: ((4, 6),)},
+)
+
 BREACH: Mapping[str, Answers] = {
     "copter": {
         "CONTINUE": {"FENCE_ACTION": 0},
@@ -239,6 +274,30 @@ PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), m
 def lost_link_answers(link: Link, kind: str) -> Answers:
     """Return what the vehicle at a link can do by itself when it no longer hears the ground."""
     return PX4_LINK_LOST if is_px4(link) else LINK_LOST[kind]
+
+
+def decides_alone(link: Link, kind: str) -> tuple[str, ...]:
+    """Return the parameters by which the vehicle at a link acts when it no longer hears the ground."""
+    if is_px4(link):
+        return PX4_ALONE[:1]
+    return (ON_LOST_LINK, ON_ANY_LOSS) if kind == "rover" else (ON_LOST_LINK,)
+
+
+def alone(link: Link, kind: str, values: Mapping[str, float]) -> frozenset[int]:
+    """Return the numbers of the modes into which a vehicle goes by itself when it no longer hears the ground.
+
+    Args:
+        link: to the vehicle.
+        kind: of the vehicle.
+        values: of the parameters by which it does; of those that are not known, nothing is expected.
+    """
+    if is_px4(link):
+        name, modes = PX4_ALONE
+        return frozenset(px4_number(*each) for each in modes.get(round(values.get(name, 0.0)), ()))
+    name, known = ALONE[kind]
+    if not values.get(ON_LOST_LINK):
+        return frozenset()
+    return known.get(round(values.get(name, 0.0)), frozenset())
 
 
 def patience(link: Link, kind: str) -> tuple[str, float, float] | None:

@@ -10,6 +10,7 @@ from ..faults import Refused
 from ..links.link import Link
 from ..places import offset
 from ..program import Geographic, Place, Robot
+from ..services import parameters
 from ..vehicles import modes, preparation
 from .mavlink_vehicle import MavlinkVehicle
 
@@ -23,7 +24,7 @@ AT_HOME = 2.0
 def recognise(
     link: Link, vehicle: MavlinkVehicle, robot: Robot, tolerance: float, *, under_way: bool, system: int
 ) -> None:
-    """Make sure that a vehicle is the robot's, and that nobody flies it; only messages are asked for.
+    """Make sure that a vehicle is the robot's, and that nobody flies it; it is told nothing, only asked.
 
     Args:
         link: to the vehicle.
@@ -50,8 +51,16 @@ def recognise(
     if not under_way:
         raise Refused("the vehicle's motors run already: somebody else has it")
     mode = vehicle.state().mode
-    if mode not in OURS and telemetry.mode() not in modes.of_failsafes(link, robot.vehicle):
-        raise Refused(f"the vehicle's motors run, and it is in mode {mode}: a pilot may have it")
+    if mode not in OURS and telemetry.mode() not in _alone(link, robot.vehicle):
+        raise Refused(
+            f"the vehicle's motors run, and it is in mode {mode}, by which it answers no lost link:"
+            " a pilot may have it"
+        )
+
+
+def _alone(link: Link, kind: str) -> frozenset[int]:
+    """Return the modes in which a vehicle may be because its program was killed, as far as it says."""
+    return modes.alone(link, kind, parameters.read(link, modes.decides_alone(link, kind)))
 
 
 def refuse_neighbours(robot: Robot, here: Place) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from ..faults import FENCE_BREACHED, OBSTACLE, POSITION_LOST, VEHICLE_RESTARTED
 from .telemetry import Telemetry
 
+STARTED_ANEW = "the vehicle has started anew"
+
 
 class Signs:
     """Reads what a vehicle tells; nothing here waits."""
@@ -32,7 +34,7 @@ class Signs:
         tells = self._telemetry
         active = moving and tells.armed()
         return (
-            (VEHICLE_RESTARTED, "the vehicle has started anew" if moving and self.restarted else ""),
+            (VEHICLE_RESTARTED, STARTED_ANEW if moving and self.restarted else ""),
             (POSITION_LOST, tells.position_trouble() if active else ""),
             (FENCE_BREACHED, tells.breach() if active else ""),
             (OBSTACLE, tells.obstacle() if active else ""),

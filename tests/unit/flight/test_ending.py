@@ -18,6 +18,9 @@ from mmrs_core.flight.program import Geographic, Policy
 FAR = Geographic(42.3710, 13.35, 0.0)
 """111 metres north of home."""
 
+MODES = {"land": "land", "return": "return", "brake": "hold"}
+"""What the runtime calls modes of the vehicle."""
+
 
 @pytest.fixture
 def robot(in_the_air):
@@ -192,12 +195,57 @@ def test_a_robot_whose_link_comes_back_is_listened_to_until_its_motors_are_off(r
     assert made.said[-1] == "'alpha': ended early"
 
 
-def test_a_pilot_who_takes_a_vehicle_while_nobody_hears_it_is_left_alone(robot):
-    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+def test_a_stop_from_before_a_link_was_lost_does_not_end_the_listening(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0), on_stop="return", cruise=1.0)
+    made.stop.set()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.simulated.autopilot.body.pace > 0.5)
+    made.simulated.mute()
+    until(lambda: any("cannot carry out RETURN" in line for line in made.said))
+    made.simulated.unmute()
+    until(lambda: any("is heard again" in line for line in made.said))
+    later = made.inbox.give(Order("land"))
+    assert code.result(30.0) == 5
+    assert later.confirmed, later.why
+    assert not made.simulated.autopilot.armed
+
+
+def test_a_stop_once_a_lost_vehicle_is_heard_again_stops_it(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0), on_stop="land")
     made.simulated.mute()
     code = in_background(lambda: made.ending().end(made.caught()))
     until(lambda: made.events() == ["LINK_LOST"])
-    made.simulated.faults.take_stick("loiter")
+    made.simulated.unmute()
+    until(lambda: any("is heard again" in line for line in made.said))
+    made.stop.set()
+    assert code.result(30.0) == 5
+    assert not made.simulated.autopilot.armed
+    assert away(made, NORTH) < 12.0
+
+
+def test_a_stop_ends_the_listening_for_a_vehicle_that_is_not_heard(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.simulated.mute()
+    ending = made.ending()
+    ending._lose = lambda: True
+    code = in_background(lambda: ending.end(made.caught()))
+    until(lambda: made.events() == ["LINK_LOST"])
+    made.stop.set()
+    assert code.result(20.0) == 5
+    assert made.simulated.autopilot.armed
+
+
+@pytest.mark.parametrize(
+    ("told", "mode"),
+    [("RETURN", "loiter"), ("RETURN", "alt_hold"), ("RETURN", "brake"), ("LAND", "return")],
+)
+def test_a_pilot_who_takes_a_vehicle_while_nobody_hears_it_is_left_alone(robot, told, mode):
+    made = robot(Policy("LINK_LOST", told, 5.0))
+    made.crew.pilot.waits.tell_vehicle()
+    made.simulated.mute()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.events() == ["LINK_LOST"])
+    made.simulated.faults.take_stick(mode)
     made.simulated.unmute()
     until(lambda: any("hands off until its motors are off" in line for line in made.said))
     order = made.inbox.give(Order("land"))
@@ -205,7 +253,24 @@ def test_a_pilot_who_takes_a_vehicle_while_nobody_hears_it_is_left_alone(robot):
     assert (order.confirmed, order.why) == (False, "somebody else has the vehicle")
     made.crew.desk.abandon.set()
     assert code.result(20.0) != 0
-    assert made.mode == "loiter"
+    assert made.mode == mode
+
+
+@pytest.mark.parametrize(
+    ("told", "mode"), [("LAND", "land"), ("EMERGENCY_AREA", "return"), ("HOLD", "brake")]
+)
+def test_what_a_vehicle_does_about_a_lost_link_as_it_was_told_is_no_pilots(robot, told, mode):
+    made = robot(Policy("LINK_LOST", told, 5.0))
+    made.crew.pilot.waits.tell_vehicle()
+    made.simulated.faults.cut_link()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.events() == ["LINK_LOST"] and made.mode == mode)
+    made.simulated.faults.mend_link()
+    until(lambda: any(f"is heard again, in mode {MODES[mode]}" in line for line in made.said))
+    later = made.inbox.give(Order("land"))
+    assert code.result(30.0) == 5
+    assert later.confirmed, later.why
+    assert not any("hands off" in line for line in made.said)
 
 
 def test_an_order_that_another_fault_overtakes_before_it_is_seen_is_not_confirmed(robot):
@@ -285,7 +350,18 @@ def test_a_pilot_who_takes_over_on_the_way_back_is_left_alone(robot):
     assert made.mode == "loiter"
 
 
-@pytest.mark.parametrize("mode", ["loiter", "stabilize"])
+PILOTED = pytest.mark.parametrize(
+    "mode",
+    [
+        "loiter",
+        "return",
+        "alt_hold",
+        *(pytest.param(mode, marks=pytest.mark.thorough) for mode in ("stabilize", "land", "brake")),
+    ],
+)
+
+
+@PILOTED
 def test_a_pilot_who_takes_over_before_the_response_begins_is_left_alone(robot, mode):
     made = robot(Policy("DEVICE_SILENT", "RETURN"))
     made.simulated.faults.take_stick(mode)
@@ -298,13 +374,78 @@ def test_a_pilot_who_takes_over_before_the_response_begins_is_left_alone(robot, 
     assert made.events() == ["DEVICE_SILENT"]
 
 
+@PILOTED
+def test_a_pilot_who_takes_over_right_before_a_stop_is_left_alone(robot, mode):
+    made = robot(on_stop="land" if mode != "land" else "hold")
+    made.simulated.faults.take_stick(mode)
+    until(lambda: made.crew.vehicle.state().mode != "guided")
+    heard = len(made.simulated.received)
+    made.stop.set()
+    made.crew.desk.abandon.set()
+    fault = made.caught()
+    assert fault.event == "TAKEN_OVER"
+    assert made.ending().end(fault) == 1
+    assert made.simulated.received[heard:] == []
+    assert made.mode == mode
+
+
+def land_for_the_battery(made) -> None:
+    """Have the vehicle land by itself since it finds its battery low."""
+    found = {"BATT_FS_LOW_ACT": 1.0, "BATT_LOW_TIMER": 0.0, "BATT_LOW_VOLT": 99.0}
+    with made.simulated.lock:
+        made.simulated.autopilot.parameters |= found
+    until(lambda: made.crew.vehicle.state().mode == "land")
+
+
 def test_a_landing_that_the_vehicle_began_itself_does_not_keep_it_from_its_way_home(robot):
     made = robot(Policy("PEER_LOST", "RETURN"))
-    with made.simulated.lock:
-        made.simulated.autopilot.set_mode(made.simulated.autopilot.numbers["land"])
-    until(lambda: made.crew.vehicle.state().mode == "land")
+    land_for_the_battery(made)
     assert made.ending().end(Fault("PEER_LOST", "nobody there")) == 1
     assert away(made, HOME) < 1.5
+
+
+def test_a_stop_goes_before_what_the_vehicle_does_by_itself(robot):
+    made = robot(Policy("BATTERY_LOW", "CONTINUE"), on_stop="return")
+    land_for_the_battery(made)
+    made.stop.set()
+    fault = made.caught()
+    assert fault.event == "STOPPED"
+    assert made.ending().end(fault) == 130
+    assert away(made, HOME) < 1.5
+
+
+def say_nothing_of_lost_links(made) -> None:
+    """Have the vehicle give no answer when it is told what to do about a lost link."""
+    with made.simulated.lock:
+        del made.simulated.autopilot.parameters["FS_GCS_ENABLE"]
+
+
+def test_an_order_to_a_vehicle_that_is_told_to_stay_after_a_stop_is_obeyed(robot):
+    made = robot()
+    say_nothing_of_lost_links(made)
+    code = in_background(lambda: made.ending().end(Stopped()))
+    until(lambda: "PARAM_SET" in [name for _, name in made.simulated.received])
+    order = made.inbox.give(Order("land"))
+    assert code.result(20.0) == 130
+    assert order.confirmed, order.why
+    assert not made.simulated.autopilot.armed
+
+
+def test_a_battery_that_gets_low_while_a_stopped_vehicle_is_told_to_stay_is_answered(robot):
+    made = robot(Policy("BATTERY_LOW", "LAND"))
+    say_nothing_of_lost_links(made)
+    code = in_background(lambda: made.ending().end(Stopped()))
+    until(lambda: "PARAM_SET" in [name for _, name in made.simulated.received])
+    made.simulated.faults.set_battery(0.05)
+    assert code.result(20.0) == 130
+    assert not made.simulated.autopilot.armed
+
+
+def test_a_stopped_vehicle_that_may_not_stay_is_told_of(robot):
+    made = robot()
+    say_nothing_of_lost_links(made)
+    assert made.ending().end(Stopped()) == 130
+    assert any("it may not stay where it is when this program has ended" in line for line in made.said)
 
 
 @pytest.mark.parametrize("begun", [False, True])

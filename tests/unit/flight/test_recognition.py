@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 from flight_crew import HOME, robot_of
+from patience import until
 
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.program import Geographic
-from mmrs_core.flight.vehicles.recognition import refuse_neighbours
+from mmrs_core.flight.vehicles.recognition import recognise, refuse_neighbours
 
 
 def north(metres: float) -> Geographic:
@@ -38,3 +40,45 @@ def test_a_vehicle_near_its_own_home_is_the_robots(apart, away):
 
 def test_a_robot_alone_has_nobody_to_be_taken_for():
     refuse_neighbours(robot_of(), north(19.0))
+
+
+@pytest.fixture
+def found(in_the_air):
+    """Return a function that gives a vehicle in the air, in a mode, as a process finds it that goes on."""
+
+    def fly(mode: str, parameters: dict[str, float]):
+        made = in_the_air()
+        with made.simulated.lock:
+            made.simulated.autopilot.parameters |= parameters
+        made.simulated.faults.take_stick(mode)
+        until(lambda: made.crew.vehicle.telemetry.mode() == made.simulated.autopilot.numbers[mode])
+        made.crew.vehicle.take_back()
+        return made
+
+    return fly
+
+
+def recognised(made) -> None:
+    crew = made.crew
+    recognise(crew.link, crew.vehicle, crew.robot, inf, under_way=True, system=0)
+
+
+@pytest.mark.parametrize(("mode", "answer"), [("return", 1.0), ("smart_return", 3.0), ("guided", 0.0)])
+def test_a_vehicle_that_does_by_itself_what_it_does_about_a_lost_link_is_gone_on_with(found, mode, answer):
+    recognised(found(mode, {"FS_GCS_ENABLE": answer}))
+
+
+@pytest.mark.parametrize(
+    ("mode", "answer"), [("return", 5.0), ("return", 0.0), ("alt_hold", 1.0), ("smart_return", 1.0)]
+)
+def test_a_vehicle_that_does_otherwise_may_have_a_pilot(found, mode, answer):
+    with pytest.raises(Refused, match="a pilot may have it"):
+        recognised(found(mode, {"FS_GCS_ENABLE": answer}))
+
+
+def test_a_vehicle_that_does_not_tell_what_it_does_about_a_lost_link_may_have_a_pilot(found):
+    made = found("return", {"FS_GCS_ENABLE": 1.0})
+    with made.simulated.lock:
+        del made.simulated.autopilot.parameters["FS_GCS_ENABLE"]
+    with pytest.raises(Refused, match="a pilot may have it"):
+        recognised(made)

@@ -1,0 +1,137 @@
+"""Who has put a vehicle into another mode than it was told: the vehicle itself, and for what, or a pilot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+from ..clock import Clock
+from ..faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
+from ..links.link import Link
+from ..program import Robot
+from ..vehicles import modes
+from ..vehicles.mavlink_vehicle import MavlinkVehicle
+from ..vehicles.signs import STARTED_ANEW, Signs
+
+CAUSE_SECONDS = 1.5
+"""For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""
+
+RESTART_SECONDS = 4.0
+"""For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
+
+FIRST_MODE = 0
+"""The mode that ArduPilot starts in unless it is told otherwise."""
+
+Cause = tuple[str, str]
+"""An event, and the reason to believe that it is there."""
+
+
+class Departures:
+    """Looks for what a vehicle has left its mode for.
+
+    Attributes:
+        looking: whether it does so right now, while nothing may be sent.
+        taken: whether it has found that a pilot has taken over.
+        taken_back: when the vehicle was taken back last; what it had said until then explains nothing more.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        link: Link,
+        vehicle: MavlinkVehicle,
+        signs: Signs,
+        answers: Callable[[str], bool],
+    ) -> None:
+        """Look at a vehicle; `answers` tells whether the robot is to answer an event that happens now."""
+        self.looking = self.taken = False
+        self.taken_back = -inf
+        self._kind, self._answers = robot.vehicle, answers
+        self._link, self._vehicle, self._signs = link, vehicle, signs
+
+    @property
+    def _clock(self) -> Clock:
+        return self._link.clock
+
+    def find(self, *, moving: bool) -> Cause | None:
+        """Return what the vehicle has answered by leaving its mode; None: it has not left it.
+
+        The cause is waited for as long as it may still be on its way.
+
+        Args:
+            moving: whether the robot is under way.
+
+        Raises:
+            Fault: a pilot has taken over, as far as anybody can tell.
+        """
+        left = _left(self._vehicle)
+        if left is None:
+            return None
+        self.looking = True
+        try:
+            found = self._await_cause(moving)
+        finally:
+            self.looking = False
+        if found is None:
+            self.taken = True
+            raise _taken_over(left, self._vehicle)
+        return found
+
+    def check(self, event: str, *, moving: bool) -> None:
+        """Make sure that the vehicle has left its mode for nothing but what it answers by itself.
+
+        Args:
+            event: that is responded to; a mode in which the vehicle answers it by itself is no pilot's.
+            moving: whether the robot is under way.
+
+        Raises:
+            Fault: a pilot has taken over, as far as anybody can tell.
+        """
+        tells = self._vehicle.telemetry
+        if not tells.armed() or event == VEHICLE_RESTARTED:
+            return
+        said = [text.text for found, text in tells.announcements.recent() if found == event]
+        if tells.mode() not in self._vehicle.answers_to(event, said):
+            self.find(moving=moving)
+
+    def _await_cause(self, moving: bool) -> Cause | None:
+        tells, signs, link = self._vehicle.telemetry, self._signs, self._link
+        if not tells.armed() or tells.mode() == FIRST_MODE:
+            # One that has started anew has lost its position, too: that is no cause.
+            anew = link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
+            return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None
+        by_itself = tells.mode() in modes.of_failsafes(link, self._kind) | self._vehicle.modes_alone
+        seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
+        return link.wait(lambda: self._cause(moving), seconds)
+
+    def _cause(self, moving: bool) -> Cause | None:
+        """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
+        if self._signs.restarted and moving:
+            return VEHICLE_RESTARTED, STARTED_ANEW
+        mode, tells = self._vehicle.telemetry.mode(), self._vehicle.telemetry.announcements
+        told = [(event, text.text) for event, text in tells.recent()]
+        for event, why in (*self._signs.seen(moving=moving), *told):
+            said = tells.of_this_mode(event, self.taken_back)
+            if why and mode in self._vehicle.answers_to(event, (said,)):
+                if self._answers(event):
+                    return event, why
+                if said:
+                    return event, said
+        return None
+
+
+def _taken_over(left: Fault, vehicle: MavlinkVehicle) -> Fault:
+    """Return that a pilot has taken over, in the words of why the vehicle is elsewhere, if these say so."""
+    if left.event == TAKEN_OVER:
+        return left
+    mode = vehicle.state().mode
+    return Fault(TAKEN_OVER, f"the vehicle has gone into mode {mode}: somebody else has taken over")
+
+
+def _left(vehicle: MavlinkVehicle) -> Fault | None:
+    """Return why the vehicle is no longer in the mode that it should be in; None if it is."""
+    try:
+        vehicle.check()
+    except Fault as fault:
+        return fault
+    return None
