@@ -24,7 +24,7 @@ def test_an_option_of_the_backend_that_makes_no_sense_is_wrong_usage(options):
 def test_a_key_of_the_wrong_length_is_wrong_usage_and_one_that_is_not_there_cannot_be_read(tmp_path):
     key = tmp_path / "short.key"
     key.write_bytes(b"abc")
-    with pytest.raises(typer.BadParameter, match="--signing-key .*short.key: holds 3 bytes instead of 32"):
+    with pytest.raises(typer.BadParameter, match=r"--signing-key .*short\.key: holds 3 bytes instead of 32"):
         check_mavlink(Wishes(Path("logs"), options={"signing-key": str(key)}), {}, ("alpha",))
     with pytest.raises(FileNotFoundError):
         check_mavlink(Wishes(Path("logs"), options={"signing-key": str(tmp_path / "no")}), {}, ("alpha",))
