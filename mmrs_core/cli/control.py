@@ -39,7 +39,8 @@ def control(
     Example: mmrs control hold Drone1 --log logs
     """
     from mmrs_core.errors import LinkLostError
-    from mmrs_core.flight.orders.ordering import Unreachable, words
+    from mmrs_core.flight.orders.calling import Unreachable
+    from mmrs_core.flight.orders.ordering import words
     from mmrs_core.flight.orders.orders import STATUS
     from mmrs_core.flight.orders.standing import lines_of
 

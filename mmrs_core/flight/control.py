@@ -28,7 +28,7 @@ from typing import Any
 
 from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
 
-FILE = "control.json"
+FILE, FILES = "control.json", "control*.json"
 ANSWER_SECONDS = 30.0
 """Longest time that a robot has for an answer; a client may ask for less with `seconds`."""
 
@@ -194,8 +194,9 @@ def _announce(folder: Path, text: str) -> Path:
     """Write the announcement where no process that is still there has put its own."""
     folder.mkdir(parents=True, exist_ok=True)
     usual = folder / FILE
-    if usual.exists() and not _answers(usual):
-        usual.unlink(missing_ok=True)
+    for path in folder.glob(FILES):
+        if _was_left(path):
+            path.unlink(missing_ok=True)
     for path in (usual, folder / f"{usual.stem}-{os.getpid()}{usual.suffix}"):
         try:
             number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -207,13 +208,16 @@ def _announce(folder: Path, text: str) -> Path:
     raise FileExistsError(EEXIST, "already there, of a process that still runs", str(usual))
 
 
-def _answers(path: Path) -> bool:
+def _was_left(path: Path) -> bool:
+    """Return whether an announcement is that of a process that is not there any more."""
     try:
         port = int(json.loads(path.read_text("ascii"))["port"])
         socket.create_connection(("127.0.0.1", port), 1.0).close()
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
-    return True
+    except (ValueError, KeyError, TypeError):
+        return False  # it may be being written right now
+    except OSError:
+        return True
+    return False
 
 
 if __name__ == "__main__":

@@ -4,26 +4,20 @@ from __future__ import annotations
 
 import argparse
 import json
-import socket
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ..screen import bear_all_characters
+from .calling import Unreachable, asked_at_once
 from .orders import ANSWER, ORDERS, STATUS
 from .standing import lines_of
 
 PATTERN = "control*.json"
-CALL_SECONDS = 5.0
 USUAL_SECONDS = 10.0
 WORDS = {"yes": True, "no": False}
-
-
-class Unreachable(Exception):  # noqa: N818  # reads as what it says of the robots
-    """There is no process to give the order to, or it does not listen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +52,8 @@ def give(
 ) -> Iterator[dict[str, Any]]:
     """Give an order, and yield what each robot says as soon as it says it.
 
+    A process that has died, or hangs, keeps the order from nobody else: it is told of its robots.
+
     Args:
         folder: of the robots' logs.
         order: one of `ORDERS`.
@@ -70,8 +66,8 @@ def give(
         `robot`, `order`, `confirmed`, `seconds`, `why`; for ``status`` the robot's state.
 
     Raises:
-        Unreachable: a process does not listen, or one of the robots is nowhere.
-        ValueError: a process does not understand the order.
+        Unreachable: one of the robots is nowhere, or no process can be reached at all.
+        ValueError: no process understands the order.
     """
     found = channels(folder)
     missing = [robot for robot in robots if not any(robot in channel.robots for channel in found)]
@@ -79,14 +75,55 @@ def give(
         known = ", ".join(repr(robot) for channel in found for robot in channel.robots)
         raise Unreachable(f"{', '.join(map(repr, missing))}: not running; there are {known}")
     content = {"order": order, "question": question, "answer": answer, "seconds": seconds}
-    with ExitStack() as stack:
-        calls = [
-            stack.enter_context(_call(channel, {**content, "robots": wanted}, seconds))
-            for channel in found
-            if (wanted := [robot for robot in channel.robots if not robots or robot in robots])
-        ]
-        replies = (reply for call in calls for reply in _replies(call))
-        yield from replies if robots or order != ANSWER else _of_those_who_ask([*replies])
+    replies = _replies(_chosen(found, robots), content, seconds)
+    yield from replies if robots or order != ANSWER else _of_those_who_ask([*replies])
+
+
+def _chosen(found: Sequence[Channel], robots: Sequence[str]) -> list[Channel]:
+    """Return the processes that run some of these robots, or any where there are none, with these alone."""
+    parts = (
+        replace(channel, robots=tuple(each for each in channel.robots if not robots or each in robots))
+        for channel in found
+    )
+    return [channel for channel in parts if channel.robots]
+
+
+def _replies(
+    asked: Sequence[Channel], content: Mapping[str, Any], seconds: float
+) -> Iterator[dict[str, Any]]:
+    requests = [
+        (channel.port, {"token": channel.token, **content, "robots": list(channel.robots)})
+        for channel in asked
+    ]
+    heard: set[str] = set()
+    lost: list[tuple[Channel, Exception]] = []
+    for number, said in asked_at_once(requests, seconds):
+        if isinstance(said, Exception):
+            lost.append((asked[number], said))
+        else:
+            heard.add(said["robot"])
+            yield said
+    if not heard:
+        _raise_for(lost)
+    # Who was started again has a process that answers beside the one that does not.
+    silent = {robot: str(why) for channel, why in lost for robot in channel.robots if robot not in heard}
+    for robot, why in silent.items():
+        yield _silent(robot, str(content["order"]), why)
+
+
+def _raise_for(lost: Sequence[tuple[Channel, Exception]]) -> None:
+    for _, error in lost:
+        if isinstance(error, ValueError):
+            raise error
+    if lost:
+        raise Unreachable("; ".join(f"{', '.join(map(repr, each.robots))}: {why}" for each, why in lost))
+
+
+def _silent(robot: str, order: str, why: str) -> dict[str, Any]:
+    """Return what is said for a robot whose process says nothing."""
+    if order == STATUS:
+        return {"robot": robot, "phase": why}
+    return {"robot": robot, "order": order, "confirmed": False, "seconds": 0.0, "why": why}
 
 
 def _of_those_who_ask(replies: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -159,26 +196,3 @@ def _read(path: Path) -> Iterator[Channel]:
     except (OSError, ValueError, KeyError, TypeError):
         # It is being written, or taken away, right now; what was meant to be there will be in a moment.
         return
-
-
-def _call(channel: Channel, content: dict[str, Any], seconds: float) -> socket.socket:
-    try:
-        connection = socket.create_connection(("127.0.0.1", channel.port), CALL_SECONDS)
-    except OSError as error:
-        shown = ", ".join(map(repr, channel.robots))
-        raise Unreachable(f"{shown}: no longer running: {error.strerror or error}") from error
-    connection.settimeout(seconds + CALL_SECONDS)
-    connection.sendall(json.dumps({"token": channel.token, **content}).encode("ascii") + b"\n")
-    return connection
-
-
-def _replies(connection: socket.socket) -> Iterator[dict[str, Any]]:
-    with connection.makefile("rb") as file:
-        for line in file:
-            reply = json.loads(line)
-            if "error" in reply:
-                raise ValueError(reply["error"])
-            if reply.get("done") is True:
-                return
-            yield reply
-    raise Unreachable("the robots' process has ended before its answer")

@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import Transition
-from mmrs_core.flight.orders.ordering import Unreachable, give
+from mmrs_core.flight.orders.calling import Unreachable
+from mmrs_core.flight.orders.ordering import give
 from mmrs_core.testing.programs import LAND, go_to, move, photo, program, robot_program, take_off
 
 BRAKE, GUIDED, LANDING = 17, 4, 9

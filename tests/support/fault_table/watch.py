@@ -10,7 +10,8 @@ from math import dist, inf
 from fault_table.fleet import Fleet
 from fault_table.record import MOMENTS, Struck, answered, ending, stops_short, story, strayed, struck, talked
 from fault_table.row import Outcome, Row, within
-from mmrs_core.flight.orders.ordering import Unreachable, give
+from mmrs_core.flight.orders.calling import Unreachable
+from mmrs_core.flight.orders.ordering import give
 
 HANDS_OFF_SECONDS = 3.0
 """Seconds of the run after which nothing may be said any more to a vehicle whose pilot has taken over: a

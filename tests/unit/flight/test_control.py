@@ -9,12 +9,14 @@ import stat
 import subprocess
 import sys
 import threading
+import time
 from contextlib import ExitStack
 
 import pytest
 
 from mmrs_core.flight.control import Control
-from mmrs_core.flight.orders.ordering import Unreachable, give, main
+from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable
+from mmrs_core.flight.orders.ordering import give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.questions import Questions
 
@@ -190,13 +192,73 @@ def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, inboxes, 
     assert {reply["robot"] for reply in give(tmp_path, "hold")} == {"alpha", "beta"}
 
 
-def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, opened, inboxes, robots):
+def left_by_a_killed_process(folder, robots, name="control-1.json"):
+    """Announce a process that is not there any more."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        facts = {"port": server.getsockname()[1], "token": "old", "robots": ["alpha"]}
-    (tmp_path / "control.json").write_text(json.dumps(facts), "ascii")
+        facts = {"port": server.getsockname()[1], "token": "old", "robots": robots}
+    (folder / name).write_text(json.dumps(facts), "ascii")
+
+
+def test_the_announcement_of_a_process_that_was_killed_is_replaced(tmp_path, opened, inboxes, robots):
+    left_by_a_killed_process(tmp_path, ["alpha"], "control.json")
     opened(inboxes)
     robots(*inboxes.values())
     assert len(list(give(tmp_path, "hold"))) == 2
+
+
+def test_a_killed_process_keeps_no_order_from_the_robots_of_others(tmp_path, opened, inboxes, robots, capsys):
+    opened(inboxes)
+    robots(*inboxes.values())
+    left_by_a_killed_process(tmp_path, ["gamma"])
+    replies = {reply["robot"]: reply for reply in give(tmp_path, "stop")}
+    assert (replies["alpha"]["confirmed"], replies["beta"]["confirmed"]) == (True, True)
+    assert (replies["gamma"]["confirmed"], replies["gamma"]["why"]) == (False, "its process no longer runs")
+    assert main(["status", "--log", str(tmp_path)]) == 0
+    assert "'gamma'  its process no longer runs" in capsys.readouterr().out
+
+
+def test_a_process_that_hangs_keeps_no_order_from_the_robots_of_others(tmp_path, opened, inboxes, robots):
+    opened(inboxes)
+    robots(*inboxes.values())
+    with socket.create_server(("127.0.0.1", 0)) as frozen:
+        facts = {"port": frozen.getsockname()[1], "token": "", "robots": ["gamma"]}
+        (tmp_path / "control-1.json").write_text(json.dumps(facts), "ascii")
+        replies, begun = give(tmp_path, "hold", seconds=0.2), time.monotonic()
+        assert {next(replies)["robot"], next(replies)["robot"]} == {"alpha", "beta"}
+        assert time.monotonic() - begun < CALL_SECONDS
+        last = next(replies)
+    assert (last["robot"], last["why"]) == ("gamma", "its process does not answer")
+
+
+def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_once(
+    tmp_path, opened, inboxes, robots
+):
+    opened(inboxes)
+    robots(*inboxes.values())
+    left_by_a_killed_process(tmp_path, ["alpha"])
+    assert [reply["confirmed"] for reply in give(tmp_path, "hold", ["alpha"])] == [True]
+
+
+def test_where_all_processes_were_killed_nobody_can_be_reached(tmp_path):
+    left_by_a_killed_process(tmp_path, ["alpha", "beta"])
+    left_by_a_killed_process(tmp_path, ["gamma"], "control.json")
+    words = "'alpha', 'beta': its process no longer runs; 'gamma': its process no longer runs"
+    with pytest.raises(Unreachable, match=words):
+        list(give(tmp_path, "hold"))
+
+
+def test_whoever_is_started_takes_away_what_killed_processes_have_left(tmp_path, opened, inboxes):
+    left_by_a_killed_process(tmp_path, ["alpha"])
+    left_by_a_killed_process(tmp_path, ["gamma"], "control.json")
+    opened(inboxes)
+    assert [path.name for path in tmp_path.iterdir()] == ["control.json"]
+
+
+def test_an_announcement_that_is_being_written_is_left_alone(tmp_path, opened, inboxes):
+    (tmp_path / "control.json").touch()
+    opened(inboxes)
+    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(give(tmp_path, "status"))) == 2
 
 
 def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path, inboxes):

@@ -1,0 +1,73 @@
+"""Calls of the processes that run robots: all at once, so that none that hangs keeps the others waiting."""
+
+from __future__ import annotations
+
+import json
+import queue
+import socket
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+CALL_SECONDS = 5.0
+
+Request = tuple[int, Mapping[str, Any]]
+"""A port of this machine, and what is asked there."""
+
+
+class Unreachable(Exception):  # noqa: N818  # reads as what it says of the robots
+    """There is no process to give the order to, or it does not answer."""
+
+
+def asked_at_once(
+    requests: Sequence[Request], seconds: float
+) -> Iterator[tuple[int, dict[str, Any] | Exception]]:
+    """Yield whatever is answered as soon as it is, with the number of the request.
+
+    The last of a request that fails is `Unreachable`, or a `ValueError` where it is not understood.
+
+    Args:
+        requests: each to a process.
+        seconds: that a process may take for an answer.
+    """
+    said: queue.SimpleQueue[tuple[int, dict[str, Any] | Exception | None]] = queue.SimpleQueue()
+
+    def ask(number: int, request: Request) -> None:
+        try:
+            for reply in _replies(*request, seconds):
+                said.put((number, reply))
+        except (Unreachable, ValueError) as error:
+            said.put((number, error))
+        said.put((number, None))
+
+    for number, request in enumerate(requests):
+        threading.Thread(target=ask, args=(number, request), name="call", daemon=True).start()
+    left = len(requests)
+    while left:
+        number, reply = said.get()
+        if reply is None:
+            left -= 1
+        else:
+            yield number, reply
+
+
+def _replies(port: int, content: Mapping[str, Any], seconds: float) -> Iterator[dict[str, Any]]:
+    try:
+        with socket.create_connection(("127.0.0.1", port), CALL_SECONDS) as connection:
+            connection.settimeout(seconds + CALL_SECONDS)
+            connection.sendall(json.dumps(content).encode("ascii") + b"\n")
+            with connection.makefile("rb") as file:
+                for line in file:
+                    reply = json.loads(line)
+                    if "error" in reply:
+                        raise ValueError(reply["error"])
+                    if reply.get("done") is True:
+                        return
+                    yield reply
+    except TimeoutError as error:
+        raise Unreachable("its process does not answer") from error
+    except ConnectionRefusedError as error:
+        raise Unreachable("its process no longer runs") from error
+    except OSError as error:
+        raise Unreachable(f"its process cannot be reached: {error.strerror or error}") from error
+    raise Unreachable("its process has ended before its answer")
