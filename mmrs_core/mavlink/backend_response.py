@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_core.flight.faults import LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_core.flight.faults import FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
 from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.steps.obeying import obeying, undone
 from mmrs_core.flight.steps.responding import respond
-from mmrs_core.flight.steps.responses import LAND, NEEDS_POSITION
+from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION
 from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend_moves import Moves
-from mmrs_core.mavlink.backend_worker import Job
+from mmrs_core.mavlink.backend_worker import Interrupted, Job
 
 KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
 
@@ -25,6 +25,7 @@ class Response:
         name: of the response that it was told last; empty: it follows its program.
         holds: whether it stays where it is with its motors running, so that somebody must watch it.
         hands_off: whether somebody else has it.
+        failed: is told what comes out of code that is wrong, or somebody else's.
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class Response:
         self._handled: set[str] = set()
         self._shown: Callable[[], bool] = lambda: False
         self._instead = ""
+        self.failed: Callable[[BaseException], None] = lambda error: None
 
     def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
         """Return what is to be done about a fault; None where the vehicle cannot be told anything.
@@ -91,6 +93,17 @@ class Response:
 
     def _carry_out(self, name: str, event: str) -> None:
         self._watch.check_hands(event)
-        track = self._moves.track
-        self.holds = respond(name, self._robot, self._vehicle, track, lambda movement: movement())
+        self.holds = self._respond(name)
         self._watch.moving = self.holds
+
+    def _respond(self, name: str) -> bool:
+        """Do what was told, or, where the program itself fails, halt; return whether it must be watched."""
+        track = self._moves.track
+        try:
+            return respond(name, self._robot, self._vehicle, track, lambda movement: movement())
+        except (Fault, Interrupted):
+            raise
+        except FAILURES as error:
+            self.failed(error)
+            self._instead = f"the program itself fails: {error!r}: it does {HOLD}"
+            return self._vehicle.hold()

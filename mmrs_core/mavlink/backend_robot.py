@@ -6,11 +6,19 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
+from traceback import format_exception
 
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.crews import told_of
-from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, LINK_LOST, VEHICLE_RESTARTED, Displaced
+from mmrs_core.flight.faults import (
+    BATTERY_LOW,
+    CRASHED,
+    DEVICE_SILENT,
+    LINK_LOST,
+    VEHICLE_RESTARTED,
+    Displaced,
+)
 from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
@@ -62,6 +70,7 @@ class MavlinkBackend:
             f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
         )
         self._worker.changed = equipment.wake
+        self._worker.failed = self._response.failed = self._note_failure
         equipment.link.guard = self._worker.guard
 
     def prepare(self, now: float) -> None:
@@ -175,12 +184,14 @@ class MavlinkBackend:
         return self._watch.looking or (self._watch.taken and not self._response.hands_off)
 
     def watched(self, now: float) -> bool:
-        """Return whether the motors run, and the vehicle holds, a pilot has it, or its link is lost.
+        """Return whether the motors run, and it holds, a pilot has it, its link is lost, or nothing works.
 
         Without the heartbeats of this process, it might fly away from the pilot.
         """
         armed = self._with.vehicle.state().armed
-        if (found := self._worker.fault) is not None:
+        if (found := self._worker.fault) is not None and found.event == CRASHED:
+            return armed
+        if found is not None:
             return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
         return self._response.holds or (self._response.hands_off and armed)
 
@@ -261,6 +272,12 @@ class MavlinkBackend:
 
     def _note_decision(self, what: str, why: str, response: str) -> None:
         self.note("decision", {"what": what, "why": why, "response": response})
+
+    def _note_failure(self, error: BaseException) -> None:
+        """Tell people, and the black box, where the program itself has failed."""
+        trace = "".join(format_exception(error))
+        self._with.say(f"the program itself fails: {trace}")
+        self.note("failed", {"error": repr(error), "trace": trace})
 
     def _look(self) -> None:
         """Look after the vehicle, whatever it does; what it has left by itself is begun again.

@@ -6,7 +6,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-from mmrs_core.flight.faults import CRASHED, Fault
+from mmrs_core.flight.faults import CRASHED, FAILURES, Fault
 
 IDLE_SECONDS = 0.1
 """Real seconds between two looks at a vehicle that has nothing to do."""
@@ -48,6 +48,8 @@ class Worker:
 
     Attributes:
         fault: what went wrong, until something is begun afresh.
+        changed: called when it has done something, or failed to.
+        failed: is told what comes out of code that is wrong, or somebody else's.
     """
 
     def __init__(
@@ -69,6 +71,7 @@ class Worker:
         """
         self.fault: Fault | None = None
         self.changed: Callable[[], None] = lambda: None
+        self.failed: Callable[[BaseException], None] = lambda error: None
         self._watch, self._idle, self._halt, self._go_on = watch, idle, halt, go_on
         self._news = threading.Condition()
         self._job: Job | None = None
@@ -179,7 +182,8 @@ class Worker:
             return
         except Fault as fault:
             self._fail(fault)
-        except Exception as error:  # the thread must live on: the robot may still have to be stopped
+        except FAILURES as error:  # the thread must live on: the robot may still have to be stopped
+            self.failed(error)
             self._fail(Fault(CRASHED, f"the program itself fails: {error!r}"))
 
     def _work(self) -> None:

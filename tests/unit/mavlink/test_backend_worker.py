@@ -137,10 +137,17 @@ def test_nothing_more_is_done_after_a_fault_until_something_is_begun_afresh(yard
     assert yard.worker.fault is None
 
 
-def test_what_a_part_raises_is_a_fault_of_the_robot_and_the_thread_lives_on(yard):
-    yard.worker.begin(Job(lambda: 1 / 0))
+@pytest.mark.parametrize("error", [ZeroDivisionError("by zero"), SystemExit(0)])
+def test_what_a_part_raises_is_told_as_a_fault_of_the_robot_and_the_thread_lives_on(yard, error):
+    def fail():
+        raise error
+
+    told = []
+    yard.worker.failed = told.append
+    yard.worker.begin(Job(fail))
     assert yard.news.wait(20.0)
     assert yard.worker.fault.event == CRASHED
+    assert told == [error]
     yard.worker.begin(Job(yard.do("more")), afresh=True)
     yard.until(lambda: yard.did == ["more"])
 

@@ -1,0 +1,50 @@
+"""A response under the interpreter that fails itself, with a simulated vehicle."""
+
+from __future__ import annotations
+
+import pytest
+from flight_crew import manned, robot_of
+
+from mmrs_core.flight.program import Place
+from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend_response import Response
+
+pytestmark = pytest.mark.xdist_group("real time")
+NOWHERE = tuple((move, "no place at all") for move in ("up", "out"))
+
+
+@pytest.fixture
+def made(tmp_path):
+    """Return a robot 22 metres north of its home whose emergency area the program cannot make out."""
+    with manned(tmp_path, robot_of(escapes=NOWHERE)) as made:
+        made.fly_out()
+        yield made
+
+
+def response_of(made) -> tuple[Response, list[BaseException]]:
+    crew, failed = made.crew, []
+    moves = Moves(crew.robot, crew.vehicle, crew.desk.clock, {}, lambda kind, name, content: None)
+    track: list[tuple[str, Place]] = crew.pilot.track
+    moves.track = track
+    response = Response(crew.robot, crew.vehicle, crew.watch, moves, made.said.append, 20.0)
+    response.failed = failed.append
+    return response, failed
+
+
+def test_a_response_that_fails_itself_halts_the_vehicle_and_is_told_as_not_done(made):
+    response, failed = response_of(made)
+    job = response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, heard=True)
+    job.run()
+    assert made.mode == "brake"
+    assert response.holds
+    assert response.undone.startswith("the program itself fails: ValueError")
+    assert response.undone.endswith(": it does HOLD")
+    assert len(failed) == 1
+
+
+def test_what_is_told_next_is_done_as_ever(made):
+    response, _ = response_of(made)
+    response.begin("EMERGENCY_AREA", None, lambda what, why, does: None, heard=True).run()
+    response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
+    assert not made.simulated.autopilot.armed
+    assert (response.holds, response.undone) == (False, "")
