@@ -1,7 +1,7 @@
 """Whether a vehicle really flies the items of its mission that it says it has left behind.
 
-MISSION_CURRENT alone proves nothing: another ground station may set the mission ahead, and the
-vehicle then goes straight to an item over ground that nobody has checked.
+MISSION_CURRENT alone proves nothing: another ground station may set the mission ahead, or replace it,
+and the vehicle then goes straight to an item over ground that nobody has checked.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from ..faults import NO_PROGRESS, Fault
 from ..places import distance, distance_to_leg
 from ..program import Place
+from .corridor import Corridor
 from .trail import Trail
 
 NEAR_METRES = 4.0
@@ -29,7 +30,12 @@ class Following:
     """
 
     def __init__(
-        self, trail: Trail, places: Mapping[int, Place], item: Callable[[], int], first: int
+        self,
+        trail: Trail,
+        places: Mapping[int, Place],
+        item: Callable[[], int],
+        first: int,
+        width: float | None = None,
     ) -> None:
         """Begin at an item, before the vehicle does: it may be past it when it is heard to fly.
 
@@ -38,6 +44,7 @@ class Following:
             places: by item.
             item: gives the item that the vehicle is at; less than 0: not known.
             first: that it begins with.
+            width: metres that the vehicle may be beside the legs between the places; None: any number.
         """
         self._trail = trail
         self._places = places
@@ -45,6 +52,8 @@ class Following:
         self._claimed = self._proven = first
         self._claimed_order = self._judged_order = -1
         self._here = trail.begun
+        corners = (trail.begun, *(places[seq] for seq in sorted(places)))
+        self._corridor = Corridor(() if width is None else corners, width or 0.0)
         self._missed: dict[int, float] = {}
         self._since: dict[int, int] = {}
         self._approach(self._here)
@@ -53,10 +62,11 @@ class Following:
         """Take note of where the vehicle is; return the first item that it has not surely left behind.
 
         Raises:
-            Fault: it has left items out, or has gone back.
+            Fault: it has left items out, or has gone back, or is elsewhere.
         """
         for place in self._trail.passed():
             self._approach(place)
+            self._corridor.check(place)
         self._claim(self._item())
         self._count()
         while self._proven < self._claimed and self._was_near(self._proven):

@@ -23,6 +23,7 @@ from ..services.missions import Item, mark_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import modes, preparation, safeguards
+from .corridor import width_for
 from .enclosure import enclose
 from .evidence import LinkEvidence
 from .following import Following
@@ -78,6 +79,7 @@ class MavlinkVehicle:
         self._mission: Sequence[Item] = ()
         self._mark = 0
         self._alone: frozenset[int] = frozenset()
+        self._width: float | None = None
 
     def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
@@ -102,6 +104,7 @@ class MavlinkVehicle:
             self._mission = uploads.mission
             mission = self._helm.habits.mission(uploads.mission)
             self._mark = preparation.replace_all(self._link, mission, uploads.fence, uploads.rally)
+            self._width = width_for(self._link, self._kind)
         if self._mission and (changed := keep_place(self._link)):
             self._tell(changed)
         for line in safeguards.report(self._link, self._kind):
@@ -197,7 +200,7 @@ class MavlinkVehicle:
         self._check_mission()
         self._select(first)
         with self._telemetry.trail() as trail:
-            following = Following(trail, self._places(first, last), self._item, first)
+            following = Following(trail, self._places(first, last), self._item, first, self._width)
             self._helm.enter(modes.AUTO)
             if (speed := speed_before(self._mission, first)) is not None:
                 command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
@@ -400,6 +403,7 @@ class MavlinkVehicle:
 
     def _await_item_after(self, seq: int, following: Following) -> int:
         def behind() -> int | None:
+            self._check_mission()
             now = following.look()
             return now if now > seq else None
 

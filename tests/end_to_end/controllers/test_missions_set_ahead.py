@@ -1,13 +1,15 @@
-"""Another ground station moves a robot's mission on, or back: nobody has checked where that leads."""
+"""Others move a robot's mission on, or back, or replace it: nobody has checked where that leads."""
 
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import pytest
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
+from mmrs_core.sitl.items import MISSION
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
 
 AUTO, BRAKE = 3, 17
@@ -50,3 +52,25 @@ def test_a_mission_that_somebody_else_moves_ends_in_a_hold_and_is_not_logged_as_
     ended = [step.move for step in steps if step.label == "end" and step.move.startswith("p")]
     assert len(ended) < len(PLACES)
     assert "NO_PROGRESS" in [step.detail for step in steps if step.label == "fault"]
+
+
+def test_a_robot_whose_mission_was_replaced_is_held_before_it_is_far_from_where_it_should_be(
+    controllers, hangar
+):
+    made = controllers(mission())
+    vehicles, links = hangar(made.program, speedup=5.0)
+    autopilot = vehicles["alpha"].autopilot
+    with made.start("fleet.py", *links, "--on-stop", "land") as process:
+        while not (autopilot.mode == AUTO and autopilot.item > 1):
+            assert process.poll() is None
+            threading.Event().wait(0.02)
+        elsewhere = [replace(item, y=item.y + 20_000) for item in autopilot.stores[MISSION]]
+        autopilot.stores[MISSION] = elsewhere
+        while autopilot.mode == AUTO:
+            assert process.poll() is None
+            threading.Event().wait(0.02)
+        assert autopilot.mode == BRAKE
+        process.terminate()
+        _, said = process.communicate(timeout=60)
+    assert "off all legs of its run: it may have got another mission" in said
+    assert max(east for _, _, east, _ in autopilot.track) < 60.0 + 20.0

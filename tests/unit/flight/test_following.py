@@ -121,3 +121,42 @@ def test_places_that_were_passed_while_nobody_looked_are_believed():
     vehicle.places = [Local(50.0, 0.0, 20.0), Local(100.0, 0.0, 20.0), Local(100.0, 30.0, 20.0)]
     vehicle.item, vehicle.sent = 4, 2
     assert following.look() == 4
+
+
+@pytest.fixture
+def kept():
+    """Return a function that moves a vehicle that is to stay within eight metres of its legs."""
+    vehicle = Vehicle()
+    following = Following(vehicle, PLACES, lambda: vehicle.item, 1, 8.0)
+    vehicle.item = 2
+
+    def move(north, east, up=20.0):
+        vehicle.places = [Local(north, east, up)]
+        vehicle.sent += 2
+        following.look()
+
+    return move
+
+
+def test_a_vehicle_that_leaves_its_legs_is_a_fault_as_soon_as_it_is_sure(kept):
+    kept(10.0, 7.0)
+    kept(20.0, 9.0)
+    with pytest.raises(Fault, match="11 m off all legs of its run"):
+        kept(20.0, 11.0)
+
+
+def test_a_vehicle_that_climbs_away_is_a_fault(kept):
+    kept(10.0, 0.0, 29.0)
+    with pytest.raises(Fault, match="10 m off"):
+        kept(10.0, 0.0, 30.0)
+
+
+def test_one_position_elsewhere_is_none(kept):
+    for _ in range(5):
+        kept(20.0, 30.0)
+        kept(20.0, 0.0)
+
+
+def test_a_leg_may_be_flown_before_the_vehicle_says_so(kept):
+    for north, east in ((40.0, 0.0), (99.0, 0.0), (100.0, 30.0), (100.0, 49.0)):
+        kept(north, east)

@@ -1,0 +1,74 @@
+"""Whether a vehicle keeps to the legs of its run: nobody has checked the ground beside them.
+
+Another ground station may give a vehicle another mission at any moment, and what it flies then is
+known by where it flies only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+from ..faults import NO_PROGRESS, Fault
+from ..links.autopilots import is_px4
+from ..links.link import Link
+from ..places import distance_to_leg
+from ..program import Place
+from ..services import parameters
+
+WIDTHS: Mapping[str, float] = {"copter": 8.0}
+OTHER_WIDTH = 20.0
+"""Metres that vehicles are beside their legs at most, in corners and gusts; others drive curves."""
+
+OUTSIDE = 2
+"""How many positions in a row lie outside before it is believed."""
+
+NEXT = 3
+"""How many legs beyond the last one are looked at first."""
+
+
+class Corridor:
+    """Watches that a vehicle is near one of its legs, whichever."""
+
+    def __init__(self, corners: Sequence[Place], width: float) -> None:
+        """Watch legs from each corner to the next, `width` metres to all sides."""
+        self._legs = list(pairwise(corners))
+        self._width = width
+        self._last = 0
+        self._outside = 0
+
+    def check(self, here: Place) -> None:
+        """Take note of a position.
+
+        Raises:
+            Fault: the vehicle has left its legs.
+        """
+        if not self._legs or self._is_inside(here):
+            self._outside = 0
+            return
+        self._outside += 1
+        if self._outside >= OUTSIDE:
+            off = min(distance_to_leg(here, *leg) for leg in self._legs)
+            raise Fault(
+                NO_PROGRESS,
+                f"the vehicle is {off:.0f} m off all legs of its run: it may have got another mission",
+            )
+
+    def _is_inside(self, here: Place) -> bool:
+        near = range(self._last, min(self._last + NEXT, len(self._legs)))
+        for index in (*near, *range(len(self._legs))):
+            if distance_to_leg(here, *self._legs[index]) <= self._width:
+                self._last = index
+                return True
+        return False
+
+
+def width_for(link: Link, kind: str) -> float | None:
+    """Return how far a vehicle may be beside its legs, metres; None: it goes its own ways round obstacles.
+
+    Whether it does is its owner's business (OA_TYPE of ArduPilot, COM_OBS_AVOID of PX4).
+    """
+    name = "COM_OBS_AVOID" if is_px4(link) else "OA_TYPE"
+    if parameters.read(link, [name]).get(name, 0.0):
+        return None
+    return WIDTHS.get(kind, OTHER_WIDTH)
