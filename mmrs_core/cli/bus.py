@@ -164,8 +164,6 @@ def state(
 
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
-    from mmrs_core.flight.bus.words import digest
-
     with _needing("eclipse-zenoh"):
         from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
     _refuse_endpoints(listen, connect)
@@ -174,25 +172,43 @@ def state(
         answers = states_of(mission, run, endpoints, seconds, robots or ())
     except OSError as error:
         raise LinkLostError(str(error)) from error
-    names = {digest(robot): robot for robot in robots or ()}
-    known = {names.get(key, key): _states_in(text) for key, text in sorted(answers.items())}
-    shown = {name: slots for name, slots in known.items() if not names or name in names.values()}
-    missing = [name for name in names.values() if name not in shown]
+    known = dict(sorted(_said(key, text) for key, text in answers.items()))
+    shown = {name: slots for name, slots in known.items() if not robots or name in robots}
+    missing = [name for name in robots or () if name not in shown]
     if json:
         say_json({"slots": shown, "missing": missing})
     else:
         _say_states(shown, missing)
+        if not shown and not missing:
+            tell(f"nobody has answered for mission {mission!r}, run {run!r}")
     return LinkLostError.exit_code if missing or not shown else 0
 
 
-def _states_in(text: str) -> dict[str, dict[str, object]]:
-    """Return the state of slots in an answer; whoever answers something else shows none."""
+def _said(key: str, text: str) -> tuple[str, dict[str, dict[str, object]]]:
+    """Return the robot that a key belongs to, and the state of its slots, by an answer.
+
+    Whoever answers with the name of another is known by the key alone, which certificates protect;
+    whoever answers something else shows no slots.
+    """
+    from mmrs_core.flight.bus.words import digest
+
+    found = _object_in(text)
+    name = found.get("robot")
+    slots = found.get("slots")
+    states = {
+        slot: each
+        for slot, each in (slots.items() if isinstance(slots, dict) else ())
+        if isinstance(each, dict) and {*each} >= _SHOWN
+    }
+    return name if isinstance(name, str) and digest(name) == key else key, states
+
+
+def _object_in(text: str) -> dict[str, object]:
     try:
         found = json_format.loads(text)
     except (ValueError, RecursionError):
         return {}
-    found = found if isinstance(found, dict) else {}
-    return {name: each for name, each in found.items() if isinstance(each, dict) and {*each} >= _SHOWN}
+    return found if isinstance(found, dict) else {}
 
 
 _SHOWN = {"active", "writer"}
@@ -263,12 +279,10 @@ def _until_interrupted(found: Gateway) -> None:
 
 def _say_states(shown: dict[str, dict[str, dict[str, object]]], missing: list[str]) -> None:
     for robot, slots in shown.items():
-        say(f"{robot}: {counted(len(slots), 'slot')}")
+        say(f"{robot!r}: {counted(len(slots), 'slot')}")
         for name, found in slots.items():
             word = "active" if found["active"] else "inactive"
-            by = f", set by '{found['writer']}'" if found["writer"] else ""
+            by = f", set by {found['writer']!r}" if found["writer"] else ""
             say(f"  {name}: {word}{by}")
     for robot in missing:
-        tell(f"'{robot}': no answer")
-    if not shown and not missing:
-        tell("nobody has answered")
+        tell(f"{robot!r}: no answer")

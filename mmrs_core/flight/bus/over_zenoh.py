@@ -159,7 +159,7 @@ class ZenohCarrier:
         """Tell whoever looks on the state of a robot's slots."""
         if self._station is None:
             return
-        shown = self._station.shown(robot)
+        shown = _shown(self._station, robot)
         with self._closing:
             if self._session is not None:
                 self._session.put(self._key(robot, "state"), shown)
@@ -210,7 +210,7 @@ class ZenohCarrier:
         """Answer a query for states; its key may stand for those of many robots."""
         with query:
             if self._station is not None:
-                query.reply(self._key(robot, "state"), self._station.shown(robot))
+                query.reply(self._key(robot, "state"), _shown(self._station, robot))
 
     def _see(self, sample: Any) -> None:
         robot, start = self._parts(sample.key_expr)
@@ -281,7 +281,7 @@ def _insert(config: Any, name: str, value: object) -> None:
 def states_of(
     mission: str, run: str, endpoints: Endpoints, seconds: float, robots: Sequence[str] = ()
 ) -> dict[str, str]:
-    """Return the state of slots as JSON, by digest of the robot's name.
+    """Return names of robots and the state of their slots as JSON, by digest of the name.
 
     Args:
         mission, run: of the robots.
@@ -303,6 +303,11 @@ def states_of(
                     found[parts[3]] = reply.ok.payload.to_bytes().decode("utf-8", "replace")
             time.sleep(0.05)
     return found
+
+
+def _shown(station: Station, robot: str) -> str:
+    """Return the state of a robot's slots with its name, for those who look on and know the key only."""
+    return json.dumps({"robot": robot, "slots": json.loads(station.shown(robot))})
 
 
 def _close(session: Any) -> None:

@@ -66,20 +66,34 @@ def test_a_certificate_does_not_speak_for_another_robot(secured, until, notify):
     assert a.missing(["b"]) == ("b",), "its sign of life was believed"
 
 
+def looking_on(ends, *more):
+    """Return the arguments with which an observer asks for the slots of all robots."""
+    config = ends.keys / "observer" / "bus.json5"
+    ways = (word for way in ends.endpoints("c", "observer").connect for word in ("--connect", way))
+    return ["bus", "state", "mission", "--config", str(config), *ways, *more]
+
+
 def test_an_observer_sees_slots_and_cannot_set_them(secured, notify, capsys):
     ends, a, _ = secured
     assert notify(a, "a", "b")
-    ways = ends.endpoints("c", "observer").connect
-    arguments = ["bus", "state", "mission", "--config", str(ends.keys / "observer" / "bus.json5"), "--json"]
-    assert (
-        run_command(
-            [*arguments, *(word for way in ways for word in ("--connect", way)), "--robot", "b"], "mmrs"
-        )
-        == 0
-    )
+    assert run_command(looking_on(ends, "--json", "--robot", "b"), "mmrs") == 0
     assert json.loads(capsys.readouterr().out)["slots"]["b"]["go"]["active"]
     observer = ends.open("c", certificate="observer", listens=False)
     assert not notify(observer, "c", "a", seconds=LONG_ENOUGH)
+
+
+def test_an_observer_who_knows_no_robot_is_told_their_names(secured, notify, capsys):
+    ends, a, _ = secured
+    assert notify(a, "a", "b")
+    assert run_command(looking_on(ends), "mmrs") == 0
+    assert capsys.readouterr().out == "'a': 1 slot\n  go: inactive\n'b': 1 slot\n  go: active, set by 'a'\n"
+
+
+def test_an_observer_of_a_mission_that_nobody_flies_is_told_so(secured, capsys):
+    asked = [*looking_on(secured[0], "--seconds", "0.5")]
+    asked[2] = "another"
+    assert run_command(asked, "mmrs") == 5
+    assert "nobody has answered for mission 'another', run 'run-0'" in capsys.readouterr().err
 
 
 def test_keys_are_readable_by_their_owner_only_and_kept_when_a_robot_is_added(tmp_path, capsys):
