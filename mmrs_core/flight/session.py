@@ -193,7 +193,7 @@ class Session:
         shared.crews.suspend(crew.robot.id)
         patience = time.monotonic() + shared.options.battery_patience
         away = self._astray()
-        where = f"down for its battery, {away}: carry it home" if away else "home for its battery"
+        where = f"down for its battery, but {away}" if away else "home for its battery"
         crew.say(f"came {where}; change it, then order resume, or start again with --resume")
         while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
             try:
@@ -212,9 +212,11 @@ class Session:
 
     def _hindrance(self, order: str) -> str:
         """Return what keeps a robot that came down for its battery from obeying; empty: nothing does."""
+        crew, clock = self._crew, self._shared.options.clock
+        if crew.robot.vehicle == "copter" and crew.vehicle.state().armed:
+            return "its motors run: somebody else has it"
         if order not in (RESUME, RETURN):
             return ""
-        crew, clock = self._crew, self._shared.options.clock
         if crew.link is not None and crew.link.silent_for() > clock.patience(
             HEARD_SECONDS, LEAST_HEARD_SECONDS
         ):
@@ -222,7 +224,9 @@ class Session:
         return self._astray() or (crew.pilot.lacks_energy() if order == RESUME else "")
 
     def _astray(self) -> str:
-        return astray(self._crew.robot, self._crew.vehicle, self._shared.options.tolerances.home)
+        """Return that the robot stands too far from home to go on, and what is to be done; else nothing."""
+        away = astray(self._crew.robot, self._crew.vehicle, self._crew.near_home)
+        return f"{away}: carry it home" if away else ""
 
 
 def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:

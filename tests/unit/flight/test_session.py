@@ -198,7 +198,7 @@ def test_a_robot_that_came_down_elsewhere_goes_on_only_once_it_stands_at_home(pr
         refused = inbox.give(Order(order))
         until(lambda: refused.confirmed is not None)  # noqa: B023
         assert not refused.confirmed
-        assert re.fullmatch(r"it stands 2\d m from its home", refused.why)
+        assert re.fullmatch(r"it stands 2\d m from its home: carry it home", refused.why)
     with simulated.lock:
         simulated.autopilot.body.position = (0.0, 0.0, 0.0)
 
@@ -235,6 +235,26 @@ def test_an_order_to_a_resumed_robot_whose_vehicle_is_not_heard_is_not_confirmed
     receipt = again.crews.inboxes["alpha"].give(Order("land"))
     assert code.result(20.0) == 130
     assert (receipt.confirmed, receipt.why) == (False, "its vehicle was not heard, and was told nothing")
+
+
+@pytest.mark.parametrize("name", ["hold", "land", "resume"])
+def test_who_waits_for_a_battery_obeys_nothing_while_somebody_else_flies_its_vehicle(process, vehicle, name):
+    simulated, port = vehicle
+    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
+    code = empty(shared, simulated)
+    until(lambda: phase(shared) == SUSPENDED)
+    simulated.faults.set_battery(1.0)
+    simulated.faults.take_stick("stabilize")
+    with simulated.lock:
+        simulated.autopilot.parameters["DISARM_DELAY"] = 0.0
+        simulated.autopilot.arm()
+    until(lambda: shared.crews.status("alpha")["armed"])
+    refused = shared.crews.inboxes["alpha"].give(Order(name))
+    until(lambda: refused.confirmed is not None)
+    assert (refused.confirmed, refused.why) == (False, "its motors run: somebody else has it")
+    assert simulated.autopilot.armed
+    shared.stop.set()
+    assert code.result(20.0) == 1
 
 
 @pytest.mark.parametrize("by", ["order", "signal", "others"])
