@@ -105,7 +105,7 @@ def sitl(
     such as 'Drone1 gps-lost', 'Drone1 mend gps-lost' or 'all battery 0.2' makes a fault at once, 'quit' ends.
     They are ours: what flies here may still be refused by a real autopilot.
 
-    Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Drone1:gps-lost@60+20'
+    Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """
     from mmrs_core.cli.berths import Berths, berths_of, plain_berths
     from mmrs_core.cli.rehearsal import Rehearsal, fault_list
