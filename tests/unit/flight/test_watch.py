@@ -230,7 +230,7 @@ def back(in_the_air):
         made.crew.watch.relax({"LINK_LOST"}, "HOLD")
         made.simulated.faults.take_stick(mode)
         made.simulated.unmute()
-        until(lambda: made.crew.link.silent_for() < SPEEDUP)
+        until(lambda: made.crew.link.since("HEARTBEAT") < SPEEDUP)
         return made
 
     return fly
