@@ -96,7 +96,7 @@ class Walker:
         return self.armed
 
     def told(self):
-        return {"armed": self.armed} if self.heard else {}
+        return {"armed": self.armed} if self.armed is not None else {}
 
     def pause(self, now):
         self.halted = True
