@@ -378,11 +378,8 @@ class Watch:
             Fault: one has.
         """
         if event == LINK_LOST:
-            self.lose()
-            try:
-                self.accept()
-            finally:
-                self.find()
+            self.accept()
+            self.find()
         elif self._departures is not None:
             self._departures.check(event, moving=self.moving)
 
