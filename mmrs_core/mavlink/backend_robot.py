@@ -316,7 +316,7 @@ class MavlinkBackend:
     def _begins_sortie(self, move: str) -> bool:
         """Return whether the robot leaves the ground, or the place where it was charged, with a move."""
         kind = self._moves.kind(move)
-        return kind is TakeOff or (kind is GoTo and not self._watch.moving)
+        return kind is TakeOff or (kind is GoTo and not (self._watch.moving and self._moves.track))
 
     def _landed(self) -> None:
         self._watch.moving = False

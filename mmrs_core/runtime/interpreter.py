@@ -156,6 +156,8 @@ class _Run:
             if robot.point.is_final:
                 self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
                 self._bus.leave(robot.id)
+            elif self._terms.unready:
+                robot.prepare(self._clock.now())
             elif robot.number > 0:
                 robot.recover(self._clock.now())
 
@@ -175,9 +177,11 @@ class _Run:
         while not robot.point.is_final and self._made < self._terms.steps:
             was_suspended = robot.suspended
             robot.looked = self._clock.now()
+            if robot.preparing and robot.get_ready(robot.looked):
+                self._obey()  # what was to wait until it is ready goes before anything else
             step = robot.due(robot.looked, self._peers)
             if robot.suspended and not was_suspended:
-                self._stopping.answer(robot, robot.fault or Fault("BATTERY_LOW"))
+                self._break_off(robot, robot.fault or Fault("BATTERY_LOW"))
             if step is None or not self._order(robot, step):
                 return
             yield from self._make(robot, step)
@@ -243,12 +247,25 @@ class _Run:
             if owner in self._by_id:
                 self._agenda.put(self._by_id[owner])
 
+    def _break_off(self, robot: RunningRobot, found: Fault) -> None:
+        """Answer what has broken a program off; a robot that did not get ready is left alone."""
+        if not robot.absent:
+            self._stopping.answer(robot, found)
+            return
+        self._terms.say(f"'{robot.id}': does not get ready: {found.reason or found.which}")
+        self._dismiss(robot, failed=True)
+
     def _retire(self, robot: RunningRobot) -> None:
-        """Note that a robot makes no further step, and have those look that may wait for it."""
-        self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
-        self._bus.leave(robot.id)
-        if robot.point.phase is Phase.FAILED:
+        """Note that a robot has come to its end, and answer the fault that has brought it there."""
+        failed = robot.point.phase is Phase.FAILED
+        self._dismiss(robot, failed=failed)
+        if failed:
             self._stopping.answer(robot, robot.fault or Fault("CRASHED"))
+
+    def _dismiss(self, robot: RunningRobot, *, failed: bool) -> None:
+        """Note that a robot makes no further step, and have those look that may wait for it."""
+        self._peers.retire(robot.id, failed=failed)
+        self._bus.leave(robot.id)
         for order, other in enumerate(self._robots):
             if other.point.phase is Phase.OUT:
                 self._agenda.put(order)
@@ -327,7 +344,7 @@ class _Run:
     def _halt(self) -> None:
         """Stop every robot that is still at work, and wait until each has confirmed it."""
         for robot in self._robots:
-            if not robot.point.is_final and not robot.suspended:
+            if not (robot.point.is_final or robot.suspended or robot.preparing):
                 self._stopping.stop(robot, "HOLD")
         self._stopping.look_after()
         while self._stopping.busy:
@@ -356,5 +373,5 @@ class _Run:
             suspended,
             responses,
             {id: words for id, words in self._stopping.came_down.items() if id in suspended},
-            self._stopping.lost,
+            tuple(robot.id for robot in self._robots if robot.absent),
         )

@@ -13,7 +13,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Closing, Noting, Preparing, Telling
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import Bus
-from mmrs_core.contributions.execution import Condition
+from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError, MmrsError
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
@@ -67,14 +67,15 @@ class Venture:
 def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
     """Yield the steps of the robots; return how the run ended.
 
-    No robot begins before all are ready; one whose program had ended before is left alone. When the
-    generator ends or is closed, every robot that has not come to its end has been stopped, and all links
-    are closed.
+    No robot begins before all are ready; once some are under way, as in a run that is resumed, each goes
+    on, or begins, as soon as it is ready itself, and one that does not get ready is left out. One whose
+    program had ended before is left alone. When the generator ends or is closed, every robot that has not
+    come to its end has been stopped, all links are closed, and all orders answered.
 
     Raises:
         LinkLostError: if a robot does not answer at first.
         UnsupportedError: if a robot cannot do what its program holds, or options are wrong.
-        MmrsError: if a robot does not get ready.
+        MmrsError: if a robot does not get ready, and none is under way without it.
         ValueError: if the steps to resume from are not the program's.
         KeyboardInterrupt: if robots are ordered to stop before they are ready.
     """
@@ -82,9 +83,12 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     over = over_by(venture.program, venture.resumed)
     venture = replace(venture, inputs={id: each for id, each in venture.inputs.items() if id not in over})
     with ExitStack() as stack:
+        stack.callback(venture.orders.close, "the run has ended")
         robots = _connected(venture, backend, attention, stack)
         venture.standing.connect(robots)
-        _get_ready(robots, venture)
+        under_way = any(record.robot in robots for record in venture.resumed)
+        if not under_way:
+            _get_ready(robots, venture)
         steps = interpret(
             venture.program,
             robots,
@@ -97,6 +101,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
                 incarnation=uuid.uuid4().hex,
                 observe=venture.observe,
                 resumed=venture.resumed,
+                unready=under_way,
                 suspends=venture.suspends,
                 patience=venture.patience,
                 attention=attention,
@@ -106,7 +111,11 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
             ),
         )
         stack.callback(steps.close)
-        return (yield from steps)
+        ending = yield from steps
+        if robots and set(ending.absent) == set(robots):
+            id = ending.absent[0]
+            raise _unready(id, ending.faults[id])
+        return ending
 
 
 def _connected(
@@ -141,23 +150,32 @@ def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
 
 def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
     clock = venture.clock
-    waiting: list[str] = []
+    preparing: dict[str, Backend] = {}
     for id, robot in robots.items():
         if isinstance(robot, Preparing):
             robot.prepare(clock.now())
-            waiting.append(id)
+            preparing[id] = robot
     venture.orders.called = clock.wake
     early = _EarlyOrders(venture, robots)
-    while waiting:
-        for id in waiting:
-            _refuse_fault(id, robots[id], clock.now())
-        waiting = [id for id in waiting if not robots[id].finished(clock.now())]
-        early.look(waiting)
-        if waiting:
-            clock.sleep_until(clock.now() + PACE)
-    if not early.ends_all:
+    try:
+        _await_ready(preparing, clock, early)
         _meet(robots, venture, early)
+    except BaseException:
+        early.give_up("the run has ended")
+        raise
     early.pass_on()
+
+
+def _await_ready(robots: Mapping[str, Backend], clock: RealClock, early: _EarlyOrders) -> None:
+    """Return when all robots are ready, and nothing has gone wrong with one that was so earlier."""
+    unready = set(robots)
+    while unready:
+        for id, robot in robots.items():
+            _refuse_fault(id, robot, clock.now())
+        unready = {id for id in unready if not robots[id].finished(clock.now())}
+        early.look(unready)
+        if unready:
+            clock.sleep_until(clock.now() + PACE)
 
 
 def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
@@ -176,7 +194,7 @@ def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) 
 
 
 class _EarlyOrders:
-    """Orders that come before anything moves.
+    """Orders that come before anything moves, and while all robots stand on the ground.
 
     Attributes:
         held: robots that are not to begin.
@@ -185,15 +203,9 @@ class _EarlyOrders:
     def __init__(self, venture: Venture, robots: Mapping[str, Backend]) -> None:
         self.held: set[str] = set()
         self._venture, self._robots = venture, robots
-        self._under_way = {record.robot for record in venture.resumed}
         self._open: list[Order] = []
         self._later: list[Order] = []
         self._ended: set[str] = set()
-
-    @property
-    def ends_all(self) -> bool:
-        """Return whether every robot is to end its program."""
-        return self._ended >= set(self._robots)
 
     def look(self, unready: Collection[str]) -> None:
         """Confirm to whom that is ready, and stays, that it does; once all are to end, nothing begins.
@@ -202,17 +214,16 @@ class _EarlyOrders:
             unready: robots whose vehicles are not known to stay where they are.
 
         Raises:
-            KeyboardInterrupt: if every robot was ordered to end its program, and none is in the air.
+            KeyboardInterrupt: if every robot was ordered to end its program.
         """
         for order in self._venture.orders.taken():
             self._take(order)
         for order in self._open:
             for id in order.open:
-                ready = id not in unready and (order.kind == HOLD or id not in self._under_way)
-                if ready or self._rests(id):
+                if id not in unready or self._rests(id):
                     self._confirm(order, id)
         self._open = [order for order in self._open if order.open]
-        if self.ends_all and not self._under_way & set(self._robots):
+        if self._ended >= set(self._robots):
             self._venture.say("stopped before anything moved")
             for order in self._open:
                 for id in order.open:
@@ -220,14 +231,16 @@ class _EarlyOrders:
             raise KeyboardInterrupt
 
     def pass_on(self) -> None:
-        """Have the interpreter obey what was ordered, and know the answers."""
-        if self.held:
-            self._venture.orders.give(HOLD, sorted(self.held))
-        for order in self._later:
-            if order.kind == ANSWER or order.open:
-                self._venture.orders.put_back(order)
-            else:
-                self._venture.orders.give(order.kind, order.robots)
+        """Have the interpreter obey what was ordered, and know the answers, before what was ordered since."""
+        held = tuple(sorted(self.held))
+        first = (Order(HOLD, held, noted=set(held)),) if held else ()
+        self._venture.orders.put_back((*first, *self._later))
+
+    def give_up(self, why: str) -> None:
+        """Refuse what nobody will obey any more."""
+        for order in (*self._open, *self._later):
+            for id in order.open:
+                order.refuse(id, why)
 
     def _take(self, order: Order) -> None:
         for id in set(order.robots) - set(self._robots):
@@ -273,5 +286,9 @@ class _EarlyOrders:
 def _refuse_fault(id: str, robot: Backend, now: float) -> None:
     found = robot.fault(now)
     if found is not None:
-        message = f"robot '{id}': does not get ready: {found.reason or found.which}"
-        raise LinkLostError(message) if found.which == "LINK_LOST" else MmrsError(message)
+        raise _unready(id, found)
+
+
+def _unready(id: str, found: Fault) -> MmrsError:
+    message = f"robot '{id}': does not get ready: {found.reason or found.which}"
+    return LinkLostError(message) if found.which == "LINK_LOST" else MmrsError(message)

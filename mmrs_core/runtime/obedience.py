@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import takewhile
 
 from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
 from mmrs_core.contributions.execution import Clock, Fault
@@ -36,14 +35,12 @@ class Obedience:
         for order in self._orders.taken():
             self._open.append(order)
             self._waiting += ((order, id) for id in order.robots)
-        begun = self._due()
-        for order, id in begun:
-            self._begin(order, id)
+        begun = self._begin_all()
         for order in self._open:
             self._look(order)
             self._note(order)
         self._open = [order for order in self._open if not order.settled.is_set()]
-        return tuple(id for _, id in begun if id in self._robots)
+        return begun
 
     def stopped(self, id: str, stopping: bool, trouble: Fault | None) -> None:
         """Tell the orders that ended a robot's program what became of it."""
@@ -65,18 +62,31 @@ class Obedience:
             for id in order.open:
                 order.refuse(id, "the run has ended")
 
-    def _due(self) -> list[tuple[Order, str]]:
-        """Return the orders that wait no longer, in the order in which they were given."""
-        doubtful = {id for _, id in self._waiting if self._in_doubt(id)}
-        begun = [(order, id) for order, id in self._waiting if id not in doubtful]
-        self._waiting = [(order, id) for order, id in self._waiting if id in doubtful]
-        return begun
+    def _begin_all(self) -> tuple[str, ...]:
+        """Begin to obey whatever need not wait, a robot's orders one after another; return the robots."""
+        begun: list[str] = []
+        busy = {id for _, id in self._waiting if self._in_doubt(id)}
+        for order, id in tuple(self._waiting):
+            if id in busy or self._must_wait(order, id):
+                busy.add(id)
+            else:
+                begun.append(id)
+                self._waiting.remove((order, id))
+                self._begin(order, id)
+        return tuple(id for id in begun if id in self._robots)
+
+    def _must_wait(self, order: Order, id: str) -> bool:
+        """Return whether it is not known yet what there is to be ended, or something ends right now."""
+        robot = self._robots.get(id)
+        return robot is not None and (
+            (robot.preparing and order.kind in ENDINGS) or robot.ordered is not None
+        )
 
     def _overtake(self, robot: RunningRobot, by: Order, *kinds: str) -> None:
         """Refuse what a robot was ordered before and was not seen to do, since it now does something else."""
-        before = takewhile(lambda order: order is not by, self._open)
-        for order in before:
-            if order.kind in kinds and robot.id in order.open and (order, robot.id) not in self._waiting:
+        for order in self._open:
+            began = (order, robot.id) not in self._waiting
+            if order is not by and order.kind in kinds and robot.id in order.open and began:
                 order.refuse(robot.id, f"{by.kind} was ordered since")
 
     def _note(self, order: Order) -> None:
@@ -84,13 +94,16 @@ class Obedience:
             order.note(id, self._robots[id].backend if id in self._robots else None)
 
     def _in_doubt(self, id: str) -> bool:
-        backend = self._robots[id].backend if id in self._robots else None
+        robot = self._robots.get(id)
+        backend = robot.backend if robot is not None and not robot.absent else None
         return isinstance(backend, Doubting) and backend.in_doubt(self._clock.now())
 
     def _begin(self, order: Order, id: str) -> None:
         robot = self._robots.get(id)
         if robot is None:
             order.refuse(id, "no such robot here")
+        elif robot.absent:
+            order.refuse(id, f"it did not get ready: {robot.fault}")
         elif order.kind == ANSWER:
             self._answer(order, robot)
         elif order.kind == HOLD and robot.response != NOTHING:
@@ -128,7 +141,8 @@ class Obedience:
         else:
             self._overtake(robot, order, RESUME)
             robot.held = True
-            robot.backend.pause(self._clock.now())
+            if not robot.preparing:
+                robot.backend.pause(self._clock.now())
 
     def _resume(self, order: Order, robot: RunningRobot) -> None:
         if robot.broken_off:
@@ -141,7 +155,8 @@ class Obedience:
             self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
             self._overtake(robot, order, HOLD)
-            robot.backend.resume(self._clock.now())
+            if not robot.preparing:
+                robot.backend.resume(self._clock.now())
             robot.held = False
         else:
             order.refuse(robot.id, "it is not held")
@@ -150,9 +165,7 @@ class Obedience:
         """Return whether it came down for its battery, and is there."""
         if not robot.suspended or robot.stopping or robot.is_watched(self._clock.now()):
             return False
-        return robot.down or (
-            isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is False
-        )
+        return robot.down or _rests(robot)
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
@@ -204,9 +217,9 @@ class Obedience:
     def _look(self, order: Order) -> None:
         now = self._clock.now()
         for id in order.open:
-            if (order, id) in self._waiting:
+            robot = self._robots.get(id)
+            if robot is None or self._confirm_rest(order, robot) or (order, id) in self._waiting:
                 continue
-            robot = self._robots[id]
             if id in order.responses:
                 self._look_at_response(order, robot, now)
             elif robot.fault is not None:
@@ -216,6 +229,13 @@ class Obedience:
                     order.confirm(id)
             elif self._goes_on(robot, now):
                 order.confirm(id)
+
+    def _confirm_rest(self, order: Order, robot: RunningRobot) -> bool:
+        """Confirm to a robot that still gets ready, and is to stay where it is, that its motors are off."""
+        rests = robot.preparing and order.kind in (HOLD, *ENDINGS) and _rests(robot)
+        if rests:
+            order.confirm(robot.id)
+        return rests
 
     def _look_at_response(self, order: Order, robot: RunningRobot, now: float) -> None:
         if robot.ordered is not None:
@@ -236,9 +256,9 @@ class Obedience:
 
     def _goes_on(self, robot: RunningRobot, now: float) -> bool:
         """Return whether a robot that was told to go on was seen to."""
-        if robot.recovering:
-            return isinstance(robot.backend, Recovering) and robot.backend.moves(now)
-        return not (isinstance(robot.backend, Pausable) and robot.backend.paused(now))
+        if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
+            return False
+        return not robot.recovering or (isinstance(robot.backend, Recovering) and robot.backend.moves(now))
 
     def _undone(self, order: Order, id: str) -> str:
         """Return why a robot that has stopped has not done what was ordered; empty where it has."""
@@ -246,6 +266,11 @@ class Obedience:
         if robot.response != order.responses[id]:
             return _since(robot)
         return robot.backend.undone(self._clock.now()) if isinstance(robot.backend, Watched) else ""
+
+
+def _rests(robot: RunningRobot) -> bool:
+    """Return whether its motors are seen to be off, those of whatever answers on its link."""
+    return isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is False
 
 
 def _since(robot: RunningRobot) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.contributions.abilities import Noting
@@ -16,7 +16,7 @@ ENDINGS: Mapping[str, str] = {RETURN: "RETURN", LAND: "LAND", STOP: "HOLD"}
 """Orders that end a robot's program, and the response that it then gives."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Order:
     """An order to some robots.
 
@@ -119,9 +119,9 @@ class Orders:
         self.called()
         return order
 
-    def put_back(self, order: Order) -> None:
-        """Have an order that was taken be looked at once more."""
-        self._waiting.append(order)
+    def put_back(self, orders: Sequence[Order]) -> None:
+        """Have orders that were taken be looked at once more, before those that were given since."""
+        self._waiting.extendleft(reversed(orders))
         self.called()
 
     def close(self, why: str) -> None:

@@ -9,14 +9,14 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import Bearing, Noting, Recovering, Watched
+from mmrs_core.contributions.abilities import Bearing, Noting, Pausable, Preparing, Recovering, Watched
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.conditions import awaiting, question_of
-from mmrs_core.flight.faults import TAKEN_OVER
-from mmrs_core.flight.policies import COMES_DOWN, OVERTAKES, still_low
+from mmrs_core.flight.faults import LINK_LOST, TAKEN_OVER
+from mmrs_core.flight.policies import COMES_DOWN, NOTHING, OVERTAKES, still_low
 from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.answers import Answers
 from mmrs_core.runtime.conditions import decided
@@ -71,6 +71,8 @@ class RunningRobot:
         stopping: whether it has still to confirm that it has stopped.
         down: whether it has come down, as it was told to, and not gone on since.
         recovering: whether it is on its way back to where its program was broken off.
+        preparing: whether it has still to get ready, and must not be told anything else before.
+        absent: whether it did not get ready, so that it is left alone.
         questions: that its choices ask the operator.
     """
 
@@ -87,6 +89,7 @@ class RunningRobot:
         self.response = self.broken_off = ""
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
+        self.preparing = self.absent = self._returns = False
         conditions = (transition.condition for transition in program.transitions.values())
         self.questions = Questions(each for each in conditions if each is not None)
         self._chosen: bool | None = None
@@ -159,12 +162,34 @@ class RunningRobot:
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
         self.fault, self.suspended, self.response, self.broken_off = None, False, "", ""
-        self.released = self.down = False
+        self.released = self.down = self._returns = False
         self._answered.clear()
         self._forget()
         if isinstance(self.backend, Recovering):
             self.recovering = True
             self.backend.recover(tuple(self._passed), self._underway, now)
+
+    def prepare(self, now: float) -> None:
+        """Begin to get ready; once it is, its program begins, or goes on where it was broken off."""
+        self._returns = self.number > 0
+        if isinstance(self.backend, Preparing):
+            self.preparing = True
+            self.backend.prepare(now)
+
+    def get_ready(self, now: float) -> bool:
+        """Return whether it is ready now; one that never will be is to be touched by nobody."""
+        try:
+            found = self.backend.fault(now)
+            if found is None and self.backend.finished(now):
+                self.preparing = False
+                if self.held and isinstance(self.backend, Pausable):
+                    self.backend.pause(now)
+        except LinkLostError as error:
+            found = Fault(LINK_LOST, str(error))
+        if found is not None:
+            self._suspend(found, NOTHING)
+            self.preparing, self.absent, self.released = False, True, True
+        return not (self.preparing or self.absent)
 
     @property
     def _underway(self) -> str:
@@ -179,6 +204,8 @@ class RunningRobot:
 
         The only place where a fault of a robot, its device, its link or a condition becomes a step.
         """
+        if self.preparing or self.absent:
+            return None
         if self.suspended:
             return self._ended(*self.ordered) if self.ordered is not None else None
         if self.ordered is not None:
@@ -265,6 +292,8 @@ class RunningRobot:
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
         if self.notify.is_waiting:
             return None
+        if self._returns and not self.held:
+            self.recover(now)
         if self.held or self.recovering:
             found = self._detained(now)
             if found is not None or self.held or self.recovering:

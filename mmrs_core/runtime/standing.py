@@ -43,7 +43,9 @@ class Standing:
     def _phase(self, robot: str, running: RunningRobot | None) -> str:
         if running is None:
             return WAITS if self._backends is None or robot in self._backends else ENDED
-        if running.point.is_final:
+        if running.preparing:
+            return WAITS
+        if running.point.is_final or running.absent:
             lost = running.fault is not None and running.fault.which == LINK_LOST
             return LOST if lost else ENDED
         return SUSPENDED if running.suspended else WORKS

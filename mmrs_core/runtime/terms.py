@@ -28,6 +28,7 @@ class Terms:
         seconds: of the run's clock, after which it is cut off.
         steps: number of them after which it is cut off, since a Choice can go round for ever.
         resumed: the steps that were made before the run was broken off, those of a robot in order.
+        unready: whether robots have still to get ready: each goes on, or begins, as soon as it is.
         suspends: whether a battery that is low, and whose policy brings the robot down, breaks its program
             off without a fault, so that the run can be resumed with a full one.
         patience: seconds for which the run then waits for the order to resume once nobody else works.
@@ -43,6 +44,7 @@ class Terms:
     seconds: float = inf
     steps: int = 1_000_000
     resumed: tuple[StepRecord, ...] = ()
+    unready: bool = False
     suspends: bool = False
     patience: float = 0.0
     attention: Attention | None = None
@@ -69,9 +71,9 @@ class Ending:
         steps: how many were made.
         suspended: robots whose programs were broken off, to be resumed with a full battery.
         responses: to faults, by robot.
+        absent: robots that did not get ready and were told nothing; those of `suspended`, too.
         came_down: in words how robots came down for their batteries that have not gone on since; those of
             `suspended` that are not here are not known to have come down for that.
-        lost: robots whose links were lost, for a time at least, when they were to stop, or had.
     """
 
     outcome: Outcome
@@ -83,4 +85,4 @@ class Ending:
     suspended: tuple[str, ...] = ()
     responses: Mapping[str, str] = field(default_factory=dict)
     came_down: Mapping[str, str] = field(default_factory=dict)
-    lost: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()

@@ -378,8 +378,11 @@ class Watch:
             Fault: one has.
         """
         if event == LINK_LOST:
-            self.accept()
-            self.find()
+            self.lose()
+            try:
+                self.accept()
+            finally:
+                self.find()
         elif self._departures is not None:
             self._departures.check(event, moving=self.moving)
 

@@ -133,3 +133,32 @@ def test_a_black_box_begins_with_the_vehicle_and_the_software_as_a_controllers_d
     start = next(line for line in lines if line["kind"] == "start")
     assert (start["vehicle"], start["firmware"], start["system"]) == ("rover", "ARDUPILOTMEGA", 7)
     assert set(start["versions"]) == {"python", "pymavlink"}
+
+
+PATIENT = Policy("LINK_LOST", "RETURN", 60.0)
+
+
+def start_anew(driven):
+    """Have its autopilot start anew once it is old enough for that to be seen."""
+    until(lambda: driven.vehicle.autopilot.uptime > 1.5 * SPEEDUP)
+    driven.vehicle.faults.restart()
+
+
+def test_a_vehicle_that_starts_anew_before_it_sets_out_is_set_up_again_where_the_robot_carries_on():
+    with rover(Policy("VEHICLE_RESTARTED", "CONTINUE"), PATIENT) as driven:
+        start_anew(driven)
+        until(lambda: driven.backend._watch.restarted)
+        driven.do("out")
+        assert not driven.backend._watch.restarted
+
+
+def test_a_vehicle_that_starts_anew_on_its_way_is_told_of_where_the_robot_was_to_carry_on():
+    with rover(Policy("VEHICLE_RESTARTED", "CONTINUE"), PATIENT) as driven:
+        driven.do("out", "back", "charge")
+        driven.begin("far")
+        until(lambda: driven.state.position[0] > 20.0)
+        start_anew(driven)
+        until(lambda: driven.fault == "VEHICLE_RESTARTED")
+        found = driven.backend.fault(driven.clock.now())
+        assert found.instead == "HOLD"
+        assert "with its motors off: nothing can be carried on" in found.reason

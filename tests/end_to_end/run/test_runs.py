@@ -263,6 +263,48 @@ def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     assert landed(flown)
 
 
+def broken_off(flown, **moves):
+    """Kill a run once its robots have begun these moves; nobody hears `b` from then on."""
+    killed = flown.start()
+    for robot, move in moves.items():
+        begun(flown, robot, move)
+    killed.signal(signal.SIGKILL)
+    killed.end(PATIENCE)
+    flown.vehicles["b"].faults.cut_link()
+
+
+def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(fleet):
+    flown = fleet(Pad("a"), Pad("b", stay=2.0), speedup=8.0)
+    broken_off(flown, a="out", b="out")
+    resumed = flown.start("--resume", "--backend-option", "patience=120")
+    vehicle = flown.vehicles["a"].autopilot
+    assert wait_for(lambda: any("waits for a vehicle" in line for line in resumed.said), PATIENCE)
+    assert control(flown, "hold", "a")["a"]["confirmed"], resumed.said
+    assert vehicle.mode == HOLDING
+    landing = control(flown, "land", "a")["a"]
+    assert landing["confirmed"]
+    assert landing["seconds"] < 1.0
+    assert wait_for(lambda: not vehicle.armed, PATIENCE)
+    flown.vehicles["b"].faults.mend_link()
+    assert resumed.end(PATIENCE) == 130, resumed.said
+    assert flown.steps("b")[-1]["move"] == "stop"
+    assert judged(flown) is Outcome.FAILED
+
+
+def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_heard_again(fleet):
+    flown = fleet(Pad("a", "wait", (("PEER_LOST", "RETURN", 2.0),)), Pad("b", "give", stay=100.0, gives="a"))
+    broken_off(flown, a="out", b="stay")
+    before = flown.steps("b")
+    resumed = flown.start("--resume", "--backend-option", "patience=3")
+    assert resumed.end(PATIENCE) == 5, resumed.said
+    assert any("'b': does not get ready" in line for line in resumed.said)
+    assert flown.steps("a")[-1]["detail"] == "PEER_LOST"
+    vehicle = flown.vehicles["a"].autopilot
+    assert not vehicle.armed
+    assert vehicle.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
+    assert flown.steps("b") == before
+
+
 def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     flown = fleet(Pad("a", stay=2.0, policies=(("BATTERY_LOW", "RETURN", None),)))
     first = flown.start()

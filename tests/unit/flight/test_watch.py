@@ -216,3 +216,35 @@ def test_a_restart_on_the_ground_is_kept_for_later(in_the_air):
     made.quiet(5.0)
     made.crew.watch.renew()
     assert not made.crew.watch.restarted
+
+
+@pytest.fixture
+def back(in_the_air):
+    """Return a function that gives a robot whose link was lost, and is heard again in a mode."""
+
+    def fly(mode: str):
+        made = in_the_air(Policy("LINK_LOST", "HOLD", 5.0))
+        made.crew.pilot.waits.tell_vehicle()
+        made.simulated.mute()
+        assert made.caught().event == "LINK_LOST"
+        made.crew.watch.relax({"LINK_LOST"}, "LAND")
+        made.simulated.faults.take_stick(mode)
+        made.simulated.unmute()
+        until(lambda: made.crew.link.since("HEARTBEAT") < SPEEDUP)
+        until(lambda: not made.crew.vehicle.telemetry.announcements.recent())
+        return made
+
+    return fly
+
+
+def test_a_vehicle_that_is_heard_again_in_the_mode_that_it_was_told_for_then_may_be_told_something(back):
+    made = back("brake")
+    made.crew.watch.check_hands("LINK_LOST")
+    made.crew.vehicle.land()
+    assert not made.simulated.autopilot.armed
+
+
+def test_a_vehicle_that_is_heard_again_in_another_mode_is_a_pilots(back):
+    made = back("return")
+    with pytest.raises(Fault, match="somebody else has taken over"):
+        made.crew.watch.check_hands("LINK_LOST")

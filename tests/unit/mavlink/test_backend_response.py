@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 from flight_crew import manned, robot_of
+from patience import until
 
+from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.program import Place
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_response import Response
@@ -48,3 +50,13 @@ def test_what_is_told_next_is_done_as_ever(made):
     response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
     assert not made.simulated.autopilot.armed
     assert (response.holds, response.undone) == (False, "")
+
+
+@pytest.mark.parametrize("mode", ["return", "alt_hold"])
+def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordered(made, mode):
+    response, _ = response_of(made)
+    made.simulated.faults.take_stick(mode)
+    until(lambda: made.crew.vehicle.telemetry.mode() == made.simulated.autopilot.mode)
+    with pytest.raises(Fault, match="somebody else has taken over"):
+        response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
+    assert made.mode == mode

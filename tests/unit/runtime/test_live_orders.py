@@ -11,6 +11,7 @@ from live_runs import TWO, WALK, Script, do
 
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import Fault
+from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.conditions import standard_conditions
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.scene import Policy
@@ -123,6 +124,37 @@ def test_a_resumed_robot_that_is_to_land_before_it_goes_on_is_seen_to_land(live)
     assert run.end().faults == {"r": Fault("ORDERED", "order to land")}
     assert list(landed.confirmed) == ["r"]
     assert run.script.robots["r"].stops == ["LAND"]
+
+
+def test_what_is_ordered_while_robots_begin_counts_after_what_was_ordered_before(live):
+    given = []
+
+    def meet(look):
+        given.append(run.orders.give(RESUME, ["a"]))
+        return {}
+
+    run = live(TWO, Script(ready=inf), meet=meet)
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    held = run.orders.give(HOLD, ["a"])
+    run.wait_for(lambda: not run.orders.waiting)
+    for each in run.script.robots.values():
+        each._finish("ready")
+    assert run.end().outcome is Outcome.SUCCESS
+    assert [list(order.confirmed) for order in (held, *given)] == [["a"], ["a"]]
+
+
+@pytest.mark.parametrize("kind", [HOLD, RETURN])
+def test_orders_are_refused_where_nothing_begins(live, kind):
+    run = live(TWO, Script(ready=inf))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.script.robots["a"].armed = None
+    order = run.orders.give(kind, ["a"])
+    run.wait_for(lambda: not run.orders.waiting)
+    run.script.robots["b"].fail("LINK_LOST")
+    run.end()
+    assert isinstance(run.error, LinkLostError)
+    assert order.refused == {"a": "the run has ended"}
+    assert run.order(kind, "a").refused == {"a": "the run has ended"}
 
 
 def test_an_answer_that_comes_before_the_question_counts(live):
@@ -295,37 +327,6 @@ def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
     run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
     assert list(run.order(LAND).confirmed) == ["r"]
     run.end()
-
-
-def returning(live):
-    """Return a run whose robot was told to stop, and is on its way home when its link is lost."""
-    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
-    run.orders.on_stop = "RETURN"
-    run.wait_for_step("r begin walk")
-    walker = run.script.robots["r"]
-    run.orders.give(STOP, ["r"])
-    run.wait_for(lambda: walker.stops == ["RETURN"])
-    walker.watched_for, walker.heard = True, False
-    walker.fail("LINK_LOST")
-    run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
-    return run, walker
-
-
-def test_a_robot_that_was_told_to_stop_before_its_link_was_lost_is_listened_for(live):
-    run, walker = returning(live)
-    walker.heard = True
-    run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
-    assert run.order(LAND, "r").confirmed
-    walker.watched_for = False
-    ending = run.end()
-    assert (ending.lost, ending.unconfirmed) == (("r",), ())
-
-
-def test_a_robot_whose_link_is_lost_is_listened_for_no_longer_once_it_is_to_stop(live):
-    run, _ = returning(live)
-    assert run.order(STOP, "r").refused == {"r": "its link is lost"}
-    ending = run.end()
-    assert (ending.lost, ending.unconfirmed) == (("r",), ("r",))
 
 
 def test_orders_that_make_no_sense_are_refused_with_the_reason(live):

@@ -73,6 +73,17 @@ def test_a_robot_that_does_not_get_ready_ends_the_run_before_anything_moves(live
     assert all(each.closed for each in run.script.robots.values())
 
 
+def test_a_link_that_is_lost_while_others_get_ready_ends_the_run_before_anything_moves(live):
+    run = live(program(robot("a", [do("h")]), robot("b", [do("h")])), Script(ready=inf))
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.script.robots["a"]._finish("ready")
+    time.sleep(0.2)
+    run.script.robots["a"].fail("LINK_LOST")
+    run.end()
+    assert "robot 'a': does not get ready" in str(run.error)
+    assert run.records == []
+
+
 def test_links_are_closed_at_the_end(live):
     run = live(WALK, Script())
     run.end()
