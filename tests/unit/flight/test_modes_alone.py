@@ -1,0 +1,57 @@
+"""Modes into which vehicles go when they hear nobody, as simulated ones do, which know no table of ours."""
+
+from __future__ import annotations
+
+import pytest
+from mavlink_peer import PX4, linked
+
+from mmrs_core.flight.vehicles import modes
+from mmrs_core.sitl import failsafes
+from mmrs_core.sitl.modes import MODES
+
+CASES = [
+    *(
+        (kind, {"FS_GCS_ENABLE": float(value)}, names)
+        for kind, answers in failsafes.ON_SILENCE.items()
+        for value, names in answers.items()
+    ),
+    *(
+        ("rover", {"FS_GCS_ENABLE": 1.0, "FS_ACTION": float(value)}, names)
+        for value, names in failsafes.ON_ROVERS_LOSS.items()
+    ),
+]
+CONTINUING = frozenset({3})
+"""AUTO, in which a copter may be left, which the simulated vehicle does not know."""
+
+
+def numbered(kind: str, names) -> set[int]:
+    return {MODES[kind][name] for name in names if name in MODES[kind]}
+
+
+@pytest.mark.parametrize(("kind", "values", "names"), CASES)
+def test_an_ardupilot_goes_into_the_modes_that_are_expected_of_it(kind, values, names):
+    with linked() as (link, _):
+        expected = modes.alone(link, kind, values)
+    assert expected - CONTINUING == numbered(kind, names)
+
+
+@pytest.mark.parametrize(("action", "names"), failsafes.ON_PX4.items())
+def test_a_px4_does_too(action, names):
+    with linked(autopilot=PX4) as (link, _):
+        expected = modes.alone(link, "copter", {"NAV_DLL_ACT": float(action)})
+    assert expected == numbered("px4", names)
+
+
+@pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
+@pytest.mark.parametrize("values", [{}, {"FS_GCS_ENABLE": 0.0, "FS_ACTION": 1.0}])
+def test_nothing_is_expected_of_a_vehicle_whose_failsafe_is_off_or_not_known(kind, values):
+    with linked() as (link, _):
+        assert modes.alone(link, kind, values) == frozenset()
+
+
+@pytest.mark.parametrize("kind", ["copter", "sub", "rover"])
+def test_whatever_a_vehicle_is_told_to_do_about_a_lost_link_is_known(kind):
+    stays = {"CONTINUE", "STOP_THRUST"}
+    with linked() as (link, _):
+        for response, values in modes.lost_link_answers(link, kind).items():
+            assert bool(modes.alone(link, kind, values)) is (response not in stays)
