@@ -11,6 +11,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_core.sitl.old_frames import packed
+
 Message = Any
 
 LARGEST = 65_535
@@ -35,6 +37,7 @@ class Radio:
         loss: float = 0.0,
         delay: float = 0.0,
         seed: int = 0,
+        old: bool = False,
     ) -> None:
         """Be ready to speak.
 
@@ -45,6 +48,7 @@ class Radio:
             loss: part of all datagrams that are lost, either way.
             delay: real seconds that a datagram takes, either way.
             seed: of the losses.
+            old: whether it speaks MAVLink 1, for good.
 
         Raises:
             ValueError: the host has no address.
@@ -59,6 +63,7 @@ class Radio:
         self._socket.setblocking(False)
         self._mav = mavlink.MAVLink(None, srcSystem=system, srcComponent=COMPONENT)
         self._mav.robust_parsing = True
+        self._old = old
         self._leaving: list[tuple[float, int, bytes]] = []
         self._coming: list[tuple[float, int, bytes]] = []
         self._order = 0
@@ -75,9 +80,10 @@ class Radio:
 
     def send(self, message: Message) -> None:
         """Send a message, unless it is lost."""
-        data = message.pack(self._mav)
-        self._mav.seq = (self._mav.seq + 1) % 256
-        self.relay(data)
+        data = self._packed(message)
+        if data is not None:
+            self._mav.seq = (self._mav.seq + 1) % 256
+            self.relay(data)
 
     def relay(self, data: bytes) -> None:
         """Send a frame of somebody else's as it is, unless it is lost."""
@@ -120,6 +126,11 @@ class Radio:
                 heapq.heappush(self._coming, (time.monotonic() + self._delay, self._order, data))
         while self._coming and self._coming[0][0] <= time.monotonic():
             yield heapq.heappop(self._coming)[2]
+
+    def _packed(self, message: Message) -> bytes | None:
+        if self._old:
+            return packed(message, self._mav.srcSystem, COMPONENT, self._mav.seq)
+        return bytes(message.pack(self._mav))
 
     def _transmit(self, data: bytes) -> None:
         try:

@@ -34,6 +34,7 @@ class Settings:
         values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
         refuse: commands that it does not know.
         silent: commands that it never answers.
+        mavlink: version of MAVLink that its port speaks and never leaves, 1 or 2.
         key: 32 bytes to sign with and to expect signatures of; empty: no signatures.
         parameters: by name, those that are not as after a reset.
     """
@@ -59,6 +60,7 @@ class Settings:
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
+    mavlink: int = 2
     key: bytes = b""
     parameters: Mapping[str, float] = field(default_factory=dict)
 
@@ -74,5 +76,7 @@ class Settings:
             raise ValueError(f"{self.firmware}: no such firmware for a {self.kind}")
         if not (0.0 <= self.gusts[0] <= 20.0 and self.gusts[1] > 0.0):
             raise ValueError(f"{self.gusts[0]:g},{self.gusts[1]:g}: are no gusts; 0 to 20 m/s, some seconds")
+        if self.mavlink not in (1, 2):
+            raise ValueError(f"MAVLink {self.mavlink}: no such version; there are 1 and 2")
         if not 1 <= self.system <= 255:
             raise ValueError(f"{self.system}: is no MAVLink system; they are 1 to 255")

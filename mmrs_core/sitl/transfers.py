@@ -1,27 +1,38 @@
-"""The vehicle's side of the mission protocol: receiving and giving back missions, fences, rally points."""
+"""ArduPilot's side of the mission protocol, as its ``MissionItemProtocol.cpp`` has it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.items import FENCE, MISSION, RALLY, Item, fault_of, kept
-from mmrs_core.sitl.settings import ARDUPILOT, PX4
-
-Message = Any
+from mmrs_core.sitl.settings import ARDUPILOT
+from mmrs_core.sitl.stored import Address, Message, Say, Stored, item_of, nobody, sender_of
 
 ASK_AGAIN_SECONDS = 1.0
 GIVE_UP_SECONDS = 8.0
 NAMES = {MISSION: "Mission", FENCE: "Fence", RALLY: "Rally"}
 
 
-class MissionProtocol:
-    """Answers the messages of the mission protocol, one transfer at a time.
+@dataclass
+class _Incoming:
+    """A plan on its way: how many items it has, from whom it comes, when it was last asked for or came."""
 
-    ArduPilot writes missions and rally points item by item, so that a transfer that breaks off leaves
-    some of the old and some of the new; fences, and everything on PX4, are replaced as a whole.
+    expected: int
+    peer: Address
+    items: list[Item] = field(default_factory=list)
+    asked: float = -1.0
+    since: float = -1.0
+
+
+class MissionProtocol:
+    """Answers the messages of the mission protocol; each kind of plan has transfers of its own.
+
+    Missions and rally points are written item by item, so that a transfer that breaks off leaves some of
+    the old and some of the new; fences are replaced as a whole. An item out of turn is answered, and the
+    transfer goes on; whoever has begun it may begin it anew. While it lasts, nothing is cleared or given.
 
     Attributes:
         busy: whether uploads are refused for want of space, as just after a boot.
@@ -33,28 +44,34 @@ class MissionProtocol:
         self,
         stores: dict[int, list[Item]],
         send: Callable[[Message], None],
-        firmware: str = ARDUPILOT,
-        say: Callable[[int, str], None] = lambda severity, text: None,
+        say: Say = nobody,
+        *,
+        old: bool = False,
     ) -> None:
-        """Keep what is uploaded in `stores`, by mission type, answer by `send`, and complain by `say`."""
+        """Keep what is uploaded in `stores`, by mission type, answer by `send`, and complain by `say`.
+
+        Args:
+            stores: items by mission type.
+            send: sends a message.
+            say: tells the ground something.
+            old: whether the port speaks MAVLink 1, by which nothing but missions is taken.
+        """
         self.busy = False
         self.finished: Callable[[int], None] = lambda kind: None
         self.home: Callable[[], Item] | None = None
-        self._stores = stores
-        self._send = send
-        self._firmware = firmware
-        self._say = say
-        self._incoming: list[Item] = []
-        self._expected = 0
-        self._kind = MISSION
-        self._peer = (0, 0)
-        self._asked = self._since = 0.0
+        self._stored = Stored(stores, send)
+        self._say, self._old = say, old
+        self._incoming: dict[int, _Incoming] = {}
 
     def take(self, message: Message) -> None:
         """Answer a message, if it is one of the protocol."""
         handler = _HANDLERS.get(message.get_type())
-        if handler is not None:
-            self._peer = (message.get_srcSystem(), message.get_srcComponent())
+        if handler is None:
+            return
+        if self._old and message.mission_type != MISSION:
+            self._say(mavlink.MAV_SEVERITY_WARNING, "Need mavlink2 for item transfer")
+            self._answer(message, mavlink.MAV_MISSION_UNSUPPORTED)
+        else:
             handler(self, message)
 
     def go_on(self, now: float, patience: float) -> None:
@@ -64,131 +81,105 @@ class MissionProtocol:
             now: seconds.
             patience: least seconds to wait.
         """
-        if not self._expected or self._asked < 0.0:
-            self._asked = self._since = now
-        elif now - self._since > max(GIVE_UP_SECONDS, patience):
-            self._expected = 0
-            self._say(mavlink.MAV_SEVERITY_WARNING, f"{NAMES[self._kind]} upload timeout")
-            self._acknowledge(mavlink.MAV_MISSION_OPERATION_CANCELLED, self._kind)
-        elif now - self._asked > max(ASK_AGAIN_SECONDS, patience / 2.0):
-            self._asked = now
-            self._request(len(self._incoming))
+        for kind, coming in list(self._incoming.items()):
+            if coming.asked < 0.0:
+                coming.asked = now
+                coming.since = now if coming.since < 0.0 else coming.since
+            if now - coming.since > max(GIVE_UP_SECONDS, 2.0 * patience):
+                del self._incoming[kind]
+                self._say(mavlink.MAV_SEVERITY_WARNING, f"{NAMES[kind]} upload timeout")
+                self._stored.acknowledge(coming.peer, mavlink.MAV_MISSION_OPERATION_CANCELLED, kind)
+            elif now - coming.asked > max(ASK_AGAIN_SECONDS, patience / 2.0):
+                coming.asked = now
+                self._stored.ask(coming.peer, len(coming.items), kind)
 
     def _count(self, message: Message) -> None:
+        kind, peer = message.mission_type, sender_of(message)
+        coming = self._incoming.get(kind)
         if self.busy:
-            self._acknowledge(mavlink.MAV_MISSION_NO_SPACE, message.mission_type)
-            return
-        if message.mission_type not in self._stores:
-            self._acknowledge(mavlink.MAV_MISSION_UNSUPPORTED, message.mission_type)
-            return
-        self._incoming, self._expected, self._kind = [], message.count, message.mission_type
-        if self._writes_through():
-            self._stores[self._kind] = self._stores[self._kind][: message.count]
-        if message.count == 0:
-            self._finish()
+            self._answer(message, mavlink.MAV_MISSION_NO_SPACE)
+        elif kind not in self._stored.stores:
+            self._answer(message, mavlink.MAV_MISSION_UNSUPPORTED)
+        elif coming is not None and coming.peer != peer:
+            self._answer(message, mavlink.MAV_MISSION_DENIED)
         else:
-            self._ask()
+            self._begin(kind, _Incoming(message.count, peer))
+
+    def _begin(self, kind: int, coming: _Incoming) -> None:
+        self._incoming[kind] = coming
+        if kind != FENCE:
+            self._stored.stores[kind] = self._stored.stores[kind][: coming.expected]
+        self._go_on_with(kind, coming)
+
+    def _go_on_with(self, kind: int, coming: _Incoming) -> None:
+        """Ask for the next item, or end the transfer when there is none."""
+        if len(coming.items) < coming.expected:
+            coming.asked = -1.0
+            self._stored.ask(coming.peer, len(coming.items), kind)
+            return
+        del self._incoming[kind]
+        self._stored.stores[kind] = list(coming.items)
+        self._stored.acknowledge(coming.peer, mavlink.MAV_MISSION_ACCEPTED, kind)
+        self.finished(kind)
 
     def _item(self, message: Message) -> None:
-        params = (message.param1, message.param2, message.param3, message.param4)
-        self._keep(message, Item(message.frame, message.command, params, message.x, message.y, message.z))
-
-    def _old_item(self, message: Message) -> None:
-        params = (message.param1, message.param2, message.param3, message.param4)
-        x, y = round(message.x * 1e7), round(message.y * 1e7)
-        self._keep(message, Item(message.frame, message.command, params, x, y, message.z))
-
-    def _keep(self, message: Message, item: Item) -> None:
-        if message.mission_type != self._kind:
-            return
-        if message.seq != len(self._incoming) or not self._expected:
-            self._repeat(message.seq)
-            return
-        fault = fault_of(item, self._kind, self._firmware)
-        if fault:
-            self._expected = 0
-            self._acknowledge(fault, self._kind)
-            return
-        self._incoming.append(kept(item, self._kind, self._firmware))
-        if self._writes_through():
-            self._stores[self._kind][message.seq : message.seq + 1] = [self._incoming[-1]]
-        if len(self._incoming) == self._expected:
-            self._finish()
+        kind = message.mission_type
+        coming = self._incoming.get(kind)
+        if coming is None:
+            self._answer(message, mavlink.MAV_MISSION_ERROR)
+        elif message.seq != len(coming.items):
+            self._answer(message, mavlink.MAV_MISSION_INVALID_SEQUENCE)
+        elif sender_of(message) != coming.peer:
+            self._answer(message, mavlink.MAV_MISSION_DENIED)
+        elif fault := fault_of(item_of(message), kind):
+            del self._incoming[kind]
+            self._answer(message, fault)
         else:
-            self._ask()
+            self._keep(kind, coming, kept(item_of(message), kind, ARDUPILOT))
 
-    def _writes_through(self) -> bool:
-        return self._firmware != PX4 and self._kind != FENCE
-
-    def _repeat(self, seq: int) -> None:
-        """Answer again what the ground station has missed, when it sends an item for the second time."""
-        if seq == len(self._incoming) - 1 and self._expected:
-            self._request(len(self._incoming))
-        elif seq == len(self._incoming) - 1:
-            self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, self._kind)
-
-    def _finish(self) -> None:
-        self._stores[self._kind] = list(self._incoming)
-        self._expected = 0
-        self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, self._kind)
-        self.finished(self._kind)
+    def _keep(self, kind: int, coming: _Incoming, item: Item) -> None:
+        seq = len(coming.items)
+        coming.items.append(item)
+        coming.since = -1.0
+        if kind != FENCE:
+            self._stored.stores[kind][seq : seq + 1] = [item]
+        self._go_on_with(kind, coming)
 
     def _clear(self, message: Message) -> None:
-        if self.busy:
-            self._acknowledge(mavlink.MAV_MISSION_NO_SPACE, message.mission_type)
-            return
         everything = message.mission_type == mavlink.MAV_MISSION_TYPE_ALL
-        for kind in list(self._stores) if everything else [message.mission_type]:
-            self._stores[kind] = []
-            self.finished(kind)
-        self._acknowledge(mavlink.MAV_MISSION_ACCEPTED, message.mission_type)
+        kinds = list(self._stored.stores) if everything else [message.mission_type]
+        if self.busy:
+            self._answer(message, mavlink.MAV_MISSION_NO_SPACE)
+        elif any(kind in self._incoming for kind in kinds):
+            self._answer(message, mavlink.MAV_MISSION_ERROR)
+        else:
+            for kind in kinds:
+                self._stored.stores[kind] = []
+                self.finished(kind)
+            self._answer(message, mavlink.MAV_MISSION_ACCEPTED)
 
     def _list(self, message: Message) -> None:
-        count = len(self._stores.get(message.mission_type, ()))
-        self._send(mavlink.MAVLink_mission_count_message(*self._peer, count, message.mission_type))
+        if message.mission_type in self._incoming:
+            self._answer(message, mavlink.MAV_MISSION_DENIED)
+        else:
+            self._stored.count(sender_of(message), message.mission_type)
 
     def _wanted(self, message: Message) -> None:
-        item = self._stored(message)
-        if item is not None:
-            self._give(mavlink.MAVLink_mission_item_int_message, message, item, item.x, item.y)
+        if message.mission_type in self._incoming and message.get_type() == "MISSION_REQUEST_INT":
+            self._answer(message, mavlink.MAV_MISSION_DENIED)
+        else:
+            self._stored.give(sender_of(message), message, self.home)
 
-    def _wanted_by_old(self, message: Message) -> None:
-        item = self._stored(message)
-        if item is not None:
-            self._give(mavlink.MAVLink_mission_item_message, message, item, item.x * 1e-7, item.y * 1e-7)
-
-    def _stored(self, message: Message) -> Item | None:
-        items: list[Item] = self._stores.get(message.mission_type, [])
-        seq = int(message.seq)
-        if seq == 0 and items and message.mission_type == MISSION and self.home is not None:
-            return self.home()
-        if 0 <= seq < len(items):
-            return items[seq]
-        self._acknowledge(mavlink.MAV_MISSION_INVALID_SEQUENCE, message.mission_type)
-        return None
-
-    def _give(self, kind: Callable[..., Message], asked: Message, item: Item, x: float, y: float) -> None:
-        place = (x, y, item.z, asked.mission_type)
-        head = (*self._peer, asked.seq, item.frame, item.command, 0, 1)
-        self._send(kind(*head, *item.params, *place))
-
-    def _ask(self) -> None:
-        self._asked = -1.0
-        self._request(len(self._incoming))
-
-    def _request(self, seq: int) -> None:
-        self._send(mavlink.MAVLink_mission_request_int_message(*self._peer, seq, self._kind))
-
-    def _acknowledge(self, result: int, kind: int) -> None:
-        self._send(mavlink.MAVLink_mission_ack_message(*self._peer, result, kind))
+    def _answer(self, message: Message, result: int) -> None:
+        self._stored.acknowledge(sender_of(message), result, message.mission_type)
 
 
 _HANDLERS: Mapping[str, Callable[[MissionProtocol, Message], None]] = {
     "MISSION_COUNT": MissionProtocol._count,
     "MISSION_ITEM_INT": MissionProtocol._item,
-    "MISSION_ITEM": MissionProtocol._old_item,
+    "MISSION_ITEM": MissionProtocol._item,
     "MISSION_CLEAR_ALL": MissionProtocol._clear,
     "MISSION_REQUEST_LIST": MissionProtocol._list,
     "MISSION_REQUEST_INT": MissionProtocol._wanted,
-    "MISSION_REQUEST": MissionProtocol._wanted_by_old,
+    "MISSION_REQUEST": MissionProtocol._wanted,
 }

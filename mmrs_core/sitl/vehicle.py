@@ -17,10 +17,12 @@ from mmrs_core.sitl.faults import Faults
 from mmrs_core.sitl.hosting import Host
 from mmrs_core.sitl.items import MISSION, RALLY, Item
 from mmrs_core.sitl.parameter_service import ParameterService
+from mmrs_core.sitl.px4_transfers import Px4MissionProtocol
 from mmrs_core.sitl.radio import COMPONENT, Radio
 from mmrs_core.sitl.routing import Router
 from mmrs_core.sitl.settings import PX4, Settings
 from mmrs_core.sitl.simulation import advance
+from mmrs_core.sitl.stored import Transfers
 from mmrs_core.sitl.streams import Streams
 from mmrs_core.sitl.transfers import MissionProtocol
 
@@ -72,15 +74,21 @@ class SimulatedVehicle:
         self.autopilot = Autopilot(given)
         self.speedup = speedup
         self.autopilot.patience = REAL_PATIENCE * speedup
-        self.radio = Radio((host, port), given.system, key=given.key, loss=loss, delay=delay, seed=seed)
+        self.radio = Radio(
+            (host, port),
+            given.system,
+            key=given.key,
+            loss=loss,
+            delay=delay,
+            seed=seed,
+            old=given.mavlink == 1,
+        )
         self.received: list[tuple[float, str]] = []
         self.lock = threading.RLock()
         self.faults = Faults(self.autopilot, self.lock, watched=ground is not None)
         self.radio.down = lambda: self.faults.link_down or self.autopilot.booting
         self._router = Router(given.system, self.radio, *self._second(ground, given))
-        self._missions = MissionProtocol(
-            self.autopilot.stores, self._answer, given.firmware, self.autopilot.say
-        )
+        self._missions = self._protocol(given)
         self._missions.finished = self._count_items
         self._missions.home = None if given.firmware == PX4 else self._home
         self._late: list[tuple[float, Message]] = []
@@ -151,6 +159,12 @@ class SimulatedVehicle:
             self._router.flush()
             if self._router.late:
                 self.hear()
+
+    def _protocol(self, given: Settings) -> Transfers:
+        stores, say = self.autopilot.stores, self.autopilot.say
+        if given.firmware == PX4:
+            return Px4MissionProtocol(stores, self._answer, say)
+        return MissionProtocol(stores, self._answer, say, old=given.mavlink == 1)
 
     def _second(self, ground: tuple[str, int] | None, given: Settings) -> list[Radio]:
         if ground is None:

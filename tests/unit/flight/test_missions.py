@@ -148,10 +148,10 @@ def test_a_vehicle_that_refuses_an_item_is_left_with_nothing():
 
 
 def test_a_vehicle_that_falls_silent_in_the_middle_is_told_as_not_known():
-    store = Store(deaf=["MISSION_ITEM_INT"] * 99 + ["MISSION_CLEAR_ALL"] * 99)
+    store = Store(deaf=["MISSION_ITEM_INT"] * 99 + ["MISSION_CLEAR_ALL", "MISSION_REQUEST_LIST"] * 99)
     with (
         linked(store, speedup=20.0) as (link, _),
-        pytest.raises(Refused, match="answers nothing to the upload; what it has now is not known"),
+        pytest.raises(Refused, match="answers nothing more to the upload; what it has now is not known"),
     ):
         upload(link, ITEMS)
 

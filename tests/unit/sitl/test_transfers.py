@@ -6,6 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.items import Item
+from mmrs_core.sitl.px4_transfers import Px4MissionProtocol
 from mmrs_core.sitl.transfers import MissionProtocol
 
 OLD = [Item(3, 16, (0.0, 0.0, 0.0, 0.0), n, n, 1.0) for n in range(4)]
@@ -14,12 +15,13 @@ OLD = [Item(3, 16, (0.0, 0.0, 0.0, 0.0), n, n, 1.0) for n in range(4)]
 class Exchange:
     """A vehicle's side of the protocol, and all that it answered."""
 
-    def __init__(self, firmware: str = "ardupilot") -> None:
+    def __init__(self, firmware: str = "ardupilot", **port: bool) -> None:
         self.answers = []
         self.stores = {0: list(OLD), 1: list(OLD), 2: []}
         self.said = []
         say = lambda severity, text: self.said.append(text)  # noqa: E731
-        self.protocol = MissionProtocol(self.stores, self.answers.append, firmware, say)
+        make = Px4MissionProtocol if firmware == "px4" else MissionProtocol
+        self.protocol = make(self.stores, self.answers.append, say, **port)
 
     def take(self, message) -> None:
         message._header.srcSystem, message._header.srcComponent = 255, 190
@@ -51,15 +53,81 @@ def test_items_are_asked_for_one_after_another_and_acknowledged_at_the_end(excha
     assert [item.x for item in exchange.stores[0]] == [100, 101]
 
 
-def test_an_item_that_comes_twice_counts_once(exchange):
+def test_an_item_that_ardupilot_has_already_is_answered_and_counts_once(exchange):
     exchange.count(2)
     exchange.item(0)
     exchange.item(0)
-    assert exchange.last.seq == 1
-    exchange.item(1)
+    assert exchange.last.type == mavlink.MAV_MISSION_INVALID_SEQUENCE
     exchange.item(1)
     assert exchange.last.type == 0
-    assert len(exchange.stores[0]) == 2
+    assert [item.x for item in exchange.stores[0]] == [100, 101]
+
+
+def test_an_item_after_the_end_is_no_part_of_anything_for_ardupilot(exchange):
+    exchange.count(1)
+    exchange.item(0)
+    exchange.item(0)
+    assert exchange.last.type == mavlink.MAV_MISSION_ERROR
+
+
+def test_ardupilot_clears_and_gives_nothing_while_it_receives(exchange):
+    exchange.count(2)
+    exchange.take(mavlink.MAVLink_mission_clear_all_message(1, 1, 0))
+    assert exchange.last.type == mavlink.MAV_MISSION_ERROR
+    exchange.take(mavlink.MAVLink_mission_request_list_message(1, 1, 0))
+    assert exchange.last.type == mavlink.MAV_MISSION_DENIED
+    exchange.count(0)
+    assert exchange.last.type == 0
+    assert exchange.stores[0] == []
+
+
+def test_ardupilot_begins_anew_for_whoever_sends_the_plan(exchange):
+    exchange.count(2)
+    exchange.item(0)
+    exchange.count(2)
+    assert exchange.last.seq == 0
+
+
+def test_ardupilot_takes_nothing_but_missions_on_an_old_port():
+    exchange = Exchange(old=True)
+    exchange.count(2, kind=1)
+    assert exchange.last.type == mavlink.MAV_MISSION_UNSUPPORTED
+    assert exchange.said == ["Need mavlink2 for item transfer"]
+    exchange.count(2, kind=0)
+    assert exchange.last.seq == 0
+
+
+def test_an_item_that_px4_has_already_is_passed_over_and_the_last_is_accepted_again():
+    exchange = Exchange("px4")
+    exchange.count(2)
+    exchange.item(0)
+    answers = len(exchange.answers)
+    exchange.item(0)
+    assert len(exchange.answers) == answers
+    exchange.item(1)
+    exchange.item(1)
+    assert [answer.type for answer in exchange.answers[answers:]] == [0, 0]
+
+
+def test_px4_is_busy_until_it_is_told_that_a_transfer_is_over():
+    exchange = Exchange("px4")
+    exchange.count(2)
+    exchange.item(0)
+    exchange.count(2)
+    assert (exchange.last.type, exchange.said) == (mavlink.MAV_MISSION_ERROR, ["WPM: REJ. CMD: Busy"])
+    exchange.take(mavlink.MAVLink_mission_ack_message(1, 1, mavlink.MAV_MISSION_OPERATION_CANCELLED, 0))
+    exchange.count(2)
+    assert exchange.last.seq == 0
+
+
+def test_px4_gives_items_in_their_order_and_breaks_off_otherwise():
+    exchange = Exchange("px4")
+    exchange.take(mavlink.MAVLink_mission_request_list_message(1, 1, 0))
+    for seq in (0, 0, 1):
+        exchange.take(mavlink.MAVLink_mission_request_int_message(1, 1, seq, 0))
+        assert exchange.last.seq == seq
+    exchange.take(mavlink.MAVLink_mission_request_int_message(1, 1, 3, 0))
+    assert exchange.last.type == mavlink.MAV_MISSION_ERROR
 
 
 def test_a_fault_ends_the_transfer(exchange):

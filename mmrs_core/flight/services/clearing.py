@@ -1,0 +1,75 @@
+"""Has a vehicle forget a plan, also in the middle of receiving one.
+
+ArduPilot clears nothing while it receives, but takes a plan without items instead from whoever sends the
+plan; PX4 takes neither before it was told that the transfer is over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import Refused
+from ..links.link import Link, Message
+from .exchanges import asked, concerns, lacks_kinds, old_port
+from .items import MISSION
+from .reading import count_of
+from .sending import cancellation
+
+
+def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
+    """Clear what the vehicle has of a kind; return its MAV_MISSION_RESULT.
+
+    Args:
+        link: to the vehicle.
+        kind: of plan.
+        receiving: whether it may be in the middle of receiving one, which is ended first.
+
+    Raises:
+        Refused: the vehicle does not answer, or its port is too old for that kind of plan.
+    """
+    with link.inbox("MISSION_ACK") as inbox:
+        *before, ask = _ending(link, kind) if receiving else (_clearing(link, kind),)
+        for message in before:
+            link.send(message)
+        answer = asked(link, ask, inbox, lambda found: concerns(found, kind), link.retries.answer)
+    if lacks_kinds(answer, kind):
+        raise old_port(kind)
+    return int(answer.type)
+
+
+def break_off(link: Link, kind: int) -> None:
+    """Have the vehicle end a transfer and forget the plan, without waiting for an answer."""
+    for message in _ending(link, kind):
+        link.send(message)
+
+
+def left_of(link: Link, kind: int) -> str:
+    """Have a vehicle forget a plan of which it took only a part; return what it has now, in words."""
+    # No answer to this either is told as what it is: nobody knows what is left.
+    with suppress(Refused):
+        for _ in range(link.retries.tries):
+            break_off(link, kind)
+            if count_of(link, kind) <= _least(link, kind):
+                return "it has none now"
+    return "what it has now is not known"
+
+
+def _ending(link: Link, kind: int) -> Iterator[Message]:
+    """Yield what has any vehicle end a transfer and forget the plan, in this order."""
+    yield cancellation(link, kind)
+    yield _clearing(link, kind)
+    yield mavlink.MAVLink_mission_count_message(link.system, link.component, 0, kind)
+
+
+def _clearing(link: Link, kind: int) -> Message:
+    return mavlink.MAVLink_mission_clear_all_message(link.system, link.component, kind)
+
+
+def _least(link: Link, kind: int) -> int:
+    """Return how many items an empty plan has: ArduPilot's mission begins with its home."""
+    beat = link.latest("HEARTBEAT")
+    ardupilot = beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    return int(kind == MISSION and ardupilot)
