@@ -47,7 +47,7 @@ class Result:
     def exit_code(self) -> int:
         """Return what the shell gets."""
         faults = {self.ending.faults[robot].which for robot in self.ending.responses}
-        if "LINK_LOST" in faults or self.ending.unconfirmed:
+        if "LINK_LOST" in faults or self.ending.unconfirmed or self.ending.lost:
             return LinkLostError.exit_code
         if {STOPPED, ORDERED} & faults:
             return INTERRUPTED
@@ -69,6 +69,8 @@ class Result:
             say(f"  '{robot}' {happened}; --resume goes on where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
+        for robot in ending.lost:
+            say(f"  the link to '{robot}' was lost")
         for robot in ending.unconfirmed:
             say(f"  '{robot}' has not confirmed that it stopped")
         for log in self.logs:

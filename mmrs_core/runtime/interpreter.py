@@ -374,4 +374,5 @@ class _Run:
             responses,
             {id: words for id, words in self._stopping.came_down.items() if id in suspended},
             tuple(robot.id for robot in self._robots if robot.absent),
+            self._stopping.lost,
         )

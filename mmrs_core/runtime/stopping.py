@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from mmrs_core.contributions.abilities import Noting, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
+from mmrs_core.flight.faults import LINK_LOST
 from mmrs_core.flight.policies import COMES_DOWN, NOTHING
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
@@ -26,12 +27,19 @@ class Stopping:
         self._robots, self._clock, self._obedience, self._say = robots, clock, obedience, say
         self._unconfirmed: dict[str, None] = {}
         self._came_down: dict[str, str] = {}
-        self._lost: set[str] = set()
+        self._unheard: set[str] = set()
+        self._listened_for: set[str] = set()
+        self._lost: dict[str, None] = {}
 
     @property
     def unconfirmed(self) -> tuple[str, ...]:
         """Return the robots that have not confirmed that they stopped, and will not."""
         return tuple(self._unconfirmed)
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """Return the robots whose links were lost after their programs had ended, or were broken off."""
+        return tuple(self._lost)
 
     @property
     def busy(self) -> bool:
@@ -83,15 +91,27 @@ class Stopping:
             return  # it has stopped, and its link was not needed any more
         if trouble is not None and robot.overtaken_by(trouble):
             self.answer(robot, trouble)
-        elif isinstance(robot.backend, Watched):
-            self._tell_link(robot, lost=not robot.backend.reachable(now))
+            return
+        self._stay_if_lost(robot, trouble)
+        if isinstance(robot.backend, Watched):
+            self._tell_link(robot, heard=robot.backend.reachable(now))
 
-    def _tell_link(self, robot: RunningRobot, *, lost: bool) -> None:
-        if lost:
-            self._lost.add(robot.id)
-        elif robot.id in self._lost and self._needs_company(robot):
+    def _stay_if_lost(self, robot: RunningRobot, trouble: Fault | None) -> None:
+        """Listen for a robot whose link is lost, although it might have been left before that."""
+        if trouble is None or trouble.which != LINK_LOST:
+            self._listened_for.discard(robot.id)
+        elif robot.id not in self._listened_for:
+            self._listened_for.add(robot.id)
+            self._unheard.add(robot.id)
+            self._lost[robot.id] = None
+            robot.released = False
+
+    def _tell_link(self, robot: RunningRobot, *, heard: bool) -> None:
+        if not heard:
+            self._unheard.add(robot.id)
+        elif robot.id in self._unheard and self._needs_company(robot):
             self._say(f"'{robot.id}': is heard again: orders are obeyed")
-            self._lost.discard(robot.id)
+            self._unheard.discard(robot.id)
 
     def _look_after(self, robot: RunningRobot, now: float) -> None:
         try:
@@ -105,6 +125,7 @@ class Stopping:
         if trouble is not None:
             self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed[robot.id] = None
+            self._stay_if_lost(robot, trouble)
         elif not robot.stopping:
             self._unconfirmed.pop(robot.id, None)
             self._say(f"'{robot.id}': {self._done(robot, now)}")

@@ -74,6 +74,7 @@ class Ending:
         absent: robots that did not get ready and were told nothing; those of `suspended`, too.
         came_down: in words how robots came down for their batteries that have not gone on since; those of
             `suspended` that are not here are not known to have come down for that.
+        lost: robots whose links were lost, for a time at least, when they were to stop, or had.
     """
 
     outcome: Outcome
@@ -86,3 +87,4 @@ class Ending:
     responses: Mapping[str, str] = field(default_factory=dict)
     came_down: Mapping[str, str] = field(default_factory=dict)
     absent: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()

@@ -81,7 +81,7 @@ class Walker:
         return self.doubted or (self.trouble is not None and self.trouble.which == "TAKEN_OVER")
 
     def watched(self, now):
-        return self.watched_for and self.trouble is None
+        return self.watched_for and (self.trouble is None or self.trouble.which == "LINK_LOST")
 
     def undone(self, now):
         return self.astray if self.stops[-1:] == ["RETURN"] else ""
@@ -185,6 +185,8 @@ class Flight:
 
     def abort(self):
         """End the thread of a test that has failed, or does not wait for the end."""
+        if isinstance(self.script, Script):
+            self.script.seconds.clear()
         while self._thread.is_alive():
             self.orders.give(STOP, [each.id for each in self.behaviour.robots])
             for each in self.script.robots.values() if isinstance(self.script, Script) else ():

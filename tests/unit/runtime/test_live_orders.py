@@ -329,6 +329,37 @@ def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
     run.end()
 
 
+def returning(live):
+    """Return a run whose robot was told to stop, and is on its way home when its link is lost."""
+    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
+    run.orders.on_stop = "RETURN"
+    run.wait_for_step("r begin walk")
+    walker = run.script.robots["r"]
+    run.orders.give(STOP, ["r"])
+    run.wait_for(lambda: walker.stops == ["RETURN"])
+    walker.watched_for, walker.heard = True, False
+    walker.fail("LINK_LOST")
+    run.wait_for(lambda: any("not known to have stopped" in line for line in run.said))
+    return run, walker
+
+
+def test_a_robot_that_was_told_to_stop_before_its_link_was_lost_is_listened_for(live):
+    run, walker = returning(live)
+    walker.heard = True
+    run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
+    assert run.order(LAND, "r").confirmed
+    walker.watched_for = False
+    ending = run.end()
+    assert (ending.lost, ending.unconfirmed) == (("r",), ())
+
+
+def test_a_robot_whose_link_is_lost_is_listened_for_no_longer_once_it_is_to_stop(live):
+    run, _ = returning(live)
+    assert run.order(STOP, "r").refused == {"r": "its link is lost"}
+    ending = run.end()
+    assert (ending.lost, ending.unconfirmed) == (("r",), ("r",))
+
+
 def test_orders_that_make_no_sense_are_refused_with_the_reason(live):
     run = live(WALK, Script(walk=inf))
     run.wait_for_step("r begin walk")
