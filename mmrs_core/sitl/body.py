@@ -130,14 +130,15 @@ class Body:
             return STILL
         corner, before = self._corner()
         pace = sqrt(corner * corner + 2.0 * 0.8 * self.acceleration * max(0.0, left - before))
-        pace = min(self.speed, pace) if corner else min(self.speed, pace, left / STEP)
-        vertical = abs(way[2]) / left * pace
-        limit = self.climb if way[2] > 0 else self.descent
-        if vertical > limit:
-            pace *= limit / vertical
+        pace = min(self._fastest(way), pace if corner else min(pace, left / STEP))
         if self.origin is not None and left > before:
             return self._along_the_leg(self.origin, self.target, pace)
         return plus(STILL, way, pace / left)
+
+    def _fastest(self, way: Vector) -> float:
+        """Return the metres per second at which it may go that way, up or down no faster than it may."""
+        limit = self.climb if way[2] > 0 else self.descent
+        return min(self.speed, limit * hypot(*way) / abs(way[2])) if way[2] else self.speed
 
     def _at_its_post(self) -> Vector:
         """Return a velocity that brings it to a halt and, once there, back from where gusts carry it."""
@@ -183,9 +184,10 @@ class Body:
             return 0.0, 0.0
         cosine = sum(a * b for a, b in zip(way, leg, strict=True)) / (left * length)
         half = sqrt(max(0.0, (1.0 - cosine) / 2.0))
+        fastest = min(self._fastest(way), self._fastest(leg))
         if half < STRAIGHT:
-            return self.speed, 0.0
-        pace = min(self.speed, sqrt(2.0 * self.acceleration * self.cut) / half)
+            return fastest, 0.0
+        pace = min(fastest, sqrt(2.0 * self.acceleration * self.cut) / half)
         pace = min(pace, sqrt(0.45 * length * self.acceleration / half))
         return pace, pace * pace * half / self.acceleration
 
@@ -210,12 +212,13 @@ class Body:
         return (air[0] + north * part, air[1] + east * part, wanted[2])
 
     def _accelerate(self, wanted: Vector, step: float) -> None:
+        """Come nearer to a velocity; on a leg in all directions alike, also where that climbs."""
         north, east, up = plus(wanted, self.velocity, -1.0)
         limit = self.acceleration * step
-        size = hypot(north, east)
-        part = 1.0 if size <= limit else limit / size
-        climb = max(-limit, min(limit, up))
-        self.velocity = plus(self.velocity, (north * part, east * part, climb), 1.0)
+        level, upwards = (min(1.0, limit / size) if size else 1.0 for size in (hypot(north, east), abs(up)))
+        if self.origin is not None:
+            level = upwards = min(level, upwards)
+        self.velocity = plus(self.velocity, (north * level, east * level, up * upwards), 1.0)
 
     def _turn(self, step: float) -> None:
         if self.wanted_heading is None:
