@@ -10,7 +10,7 @@ from mmrs_core.sitl.faults import ENDS, FAULTS
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 
 _PATTERN = re.compile(
-    r"(?:(?P<robot>[^:@=]+):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
+    r"(?:(?P<robot>.+?):)?(?P<name>[a-z-]+)(?:=(?P<values>[^@]+))?"
     r"(?:@(?P<begin>[0-9.]+)(?:\+(?P<lasts>[0-9.]+))?)?"
 )
 EVERYBODY = "all"
@@ -109,16 +109,24 @@ def order(text: str, vehicles: Sequence[tuple[str, SimulatedVehicle]]) -> tuple[
     Raises:
         ValueError: it does not say so, or there is no such robot or fault.
     """
-    words = text.split()
+    names = [name for name, _ in vehicles]
+    robot = _named_first(text, [*names, EVERYBODY])
+    words = text.split() if robot is None else [robot, *text.strip().removeprefix(robot).split()]
     if len(words) < 2:
         raise ValueError(f"{text.strip()}: is neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
-    wanted = [(name, vehicle) for name, vehicle in vehicles if words[0] in (name, EVERYBODY)]
-    if not wanted:
-        known = ", ".join(name for name, _ in vehicles)
-        raise ValueError(f"{words[0]}: no such robot; there are {known}, and all")
+    if robot is None:
+        raise ValueError(f"{words[0]}: no such robot; there are {', '.join(names)}, and all")
+    what, *values = words[1:]
+    wanted = [(name, vehicle) for name, vehicle in vehicles if robot in (name, EVERYBODY)]
     for _, vehicle in wanted:
-        if words[1] == "mend" and len(words) == 3:
-            vehicle.faults.end(words[2])
+        if what == "mend" and len(values) == 1:
+            vehicle.faults.end(values[0])
         else:
-            vehicle.faults.begin(words[1], *words[2:])
+            vehicle.faults.begin(what, *values)
     return tuple(name for name, _ in wanted)
+
+
+def _named_first(text: str, names: Sequence[str]) -> str | None:
+    """Return the name that a line begins with, the longest where several fit: names may have blanks."""
+    fitting = [name for name in names if f"{text.strip()} ".startswith(f"{name} ")]
+    return max(fitting, key=len, default=None)

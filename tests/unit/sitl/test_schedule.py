@@ -23,6 +23,8 @@ def vehicle():
         ("Drone1:gps-lost@60+20", Planned("Drone1", "gps-lost", (), 60.0, 20.0)),
         ("battery=0.2@7.5", Planned("", "battery", ("0.2",), 7.5)),
         ("A:obstacle=3,90@1+2", Planned("A", "obstacle", ("3", "90"), 1.0, 2.0)),
+        ("west: A@1:gps-lost@5", Planned("west: A@1", "gps-lost", (), 5.0)),
+        ("A:refuse-arming=PreArm: x", Planned("A", "refuse-arming", ("PreArm: x",))),
     ],
 )
 def test_a_fault_says_whom_what_when_and_for_how_long(text, fault):
@@ -63,9 +65,21 @@ def test_a_line_makes_and_mends_faults(vehicle):
     assert vehicle.autopilot.obstacle is None
 
 
+@pytest.mark.parametrize("line", ["Quad 1 battery 0.1", "  Quad 1   battery 0.1 "])
+def test_a_line_may_name_a_robot_whose_name_has_blanks(vehicle, line):
+    vehicles = [(name, vehicle) for name in ("Quad", "Quad 12", "Quad 1")]
+    assert order(line, vehicles) == ("Quad 1",)
+    assert vehicle.autopilot.energy == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize(
     ("line", "complaint"),
-    [("Drone2 gps-lost", "no such robot"), ("gps-lost", "is neither"), ("Drone1 gps", "no such fault")],
+    [
+        ("Drone2 gps-lost", "no such robot"),
+        ("gps-lost", "is neither"),
+        ("Drone1", "is neither"),
+        ("Drone1 gps", "no such fault"),
+    ],
 )
 def test_a_line_that_says_nothing_is_refused(vehicle, line, complaint):
     with pytest.raises(ValueError, match=complaint):
