@@ -26,10 +26,10 @@ from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import say, tell, unfailing
 from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, robots_of, stop_response
 from mmrs_core.errors import LinkLostError
+from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.pipeline import conditions_for, inputs_of, run_live
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture
-from mmrs_core.runtime.obedience import ORDERED, STOPPED
 from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
 

@@ -122,6 +122,7 @@ class _Run:
         self._agenda = Agenda(len(robots))
         self._deadlock: tuple[Waiting, ...] = ()
         self._idle_since: float | None = None
+        self._told = ""
         if terms.attention is not None:
             attention = terms.attention
             bus.on_change(lambda: attention.call(BUS))
@@ -134,8 +135,7 @@ class _Run:
                 self._obey()
                 yield from self._settled()
                 self._stopping.look_after()
-                if not self._deadlock and self._is_quiet():
-                    self._deadlock = self._waiting()
+                self._note_deadlock()
                 if self._made >= self._terms.steps or self._is_over():
                     break
                 until = self._next_wake()
@@ -283,7 +283,7 @@ class _Run:
     def _next_wake(self) -> float:
         """Return when to look again; inf where nothing is foreseen."""
         looks = min(self._patience_ends(), self._next_look_around())
-        if self._is_quiet() and not self._is_patient():
+        if self._is_quiet() and not self._is_patient() and not self._clock.passes_by_itself:
             return looks
         return min(self._agenda.next_time, looks)
 
@@ -312,12 +312,21 @@ class _Run:
             return False
         if self._stopping.busy or self._stopping.watching:
             return False
-        working = [robot for robot in self._robots if not robot.point.is_final and not robot.suspended]
-        if not working or (self._is_quiet() and not self._is_patient()):
-            ends = self._patience_ends(begin=True)
-            return ends <= self._clock.now()
+        if all(robot.point.is_final or robot.suspended for robot in self._robots):
+            return self._patience_ends(begin=True) <= self._clock.now()
         self._idle_since = None
-        return False
+        return self._is_quiet() and not (self._is_patient() or self._awaits_orders())
+
+    def _awaits_orders(self) -> bool:
+        """Return whether only people can change anything, and robots must not be left alone until they do."""
+        now = self._clock.now()
+        if not any(robot.may_be_resumed or robot.may_move(now) for robot in self._robots):
+            return False
+        waiting = "; ".join(map(str, self._waiting()))
+        if waiting != self._told:
+            self._told = waiting
+            self._terms.say(f"nothing goes on until somebody orders something: {waiting}")
+        return True
 
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
@@ -326,6 +335,12 @@ class _Run:
         if begin and self._idle_since is None:
             self._idle_since = self._clock.now()
         return inf if self._idle_since is None else self._idle_since + self._terms.patience
+
+    def _note_deadlock(self) -> None:
+        """Keep who waits once it is certain that nobody sets what it waits for."""
+        resumable = any(robot.may_be_resumed for robot in self._robots)
+        if not self._deadlock and self._is_quiet() and not resumable:
+            self._deadlock = self._waiting()
 
     def _is_patient(self) -> bool:
         """Return whether a wait of some robot will end by itself."""

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
+from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.flight.policies import COMES_DOWN, NOTHING
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
-
-ORDERED, STOPPED = "ORDERED", "STOPPED"
-"""Faults that end the program of a robot because somebody wants that."""
 
 
 class Obedience:
@@ -46,6 +44,7 @@ class Obedience:
         """Tell the orders that ended a robot's program what became of it."""
         robot = self._robots[id]
         robot.down = not stopping and trouble is None and robot.response in COMES_DOWN
+        robot.rested = robot.down and _rests(robot)
         for order in self._open:
             began = (order, id) not in self._waiting
             if id in order.responses and id in order.open and began and not stopping:
@@ -140,9 +139,7 @@ class Obedience:
             order.refuse(robot.id, "its backend cannot pause")
         else:
             self._overtake(robot, order, RESUME)
-            robot.held = True
-            if not robot.preparing:
-                robot.backend.pause(self._clock.now())
+            robot.hold(self._clock.now())
 
     def _resume(self, order: Order, robot: RunningRobot) -> None:
         if robot.broken_off:
@@ -155,9 +152,7 @@ class Obedience:
             self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
             self._overtake(robot, order, HOLD)
-            if not robot.preparing:
-                robot.backend.resume(self._clock.now())
-            robot.held = False
+            robot.go_on(self._clock.now())
         else:
             order.refuse(robot.id, "it is not held")
 
@@ -169,7 +164,10 @@ class Obedience:
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
-        if order.kind == RETURN and (why := robot.astray(self._clock.now())):
+        why = _taken(robot) if order.kind != STOP else ""
+        if order.kind == RETURN:
+            why = why or robot.astray(self._clock.now())
+        if why:
             order.refuse(robot.id, why)
             return
         robot.released = robot.released or order.kind == STOP
@@ -178,7 +176,7 @@ class Obedience:
     def _recover(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot go on whose program was broken off, unless its battery was not changed."""
         try:
-            why = robot.hindrance(self._clock.now())
+            why = _taken(robot) or robot.hindrance(self._clock.now())
         except LinkLostError as error:
             why = str(error)
         if why:
@@ -199,6 +197,7 @@ class Obedience:
 
     def _stop(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot do something else about what has ended its program; `resume` what it did before."""
+        held_anyway = order.kind == HOLD and robot.response == "HOLD"
         if order.kind == HOLD:
             robot.broken_off, robot.response = robot.broken_off or _unless_hold(robot.response), "HOLD"
         elif order.kind == RESUME:
@@ -211,7 +210,7 @@ class Obedience:
         except LinkLostError as error:
             order.refuse(robot.id, str(error))
             return
-        robot.released = robot.released or order.kind in ENDINGS
+        robot.released = order.kind == STOP or (robot.released and held_anyway)
         robot.stopping = self._clock.passes_by_itself
 
     def _look(self, order: Order) -> None:
@@ -271,6 +270,11 @@ class Obedience:
 def _rests(robot: RunningRobot) -> bool:
     """Return whether its motors are seen to be off, those of whatever answers on its link."""
     return isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is False
+
+
+def _taken(robot: RunningRobot) -> str:
+    """Return that the motors of a robot run that came down and had them off; empty: nobody started them."""
+    return "its motors run: somebody else has it" if robot.rested and not _rests(robot) else ""
 
 
 def _since(robot: RunningRobot) -> str:

@@ -49,6 +49,10 @@ class Outgoing:
             self._silent_since = now
         return now - self._silent_since
 
+    def extend(self, seconds: float) -> None:
+        """Count so many seconds less, in which the robot was held."""
+        self._silent_since = None if self._silent_since is None else self._silent_since + seconds
+
     def why(self, bus: Bus) -> str:
         """Return who does not answer, for people."""
         silent = self.delivery.waiting if self.delivery is not None else ()

@@ -15,7 +15,7 @@ from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.conditions import awaiting, question_of
-from mmrs_core.flight.faults import LINK_LOST, TAKEN_OVER
+from mmrs_core.flight.faults import LINK_LOST, STOPPED, TAKEN_OVER
 from mmrs_core.flight.policies import COMES_DOWN, NOTHING, OVERTAKES, still_low
 from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.answers import Answers
@@ -64,12 +64,13 @@ class RunningRobot:
         response: how it was told to stop.
         broken_off: how it was told to stop before somebody ordered it to hold meanwhile.
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
-        released: whether somebody ordered it to stop, so that it need not be watched.
+        released: whether somebody ordered it to stop, so that it need not be watched, and nothing since.
         held: whether somebody ordered it to hold.
         suspended: whether its program is broken off, until its battery was changed, or because it could not
             be taken up again.
         stopping: whether it has still to confirm that it has stopped.
         down: whether it has come down, as it was told to, and not gone on since.
+        rested: whether its motors were seen to be off then.
         recovering: whether it is on its way back to where its program was broken off.
         preparing: whether it has still to get ready, and must not be told anything else before.
         absent: whether it did not get ready, so that it is left alone.
@@ -89,7 +90,8 @@ class RunningRobot:
         self.response = self.broken_off = ""
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
-        self.preparing = self.absent = self._returns = False
+        self.preparing = self.absent = self.rested = self._returns = False
+        self._held_since = 0.0
         conditions = (transition.condition for transition in program.transitions.values())
         self.questions = Questions(each for each in conditions if each is not None)
         self._chosen: bool | None = None
@@ -162,12 +164,37 @@ class RunningRobot:
     def recover(self, now: float) -> None:
         """Begin to go back to where the program was broken off."""
         self.fault, self.suspended, self.response, self.broken_off = None, False, "", ""
-        self.released = self.down = self._returns = False
+        self.released = self.down = self.rested = self._returns = False
         self._answered.clear()
         self._forget()
         if isinstance(self.backend, Recovering):
             self.recovering = True
             self.backend.recover(tuple(self._passed), self._underway, now)
+
+    @property
+    def may_be_resumed(self) -> bool:
+        """Return whether somebody may order it to go on, although it does nothing by itself."""
+        return (self.suspended and not self.released) or self.held
+
+    def may_move(self, now: float) -> bool:
+        """Return whether it is at work and its motors are seen to run, so that nobody may leave it alone."""
+        at_work = not (self.point.is_final or self.suspended)
+        return at_work and isinstance(self.backend, Recovering) and self.backend.moves(now)
+
+    def hold(self, now: float) -> None:
+        """Have it stay where it is from now on; nothing is held against others meanwhile."""
+        if not self.held:
+            self.held, self._held_since = True, now
+        if not self.preparing and isinstance(self.backend, Pausable):
+            self.backend.pause(now)
+
+    def go_on(self, now: float) -> None:
+        """Have it be held no longer."""
+        self.held = False
+        self.wait.extend(now - self._held_since)
+        self.notify.extend(now - self._held_since)
+        if not self.preparing and isinstance(self.backend, Pausable):
+            self.backend.resume(now)
 
     def prepare(self, now: float) -> None:
         """Begin to get ready; once it is, its program begins, or goes on where it was broken off."""
@@ -197,7 +224,7 @@ class RunningRobot:
 
     def end_by(self, found: Fault, response: str) -> None:
         """Have the program end because somebody ordered that."""
-        self.ordered, self.held, self.released = (found, response), False, True
+        self.ordered, self.held, self.released = (found, response), False, found.which == STOPPED
 
     def due(self, now: float, peers: Peers) -> Step | None:
         """Return the step to be made now, beginning what has to be begun; None: not yet.
@@ -273,7 +300,7 @@ class RunningRobot:
 
     def _unanswered(self, now: float) -> Fault | None:
         """Return the fault that ends waiting for owners of slots; None: they have answered, or still may."""
-        silence = self.notify.silence(now)
+        silence = None if self.held else self.notify.silence(now)
         if silence is None:
             return None
         if (found := self._unborne(now)) is not None:
@@ -290,14 +317,14 @@ class RunningRobot:
         return None if goes_on else found
 
     def _due(self, now: float, peers: Peers) -> Step | Fault | None:
-        if self.notify.is_waiting:
-            return None
         if self._returns and not self.held:
             self.recover(now)
         if self.held or self.recovering:
             found = self._detained(now)
             if found is not None or self.held or self.recovering:
                 return found
+        if self.notify.is_waiting:
+            return None
         phase = self.point.phase
         if phase is Phase.READY:
             return self._next()

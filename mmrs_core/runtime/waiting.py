@@ -35,6 +35,12 @@ class Wait:
         self.since = now
         return True
 
+    def extend(self, seconds: float) -> None:
+        """Count so many seconds less, in which the robot was held, and nobody could have ended the wait."""
+        self.since = None if self.since is None else self.since + seconds
+        self._peer_lost_at = None if self._peer_lost_at is None else self._peer_lost_at + seconds
+        self.deadline += seconds
+
     def overdue(self, now: float, answers: Answers, peers: Peers) -> Fault | None:
         """Return the fault by which the wait ends now, if it does."""
         ends = (self._too_long(answers), self._peer_lost(now, answers, peers))

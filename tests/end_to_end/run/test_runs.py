@@ -263,6 +263,40 @@ def test_a_killed_run_is_resumed_where_its_log_ends(fleet, move):
     assert landed(flown)
 
 
+def test_a_robot_in_the_air_waits_for_one_whose_battery_is_changed_and_then_goes_on(fleet):
+    low = (("BATTERY_LOW", "RETURN", None),)
+    flown = fleet(Pad("a", "give", low, stay=30.0, gives="b"), Pad("b", "wait"))
+    process = flown.start()
+    vehicle = begun(flown, "a", "stay")
+    assert wait_for(
+        lambda: any(s["move"] == "out" and s["label"] == "end" for s in flown.steps("b")), PATIENCE
+    )
+    vehicle.faults.set_battery(0.15)
+    words = "nothing goes on until somebody orders something: 'b' waits after 'out'"
+    assert wait_for(lambda: any(words in line for line in process.said), PATIENCE), process.said
+    assert not vehicle.autopilot.armed
+    assert flown.vehicles["b"].autopilot.armed
+    vehicle.faults.set_battery(1.0)
+    assert wait_for(lambda: control(flown, "resume", "a")["a"]["confirmed"], PATIENCE)
+    assert process.end(PATIENCE) == 0, process.said
+    assert judged(flown) is Outcome.SUCCESS
+
+
+def test_a_return_that_is_held_is_watched_until_it_goes_on(fleet):
+    flown = fleet(Pad("a"), speedup=8.0)
+    process = flown.start()
+    vehicle = begun(flown, "a", "tour 1").autopilot
+    assert control(flown, "return")["a"]["confirmed"]
+    assert control(flown, "hold")["a"]["confirmed"]
+    assert wait_for(lambda: "'a': has done HOLD" in process.said, PATIENCE)
+    time.sleep(1.0)
+    assert process.running()
+    assert vehicle.mode == HOLDING
+    assert control(flown, "resume")["a"]["confirmed"]
+    assert process.end(PATIENCE) == 130, process.said
+    assert vehicle.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
+
+
 def broken_off(flown, **moves):
     """Kill a run once its robots have begun these moves; nobody hears `b` from then on."""
     killed = flown.start()

@@ -280,6 +280,47 @@ def test_a_response_can_be_held_and_gone_on_with(live):
     assert run.order(RESUME).refused == {"r": "its program has ended"}
 
 
+def test_a_return_that_was_ordered_and_is_held_is_watched_until_it_goes_on(live):
+    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
+    run.wait_for_step("r begin walk")
+    walker = run.script.robots["r"]
+    run.order(RETURN)
+    walker.watched_for = True
+    assert list(run.order(HOLD).confirmed) == ["r"]
+    run.wait_for(lambda: "'r': has done HOLD" in run.said)
+    time.sleep(0.3)
+    assert run.ending is None
+    assert list(run.order(RESUME).confirmed) == ["r"]
+    assert walker.stops == ["RETURN", "HOLD", "RETURN"]
+    walker.watched_for = False
+    walker._finish("stop RETURN")
+    assert run.end().faults == {"r": Fault("ORDERED", "order to return")}
+
+
+def test_a_robot_that_was_stopped_need_not_be_watched_whatever_it_did_before(live):
+    run = responding(live, stop_RETURN=inf)
+    run.script.robots["r"].watched_for = True
+    run.order(HOLD)
+    run.order(STOP)
+    run.end()
+    assert run.script.robots["r"].stops == ["RETURN", "HOLD", "HOLD"]
+
+
+def test_the_time_in_which_a_robot_is_held_does_not_count_as_waiting(live):
+    policy = Policy("WAIT_TOO_LONG", "LAND", 0.6)
+    behaviour = program(
+        robot("a", [do("h")], waits={"h": ["s"]}, wait_policies={"h": (policy,)}),
+        robot("b", [do("walk", after=(notify("a.s"),))]),
+    )
+    run = live(behaviour, Script(walk=inf))
+    run.wait_for_step("a end h")
+    run.order(HOLD, "a")
+    time.sleep(0.7)
+    run.order(RESUME, "a")
+    run.script.robots["b"]._finish("walk")
+    assert run.end().outcome is Outcome.SUCCESS
+
+
 def test_a_robot_that_has_landed_elsewhere_does_not_confirm_that_it_returns(live):
     run = responding(live, "LAND", stop_LAND=inf)
     run.script.robots["r"].astray = "it stands 98 m from its home"
@@ -326,6 +367,7 @@ def test_a_robot_whose_link_comes_back_is_waited_for_and_obeys(live):
     walker.watched_for, walker.heard, walker.trouble = True, True, None
     run.wait_for(lambda: "'r': is heard again: orders are obeyed" in run.said)
     assert list(run.order(LAND).confirmed) == ["r"]
+    walker.watched_for = False
     run.end()
 
 

@@ -28,15 +28,26 @@ SURVEY = program(
 )
 
 
-def suspended(live, **more):
-    run = live(SURVEY, Script(two=inf), **more)
+ALONE = program(robot("a", [do("one"), do("two"), do("three")], policies=LOW))
+
+
+def suspended(live, behaviour=SURVEY, **more):
+    run = live(behaviour, Script(two=inf), **more)
     run.wait_for_step("a begin two")
     run.script.robots["a"].fail("BATTERY_LOW")
     return run
 
 
-def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
+def killed(live):
+    """Return the steps of a run whose process was killed when `a` had come home and `b` waited for it."""
     run = suspended(live)
+    run.wait_for_step("b end h")
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    return tuple(run.records)
+
+
+def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
+    run = suspended(live, ALONE)
     ending = run.end()
     assert ending.suspended == ("a",)
     assert ending.came_down == {"a": "came home for its battery"}
@@ -44,11 +55,11 @@ def test_a_low_battery_breaks_the_program_off_without_a_fault_in_the_log(live):
     assert ending.outcome is Outcome.INCOMPLETE
     assert run.script.robots["a"].stops == ["RETURN"]
     assert all(record.label != "fault" for record in run.records)
-    assert replay(SURVEY, run.records, partial=True).accepted
+    assert replay(ALONE, run.records, partial=True).accepted
 
 
 def test_where_a_robot_came_down_for_its_battery_is_told_by_what_happened(live):
-    run = live(SURVEY, Script(two=inf))
+    run = live(ALONE, Script(two=inf))
     run.wait_for_step("a begin two")
     run.script.robots["a"].astray = "it stands 30 m from its home: carry it home"
     run.script.robots["a"].fail("BATTERY_LOW")
@@ -58,7 +69,7 @@ def test_where_a_robot_came_down_for_its_battery_is_told_by_what_happened(live):
 
 
 def test_a_robot_that_is_not_known_to_have_come_down_is_not_told_to_have(live):
-    run = live(SURVEY, Script(two=inf, stop_RETURN=inf))
+    run = live(ALONE, Script(two=inf, stop_RETURN=inf))
     run.wait_for_step("a begin two")
     run.script.robots["a"].fail("BATTERY_LOW")
     run.wait_for(lambda: run.script.robots["a"].stops == ["RETURN"])
@@ -170,10 +181,41 @@ def test_a_robot_that_came_down_stands_also_where_its_motors_are_not_said_to_be_
     assert run.order(RESUME, "a").confirmed
 
 
+@pytest.mark.parametrize("kind", [HOLD, LAND, RETURN, RESUME])
+def test_nothing_is_obeyed_on_the_ground_while_somebody_else_has_started_the_motors(live, kind):
+    run = live(SURVEY, Script(two=inf), patience=20.0)
+    run.wait_for_step("a begin two")
+    walker = run.script.robots["a"]
+    walker.armed = False
+    walker.fail("BATTERY_LOW")
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    walker.armed = True
+    assert run.order(kind, "a").refused == {"a": "its motors run: somebody else has it"}
+    assert walker.stops == ["RETURN"]
+
+
+def test_robots_that_wait_for_one_whose_battery_is_changed_are_not_left_alone(live):
+    run = suspended(live)
+    run.wait_for(lambda: any("nothing goes on until somebody orders something" in line for line in run.said))
+    assert any("'b' waits after 'h' for 's'" in line for line in run.said)
+    time.sleep(0.2)
+    assert run.script.robots["b"].stops == []
+    run.script.seconds["two"] = 0.0
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
+    ending = run.end()
+    assert (ending.outcome, ending.waiting) == (Outcome.SUCCESS, ())
+
+
+def test_robots_in_the_air_that_nobody_will_ever_free_are_not_left_alone(live):
+    behaviour = program(robot("a", [do("h")], waits={"h": ["s"]}), robot("b", [do("walk")], policies=LOW))
+    run = live(behaviour, Script())
+    run.wait_for(lambda: any("nothing goes on until somebody orders something" in line for line in run.said))
+    assert list(run.order(LAND, "a").confirmed) == ["a"]
+    assert [each.robot for each in run.end().waiting] == ["a"]
+
+
 def test_a_run_is_resumed_from_its_log(live):
-    first = suspended(live)
-    first.end()
-    records = tuple(first.records)
+    records = killed(live)
     bus = InProcessBus(SURVEY)
     restore(bus, SURVEY, records)
     second = live(SURVEY, Script(), resumed=records, bus=bus)
@@ -185,15 +227,18 @@ def test_a_run_is_resumed_from_its_log(live):
 
 
 def test_a_robot_that_cannot_be_taken_up_again_can_be_tried_again_later(live):
-    first = suspended(live)
-    first.end()
-    records = tuple(first.records)
+    records = killed(live)
     bus = InProcessBus(SURVEY)
     restore(bus, SURVEY, records)
     second = live(SURVEY, Script(recovered=inf), resumed=records, bus=bus)
     second.wait_for(lambda: len(second.script.robots) == 2 and second.script.robots["b"].recovered)
     second.script.robots["a"].fail("REFUSED")
     second.script.robots["b"]._finish("recovered")
+    second.wait_for(lambda: "'a': has done HOLD" in second.said)
+    second.script.robots["a"].armed = False
+    second.script.robots["a"].armed = False
+    for id in ("a", "b"):
+        second.order(STOP, id)
     ending = second.end()
     assert ending.suspended == ("a",)
     assert ending.faults["a"].which == "REFUSED"
