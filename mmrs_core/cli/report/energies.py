@@ -45,16 +45,18 @@ def planned_levels(plan: Run | None, robot: str) -> tuple[Floats, float | None]:
 def used(levels: Floats) -> float:
     """Return the sum of what was used between charges, as a part of a full battery.
 
+    A level that rises is one that is charged, or read otherwise than before; neither is anything used.
+
     >>> round(used(np.array([1.0, 0.6, 0.61, 0.5, 1.0, 0.9])), 3)
     0.6
+    >>> round(used(np.array([1.0, 0.2, 0.24, 0.28, 0.34, 0.33, 0.4, 0.3])), 3)
+    0.9
     """
     total, since = 0.0, float(levels[0])
     least = since
     for level in levels.tolist():
-        if level > least + _CHARGED:
-            total += since - least
+        if level > min(since, least + _CHARGED):
+            total += since - least if since - least > _CHARGED else 0.0
             since = least = level
         least = min(least, level)
-        if level > since:
-            since = level
     return total + since - least

@@ -35,6 +35,15 @@ def test_a_change_of_battery_begins_anew():
     assert used(np.array([1.0, 0.3, 0.99, 0.5])) == pytest.approx(0.7 + 0.49)
 
 
+def test_a_battery_that_charges_slowly_is_not_used_meanwhile():
+    levels = np.concatenate(
+        [np.linspace(1.0, 0.22, 40), np.linspace(0.22, 1.0, 200), np.linspace(1.0, 0.6, 20)]
+    )
+    assert used(levels) == pytest.approx(0.78 + 0.4)
+    wavering = levels + np.tile([0.0, 0.01, -0.01, 0.005], 65)
+    assert used(wavering) == pytest.approx(0.78 + 0.4, abs=0.05)
+
+
 def test_a_battery_that_nobody_tells_is_not_known(make):
     found = energy_of(make.flown("alpha", (), make.track([(0, 0, 0, 0)])), None, 0.2)
     assert (found.used, found.lowest, found.end) == (None, None, None)
