@@ -17,7 +17,7 @@ from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.desk import Desk
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import open_port
+from mmrs_core.flight.links.ports import NOTHING, Port, Received, open_port
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.orders.obedience import Obedience
 from mmrs_core.flight.orders.orders import Inbox
@@ -78,6 +78,23 @@ def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
     return Robot(id, f"{id}.jsonl", steps=steps, policies=policies, fleet=(id,), **given)
 
 
+class Ears:
+    """A port that may be deaf, while whoever is at the other end hears everything.
+
+    Attributes:
+        deaf: whether it is.
+    """
+
+    def __init__(self, port: Port) -> None:
+        self.deaf = False
+        self._port = port
+        self.write, self.close = port.write, port.close
+
+    def read(self, seconds: float) -> Received:
+        found = self._port.read(seconds)
+        return NOTHING if self.deaf else found
+
+
 @dataclass
 class Manned:
     """A robot with its crew.
@@ -94,6 +111,7 @@ class Manned:
     said: list[str]
     log: Path
     box: BlackBox
+    ears: Ears
     left: int = 0
     decided: list[tuple[str, str]] = field(default_factory=list)
 
@@ -158,9 +176,8 @@ def manned(
     with ExitStack() as stack:
         port = free_port()
         simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
-        link = Link(
-            Radio(open_port(f"udpin:127.0.0.1:{port}"), clock), clock, simulated.autopilot.settings.system
-        )
+        ears = Ears(open_port(f"udpin:127.0.0.1:{port}"))
+        link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
         log = folder / robot.log
         desk = Desk(
@@ -183,7 +200,7 @@ def manned(
         obedience.begin(vehicle)
         pilot = Pilot(robot, vehicle, desk, watch, obedience)
         crew = Crew(robot, vehicle, link, watch, obedience, desk, pilot, on_stop)
-        made = Manned(crew, inbox, stop, simulated, said, log, desk.box)
+        made = Manned(crew, inbox, stop, simulated, said, log, desk.box, ears)
         watch.track = lambda: pilot.track
         watch.decide = lambda event, why, response: made.decided.append((event, response))
         link.guard = guarding(watch, obedience)

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from math import inf
 from typing import Any, TypeVar
 
 from ..clock import Clock
@@ -86,6 +87,7 @@ class Link:
         self._changed = threading.Condition()
         self._messages = Messages(self._changed, clock)
         self._observers: tuple[Observer, ...] = ()
+        self._given_up = -inf
         self._heard: float | None = None
         self._ended = ""
         radio.join(self)
@@ -153,6 +155,18 @@ class Link:
         """Return who speaks on the radio instead of the vehicle; empty if nobody does."""
         shown = ", ".join(map(str, sorted(self._radio.heard)))
         return f"heard system {shown}, and not {self._wanted}" if shown and self._wanted else ""
+
+    @property
+    def given_up(self) -> bool:
+        """Return whether the vehicle is to hear no heartbeats, so that it answers that by itself."""
+        return self.clock.now() < self._given_up
+
+    def give_up(self, seconds: float) -> None:
+        """Send a vehicle that is not heard no heartbeats for some time: it may still hear us.
+
+        They go on as soon as it is heard again, and later anyway: it may have forgotten where we are.
+        """
+        self._given_up = self.clock.now() + seconds
 
     def observe(self, observer: Observer) -> None:
         """Have every message told from now on: what is sent, and what the vehicle says.
@@ -317,6 +331,7 @@ class Link:
             if self.silent_for() > self.clock.patience(GAP_SECONDS, LEAST_GAP_SECONDS):
                 self.stations.pass_over(self.silent_for())
             self._heard = self.clock.now()
+            self._given_up = -inf
             if message.get_type() in TELL_BOOT:
                 self._identity.booted(message.time_boot_ms)
         self._messages.take(message, own=own)

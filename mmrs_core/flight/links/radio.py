@@ -35,6 +35,11 @@ class Ear(Protocol):
     system: int
     component: int
 
+    @property
+    def given_up(self) -> bool:
+        """Return whether the vehicle is to hear no heartbeats."""
+        ...
+
     def meets(self, heartbeat: Message) -> bool:
         """Return whether an autopilot's heartbeat is that of the vehicle that is waited for."""
         ...
@@ -240,7 +245,13 @@ class Radio:
         }
         self._speakers = dict(sorted(recent.items(), key=lambda entry: entry[1])[-SENDERS:])
         for sender in self._speakers or (None,):
-            self.send(_heartbeat(), sender)
+            if self._is_to_hear(sender):
+                self.send(_heartbeat(), sender)
+
+    def _is_to_hear(self, sender: Address | None) -> bool:
+        """Return whether anybody there, as far as is known who, is to hear that we are there."""
+        there = [ear for ear in self._ears if ear.speaks_from(sender)] or self._ears
+        return not there or not all(ear.given_up for ear in there)
 
 
 def is_autopilot(message: Message) -> bool:

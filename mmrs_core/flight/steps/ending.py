@@ -159,8 +159,7 @@ class Ending:
         if not crew.obedience.has_vehicle:
             self._leave_untouched(fault)
             return
-        if fault.event == LINK_LOST:
-            self._await_link()
+        if fault.event == LINK_LOST and self._await_link():
             return
         if response == NOTHING:
             self._stand_back()
@@ -211,17 +210,20 @@ class Ending:
         else:
             fault.receipt.confirm("nothing had begun")
 
-    def _await_link(self) -> None:
+    def _await_link(self) -> bool:
         """Stay with a vehicle that is out of reach: once it is heard again, it can be given orders.
 
         That lasts while others work, or for some time, and then until its motors are off.
+
+        Returns:
+            Whether nothing is left to do; else it is heard, and does nothing about its link by itself.
 
         Raises:
             Fault: somebody has ordered something, or wants all to stop, or a pilot has taken it over.
         """
         crew, clock = self._crew, self._crew.desk.clock
         if crew.link is None:
-            return
+            return True
         # A stop from before the link was lost is not one that ends the listening.
         stopped = crew.desk.stop.is_set()
         limit, told = clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS), False
@@ -230,8 +232,10 @@ class Ending:
             while crew.link.listening and not crew.desk.abandon.is_set():
                 heard = self._is_heard(crew.link, again=not told)
                 if heard and not told:
-                    crew.watch.accept()
-                    crew.say(f"is heard again, in mode {crew.vehicle.state().mode}: orders are obeyed")
+                    answers, mode = crew.watch.accept(), crew.vehicle.state().mode
+                    crew.say(f"is heard again, in mode {mode}: orders are obeyed")
+                    if not answers:
+                        return False
                 elif not heard:
                     crew.watch.lose()
                     crew.obedience.refuse_all("its link is lost")
@@ -239,13 +243,14 @@ class Ending:
                 if crew.desk.stop.is_set() and not stopped:
                     if heard:
                         raise Stopped()
-                    return
+                    return True
                 until = clock.now() + limit if heard else until
                 others_work = self._lose()
                 over = clock.now() > until and not others_work
                 if over or (heard and not crew.vehicle.state().armed):
-                    return
+                    return True
                 crew.link.wait(lambda: None, clock.patience(0.0, GLANCE_SECONDS))
+            return True
         finally:
             crew.obedience.hands_off = False
             crew.watch.find()

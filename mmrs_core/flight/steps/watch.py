@@ -132,21 +132,26 @@ class Watch:
         """Heed nothing at all: the vehicle is out of reach, and what it did last is known."""
         self.silence = self._hands_off = True
 
-    def accept(self) -> None:
+    def accept(self) -> bool:
         """Let a vehicle that was out of reach go on with what it does about that by itself.
+
+        Returns:
+            Whether it does something: one that heard us all the time does not, and goes on as it was told.
 
         Raises:
             Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
         """
         link, vehicle, departures = self._link, self._vehicle, self._departures
+        answers = True
         if link is not None and vehicle is not None and departures is not None:
             limit = self._clock.patience(BEAT_SECONDS, 1.0)
             if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
                 raise Fault(LINK_LOST, "its heartbeat is not heard")
             if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
-                departures.find(moving=self.moving)
+                answers = departures.find(moving=self.moving) is not None
             vehicle.accept_own_modes()
         self._hands_off, self._alone = False, True
+        return answers
 
     def find(self) -> None:
         """Heed the link, and who has the vehicle, again."""
@@ -283,6 +288,8 @@ class Watch:
         silent = link.silent_for()
         if silent > self._clock.patience(limit, LEAST_SILENCE):
             why = f" ({link.trouble})" if link.trouble else ""
+            if not self._hands_off:
+                link.give_up(self._clock.patience(max(limit, SILENCE_SECONDS), LEAST_SILENCE) + silent)
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
     def _answer(self, event: str, said: str, vehicle: MavlinkVehicle, departures: Departures) -> None:

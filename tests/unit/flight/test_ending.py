@@ -210,11 +210,40 @@ def test_a_stop_from_before_a_link_was_lost_does_not_end_the_listening(robot):
     assert not made.simulated.autopilot.armed
 
 
-def test_a_stop_once_a_lost_vehicle_is_heard_again_stops_it(robot):
-    made = robot(Policy("LINK_LOST", "RETURN", 5.0), on_stop="land")
-    made.simulated.mute()
+def test_a_vehicle_that_hears_us_all_the_time_misses_us_once_its_link_is_lost(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.crew.pilot.waits.tell_vehicle()
+    made.ears.deaf = True
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.mode in ("return", "smart_return") and made.events() == ["LINK_LOST"])
+    made.ears.deaf = False
+    until(lambda: any("is heard again" in line for line in made.said))
+    assert code.result(30.0) == 5
+    assert not made.simulated.autopilot.armed
+    assert away(made, HOME) < 1.5
+
+
+@pytest.mark.parametrize(("response", "away_from_home"), [("RETURN", 0.0), ("LAND", 22.0)])
+def test_what_a_vehicle_has_not_done_about_its_link_is_done_once_it_is_heard_again(
+    robot, response, away_from_home
+):
+    made = robot(Policy("LINK_LOST", response, 5.0))
+    made.ears.deaf = True
     code = in_background(lambda: made.ending().end(made.caught()))
     until(lambda: made.events() == ["LINK_LOST"])
+    made.ears.deaf = False
+    assert code.result(30.0) == 5
+    assert not made.simulated.autopilot.armed
+    assert away(made, HOME) == pytest.approx(away_from_home, abs=1.5)
+    assert made.events() == ["LINK_LOST"]
+
+
+def test_a_stop_once_a_lost_vehicle_is_heard_again_stops_it(robot):
+    made = robot(Policy("LINK_LOST", "HOLD", 5.0), on_stop="land")
+    made.crew.pilot.waits.tell_vehicle()
+    made.simulated.mute()
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: made.mode == "brake" and made.events() == ["LINK_LOST"])
     made.simulated.unmute()
     until(lambda: any("is heard again" in line for line in made.said))
     made.stop.set()
