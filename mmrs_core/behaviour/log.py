@@ -89,13 +89,32 @@ class LogWriter:
 
 
 def _cut_last_line(path: Path) -> None:
-    """Take away a last line that was cut off while it was written."""
+    """Take away what was cut off while it was written, and what a disk has left in its place."""
     if not path.exists():
         return
-    whole = path.read_bytes().rpartition(b"\n")
-    if whole[2]:
+    data = path.read_bytes()
+    whole = sum(len(line) + 1 for line in _whole_lines(data))
+    if whole < len(data):
         with path.open("r+b") as file:
-            file.truncate(len(whole[0]) + len(whole[1]))
+            file.truncate(whole)
+
+
+def _whole_lines(data: bytes) -> list[bytes]:
+    """Return the lines up to the last that was written whole: behind it nothing ends, or is text of JSON."""
+    lines = data.split(b"\n")[:-1]
+    while lines and _is_rubbish(lines[-1]):
+        lines.pop()
+    return lines
+
+
+def _is_rubbish(line: bytes) -> bool:
+    try:
+        json.loads(line)
+    except ValueError:
+        return True
+    except RecursionError:
+        return False
+    return False
 
 
 def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
@@ -103,21 +122,28 @@ def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
 
     Args:
         path: of the log.
-        partial: accept a last line that was cut off while it was written.
+        partial: pass over a last line that was cut off while it was written, and over lines behind the
+            last whole one that are no JSON: after a loss of power, disks leave rubbish there.
 
     Raises:
-        UnreadableError: if the file cannot be read as text.
+        UnreadableError: if the file cannot be read.
         InvalidModelError: if lines are not steps; every such line is reported.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UnreadableError(f"{path}: cannot be read as a log: {error}") from error
-    lines = text.split("\n")
-    rest = lines.pop()
-    if rest and not partial:
-        lines.append(rest)
-    return _records(lines, str(path))
+        data = path.read_bytes()
+    except OSError as error:
+        raise UnreadableError(f"{path}: cannot be read as a log: {error.strerror or error}") from error
+    lines = _whole_lines(data) if partial else data.removesuffix(b"\n").split(b"\n") if data else []
+    return _records(
+        [_text(line, f"{path}:{number}") for number, line in enumerate(lines, start=1)], str(path)
+    )
+
+
+def _text(line: bytes, where: str) -> str:
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise UnreadableError(f"{where}: cannot be read as a log: {error.reason} in UTF-8") from error
 
 
 def read_logs(paths: Iterable[Path], *, partial: bool = False) -> tuple[StepRecord, ...]:

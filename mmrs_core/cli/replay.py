@@ -37,6 +37,7 @@ def replay(
     from mmrs_core.behaviour.log import read_logs
     from mmrs_core.behaviour.replay import Outcome
     from mmrs_core.behaviour.replay import replay as replayed
+    from mmrs_core.behaviour.salvage import logs_in, salvage_log
     from mmrs_core.cli.behaviours import load_program
     from mmrs_core.cli.flights.gathering import read_flight
     from mmrs_core.cli.journey import Workshop
@@ -50,6 +51,9 @@ def replay(
         _say_json(result, flight, program, steps=steps)
     else:
         _say(result, flight)
+        if partial and flight is None:
+            for damage in (each for path in logs_in(given) for each in salvage_log(path)[1]):
+                tell(str(damage))
         if flight is not None and steps:
             _say_steps(flight, program)
     cut = partial and result.outcome is Outcome.INCOMPLETE

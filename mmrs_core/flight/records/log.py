@@ -94,8 +94,8 @@ def read(path: Path) -> tuple[dict[str, Any], ...]:
         Fault: it cannot be read, or a line is no step.
     """
     try:
-        text = path.read_text("utf-8") if path.exists() else ""
-        steps = tuple(json.loads(line) for line in text.split("\n")[:-1])
+        data = path.read_bytes() if path.exists() else b""
+        steps = tuple(json.loads(line) for line in _whole_lines(data))
     except (OSError, ValueError) as error:
         raise Fault(LOG_FAILED, f"{path}: cannot be read: {error}") from error
     for number, step in enumerate(steps):
@@ -105,8 +105,23 @@ def read(path: Path) -> tuple[dict[str, Any], ...]:
 
 
 def _keep_whole_lines(path: Path) -> None:
-    data = path.read_bytes()
-    os.truncate(path, data.rfind(b"\n") + 1)
+    os.truncate(path, sum(len(line) + 1 for line in _whole_lines(path.read_bytes())))
+
+
+def _whole_lines(data: bytes) -> list[bytes]:
+    """Return the lines up to the last whole one: after a loss of power, disks leave rubbish behind it."""
+    lines = data.split(b"\n")[:-1]
+    while lines and _is_rubbish(lines[-1]):
+        lines.pop()
+    return lines
+
+
+def _is_rubbish(line: bytes) -> bool:
+    try:
+        json.loads(line)
+    except ValueError:
+        return True
+    return False
 
 
 @contextmanager

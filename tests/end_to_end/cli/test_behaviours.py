@@ -131,6 +131,15 @@ def test_a_log_that_was_cut_off_replays_as_partial(mmrs, project):
     assert mmrs("replay", "--partial", project, project / "logs")[0] == 0
 
 
+def test_a_log_that_was_cut_off_inside_a_character_replays_as_partial_and_tells_so(mmrs, project):
+    mmrs("simulate", project, "-o", project / "logs")
+    for log in (project / "logs").iterdir():
+        log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:2]) + '{"run": "Ä'.encode()[:-1])
+    code, _, err = mmrs("replay", "--partial", project, project / "logs")
+    assert code == 0
+    assert ".jsonl:3: cut off while it was written" in err
+
+
 def test_logs_of_an_earlier_run_go_away_and_other_files_stay(mmrs, project):
     mmrs("simulate", project, "-o", project / "logs")
     log = next((project / "logs").iterdir())

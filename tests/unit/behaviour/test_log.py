@@ -102,6 +102,25 @@ def test_a_line_that_was_cut_off_is_accepted_only_in_a_partial_log(tmp_path):
         read_log(path)
 
 
+@pytest.mark.parametrize("rest", ["Ä".encode()[:1], b"\xff\xfe\0", b'\xff{"a": 1}\n\0\0\n', b"\0" * 40])
+def test_what_a_loss_of_power_leaves_behind_the_last_whole_line_is_passed_over(tmp_path, rest):
+    path = tmp_path / log_name("r")
+    path.write_bytes(to_line(FIRST).encode() + b"\n" + rest)
+    assert read_log(path, partial=True) == (FIRST,)
+    with pytest.raises((InvalidModelError, UnreadableError)):
+        read_log(path)
+    with LogWriter(tmp_path, resumed=True) as writer:
+        writer.write(SECOND)
+    assert read_log(path) == (FIRST, SECOND)
+
+
+def test_rubbish_before_a_whole_line_is_no_end_of_a_log(tmp_path):
+    path = tmp_path / "r.jsonl"
+    path.write_bytes(b"\xff\xfe\n" + to_line(FIRST).encode() + b"\n")
+    with pytest.raises(UnreadableError, match=r"r\.jsonl:1: cannot be read as a log"):
+        read_log(path, partial=True)
+
+
 @pytest.mark.parametrize("content", [b"\xff\xfe", None])
 def test_a_file_that_is_no_text_or_not_there_is_unreadable(tmp_path, content):
     path = tmp_path / "r.jsonl"

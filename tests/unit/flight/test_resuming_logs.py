@@ -135,3 +135,17 @@ def test_a_log_with_a_gap_is_not_gone_on_with(tmp_path):
     path.write_text(json.dumps(line | {"detail": "", "slot": ""}) + "\n", "ascii")
     with pytest.raises(Fault, match=r"r\.jsonl:1: is not the next step"):
         read(path)
+
+
+@pytest.mark.parametrize("rest", [b'{"run": "r', b"\xff\xfe\0", b"\xffA\n\0\0\n"])
+def test_a_log_goes_on_after_its_last_whole_line_whatever_a_loss_of_power_has_left(tmp_path, rest):
+    path = tmp_path / "r.jsonl"
+    first = Log(path, "run", "r")
+    first.write("begin", "start", lamport=1, time=0.0)
+    first.close()
+    with path.open("ab") as file:
+        file.write(rest)
+    again = Log(path, "run", "r", resume=True)
+    again.write("end", "start", lamport=2, time=1.0)
+    again.close()
+    assert [step["label"] for step in read(path)] == ["begin", "end"]
