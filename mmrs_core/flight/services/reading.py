@@ -2,14 +2,14 @@
 
 ArduPilot denies that while it receives a plan, which may be one that a doubled count has begun late, and
 gives that up after eight seconds. PX4 gives items in their order only, and breaks off when an old request
-comes late: then it is asked for all of them again.
+comes late: then it is asked for all of them again. So that requests do not come late, what is not answered
+is asked for again after a longer and longer while, the first of which follows what the link takes.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
-from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -23,7 +23,16 @@ BUSY_SECONDS, LEAST_BUSY_SECONDS = 12.0, 2.0
 """For how long, of the run and real at least, a vehicle is asked again that says that it is receiving."""
 
 MARGIN = 1.5
-"""An answer is waited for that much longer than the quickest took: a slow radio must not ask twice."""
+"""An answer is waited for that much longer than the last took: a slow radio must not be asked twice."""
+
+MOST = 2.0
+"""An item is waited for that much longer than any other answer at most: PX4 gives up after five seconds."""
+
+BREAKING_OFF = {
+    "MISSION_COUNT": frozenset({mavlink.MAV_MISSION_DENIED}),
+    "MISSION_ITEM_INT": frozenset({mavlink.MAV_MISSION_DENIED, mavlink.MAV_MISSION_ERROR}),
+}
+"""Results that end the reading, by what was asked for; others may be late answers to something else."""
 
 
 def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
@@ -42,6 +51,7 @@ def download(link: Link, kind: int = MISSION) -> tuple[Item, ...]:
             except Refused:
                 if attempt + 1 == link.retries.tries:
                     raise
+                link.wait(lambda: None, link.retries.answer)
     link.send(mavlink.MAVLink_mission_ack_message(link.system, link.component, 0, kind))
     return items
 
@@ -63,14 +73,14 @@ class _Reading:
     """Asks a vehicle for what it has.
 
     Attributes:
-        quickest: seconds that an answer took at least so far.
+        took: seconds from the first request to the answer, the last time that one came.
         refusal: what the vehicle has last answered instead, in words; empty if it has not.
     """
 
     link: Link
     kind: int
     inbox: deque[Message]
-    quickest: float = inf
+    took: float = 0.0
     refusal: str = ""
 
     def count(self) -> int:
@@ -83,6 +93,7 @@ class _Reading:
             except Refused:
                 if not self.refusal or self.link.clock.now() > until:
                     raise
+                self.link.wait(lambda: None, self.link.retries.answer)
 
     def item(self, seq: int) -> Item:
         """Return an item."""
@@ -94,38 +105,39 @@ class _Reading:
         return Item(found.command, params, found.x, found.y, found.z, found.frame)
 
     def _asked(self, ask: Message, answer: str, seconds: float, seq: int | None = None) -> Message:
-        """Ask until the answer comes; what is refused is asked once more, for it may be an old refusal.
+        """Ask until the answer comes.
 
         Raises:
             Refused: it does not come.
         """
         begun, self.refusal = self.link.clock.now(), ""
-        for _ in self.link.attempts():
+        least = self.link.clock.patience(seconds, seconds)
+        longest = max(least, MOST * self.link.patience)
+        usual = min(max(least, MARGIN * self.took), longest)
+        for sent in self.link.attempts():
             self.link.send(ask)
-            found = self._answer(answer, seconds, seq)
-            if found is None:
-                continue
-            if found.get_type() == answer:
-                self.quickest = min(self.quickest, self.link.clock.now() - begun)
+            wait = min(usual * 2.0**sent, max(usual, self.link.patience))
+            found = self.link.wait(lambda: first(self.inbox, lambda m: self._fits(m, answer, seq)), wait)
+            if found is not None and found.get_type() == answer:
+                self.took = self.link.clock.now() - begun
                 return found
-            if self.refusal:
+            if found is not None:
                 break
-            self.refusal = words_of(found.type)
-            self.link.wait(lambda: None, seconds)
         does = f"answers '{self.refusal}'" if self.refusal else "does not answer"
         raise Refused(f"{ask.get_type()}: the vehicle {does}")
 
-    def _answer(self, kind: str, seconds: float, seq: int | None) -> Message | None:
-        """Wait for an answer, or for a refusal."""
+    def _fits(self, message: Message, answer: str, seq: int | None) -> bool:
+        """Return whether a message is the answer, or ends the reading.
 
-        def fits(message: Message) -> bool:
-            refuses = message.get_type() == "MISSION_ACK" and message.type != mavlink.MAV_MISSION_ACCEPTED
-            right = message.get_type() == kind and (seq is None or message.seq == seq)
-            return (refuses or right) and concerns(message, self.kind)
-
-        usual = self.link.clock.patience(seconds, seconds)
-        longer = MARGIN * self.quickest if self.quickest < inf else 0.0
-        found = self.link.wait(lambda: first(self.inbox, fits), max(usual, longer))
-        if found is not None and lacks_kinds(found, self.kind):
+        Raises:
+            Refused: the vehicle's port is too old for that kind of plan.
+        """
+        if not concerns(message, self.kind):
+            return False
+        if message.get_type() != "MISSION_ACK":
+            return bool(message.get_type() == answer and seq in (None, getattr(message, "seq", None)))
+        if lacks_kinds(message, self.kind):
             raise old_port(self.kind)
-        return found
+        if message.type != mavlink.MAV_MISSION_ACCEPTED:
+            self.refusal = words_of(message.type)
+        return message.type in BREAKING_OFF[answer]
