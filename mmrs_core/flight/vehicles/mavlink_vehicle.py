@@ -28,6 +28,7 @@ from .enclosure import enclose
 from .evidence import LinkEvidence
 from .following import Following
 from .helm import MODE_SECONDS, Helm
+from .listening import check_listening
 from .runs import first_flown, keep_place, speed_before
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
@@ -79,6 +80,7 @@ class MavlinkVehicle:
         self._mission: Sequence[Item] = ()
         self._mark = 0
         self._alone: frozenset[int] = frozenset()
+        self._listens = False
         self._width: float | None = None
 
     def prepare(self, uploads: Uploads) -> None:
@@ -127,8 +129,12 @@ class MavlinkVehicle:
         """Have the vehicle respond by itself when it has not heard the ground for some seconds.
 
         Raises:
-            Refused: it cannot respond so, or does not say that it will.
+            Refused: it cannot respond so, does not say that it will, or does not listen to this program.
         """
+        if response != "CONTINUE" and not self._listens:
+            if unknown := check_listening(self._link):
+                self._tell(unknown)
+            self._listens = True
         told = modes.lost_link_answers(self._link, self._kind).get(response, {})
         alone = modes.alone(self._link, self._kind, told)
         # Until it confirms, it may do the one or the other.

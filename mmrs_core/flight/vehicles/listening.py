@@ -1,0 +1,62 @@
+"""Whose heartbeats a vehicle counts when it decides whether the ground is still there.
+
+An ArduPilot counts those of one system, or of a range of systems, and never misses a ground that it has
+not heard: where the program is not among them, its failsafe never answers a lost link.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..faults import Refused
+from ..links.autopilots import is_px4
+from ..links.link import Link
+from ..links.radio import GROUND_SYSTEM
+from ..services import parameters
+
+OF_OLD = "SYSID_MYGCS"
+"""The system that counts, up to ArduPilot 4.6."""
+
+FIRST, LAST = "MAV_GCS_SYSID", "MAV_GCS_SYSID_HI"
+"""The systems that count, from 4.7 on: the last is 0 where the first is the only one."""
+
+NOT_TOLD = (
+    f"the vehicle does not tell whose heartbeats it counts ({OF_OLD}, {FIRST}): it may not notice when this"
+    " program falls silent"
+)
+
+
+def check_listening(link: Link) -> str:
+    """Make sure that a vehicle misses this program when it falls silent.
+
+    Returns:
+        What people should know, where the vehicle does not tell; else nothing.
+
+    Raises:
+        Refused: it does not count what this program sends.
+    """
+    if is_px4(link):
+        return ""
+    told = parameters.read(link, (OF_OLD, FIRST, LAST))
+    name, systems = _counted(told)
+    if not name:
+        return NOT_TOLD
+    if GROUND_SYSTEM in systems:
+        return ""
+    raise Refused(
+        f"response to a lost link: the vehicle counts no heartbeats but those of system {_shown(systems)}"
+        f" ({name}), and would not notice when this program falls silent: set {name} to {GROUND_SYSTEM},"
+        " and give ground stations other systems"
+    )
+
+
+def _counted(told: Mapping[str, float]) -> tuple[str, range]:
+    """Return the parameter that says which systems count, and these; an empty name: nobody knows."""
+    name = next((each for each in (FIRST, OF_OLD) if each in told), "")
+    first = round(told.get(name, 0.0))
+    last = round(told.get(LAST, 0.0)) if name == FIRST else 0
+    return name, range(first, max(first, last) + 1)
+
+
+def _shown(systems: range) -> str:
+    return f"{systems[0]}" if len(systems) == 1 else f"{systems[0]} to {systems[-1]}"
