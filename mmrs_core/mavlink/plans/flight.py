@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import atan2, degrees, dist
+from math import atan2, ceil, degrees, dist
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.contributions.wiring import Wired
@@ -104,7 +104,7 @@ class Flight:
                 self._add(command, move, *params)
             took = f"no mission waits {wiring.seconds:g} s on the ground for its action '{action.name}'"
             if wiring.seconds and not self._leaves_out(move, took):
-                self._add(cmd.LOITER_TIME, move, wiring.seconds, here=True)
+                self._stay(move, wiring.seconds)
 
     def _leaves_out(self, move: Move, what: str) -> bool:
         """Return whether the vehicle stands where no mission moves it, and note what is left out then."""
@@ -149,7 +149,7 @@ class Flight:
         if self._down and seconds == 0.0:
             return
         if not self._leaves_out(move, f"no mission stays {seconds:g} s on the ground"):
-            self._add(cmd.LOITER_TIME, move, seconds, here=True)
+            self._stay(move, seconds)
 
     def head_to(self, move: Move, fluid: bool) -> None:
         """Turn to something, if its place is known; a gimbal turns by itself."""
@@ -160,6 +160,10 @@ class Flight:
             aside = heading.angle_degrees + mount_of(heading, self._context)
             angle = _bearing(self._position, heading.target.position) - aside
             self._turn(move, round(angle % 360.0, 1))
+
+    def _stay(self, move: Move, seconds: float) -> None:
+        """Stay for a while; an ArduPilot keeps whole seconds and cuts off the rest: too short a stay."""
+        self._add(cmd.LOITER_TIME, move, seconds if self._px4 else float(ceil(seconds)), here=True)
 
     def _turn(self, move: Move, angle: float) -> None:
         """Turn on the spot; a PX4 does so only at a place that it goes to."""

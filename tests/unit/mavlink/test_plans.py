@@ -96,6 +96,12 @@ def test_an_action_follows_its_waypoint():
     assert [command for command, _ in items(plan)] == [22, 178, 16, 2000, 19, 21]
 
 
+def test_an_ardupilot_which_cuts_off_fractions_stays_for_the_next_whole_second():
+    holds = [move(f"hold {n}", "HoldPosition", duration=n) for n in (0.5, 2.0, 2.25)]
+    plan = plans(take_off("up", 20.0), *holds, LAND)["alpha.plan"]
+    assert [params[0] for command, params in items(plan) if command == 19] == [1.0, 2.0, 3.0]
+
+
 def test_a_heading_is_a_region_of_interest_until_it_ends():
     looks = go_to("a", (0.0, 30.0, 20.0), heading=Heading(Target((5.0, 5.0, 0.0)), "camera"))
     plan = plans(take_off("up", 20.0), looks, go_to("b", (0.0, 0.0, 20.0)), LAND)["alpha.plan"]

@@ -128,3 +128,8 @@ def test_a_list_of_waypoints_leaves_headings_free_too(tmp_path):
         (16, True),
         (21, True),
     ]
+
+
+def test_a_px4_stays_for_fractions_of_seconds_as_it_is_told():
+    hold = move("hold", "HoldPosition", duration=1.5)
+    assert [item[1][0] for item in items(hold) if item[0] == 19] == [1.5]
