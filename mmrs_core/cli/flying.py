@@ -65,13 +65,15 @@ class Result:
             word = "broken off" if robot in ending.suspended else "fault"
             say(f"  {word} of '{robot}': {fault}")
         for robot in ending.suspended:
-            happened = ending.came_down.get(robot, "has not gone on")
+            unknown = robot in ending.unconfirmed
+            happened = "is not known to have come down: look after it" if unknown else "has not gone on"
+            happened = ending.came_down.get(robot, happened)
             say(f"  '{robot}' {happened}; --resume goes on where it stopped")
         for waiting in ending.waiting:
             say(f"  {waiting}")
         for robot in ending.lost:
             say(f"  the link to '{robot}' was lost")
-        for robot in ending.unconfirmed:
+        for robot in (each for each in ending.unconfirmed if each not in ending.suspended):
             say(f"  '{robot}' has not confirmed that it stopped")
         for log in self.logs:
             say(f"written: {log}")

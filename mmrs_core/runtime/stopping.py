@@ -59,9 +59,7 @@ class Stopping:
     def answer(self, robot: RunningRobot, found: Fault) -> None:
         """Have a robot give the response that it decided on, and tell people why."""
         self._say(f"'{robot.id}': {found}; response: {robot.response}")
-        if isinstance(robot.backend, Noting):
-            content = {"what": found.which, "why": found.reason, "response": robot.response}
-            robot.backend.note("decision", content)
+        _note(robot, found.which, found.reason, robot.response)
         self.stop(robot, robot.response)
 
     def stop(self, robot: RunningRobot, response: str) -> None:
@@ -125,6 +123,8 @@ class Stopping:
         if trouble is not None:
             self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
             self._unconfirmed[robot.id] = None
+            why = f"{robot.response} cannot be carried out: {trouble.reason or trouble.which}"
+            _note(robot, trouble.which, why, NOTHING)
             self._stay_if_lost(robot, trouble)
         elif not robot.stopping:
             self._unconfirmed.pop(robot.id, None)
@@ -150,6 +150,11 @@ class Stopping:
     def _needs_company(self, robot: RunningRobot) -> bool:
         """Return whether this process must not end yet, since nobody has said that it may leave the robot."""
         return robot.fault is not None and not robot.released and robot.is_watched(self._clock.now())
+
+
+def _note(robot: RunningRobot, what: str, why: str, response: str) -> None:
+    if isinstance(robot.backend, Noting):
+        robot.backend.note("decision", {"what": what, "why": why, "response": response})
 
 
 def _came_down(robot: RunningRobot, now: float) -> str:

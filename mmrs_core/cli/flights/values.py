@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from mmrs_core.behaviour.blackbox import Entry
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.flight.faults import TAKEN_OVER
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.geometry.frames import Floats
 from mmrs_core.scene import Position
 
@@ -85,6 +87,16 @@ class Flown:
     def of_kind(self, kind: str) -> tuple[Entry, ...]:
         """Return the entries of one kind."""
         return tuple(entry for entry in self.entries if entry.kind == kind)
+
+    @property
+    def given_up(self) -> tuple[Entry, ...]:
+        """Return the decisions that tell of what could not be carried out, so that nobody steered it then."""
+        decisions = ((entry, entry.content) for entry in self.of_kind("decision"))
+        return tuple(
+            entry
+            for entry, content in decisions
+            if content.get("response") == NOTHING and content.get("what") != TAKEN_OVER
+        )
 
     @property
     def end(self) -> float:

@@ -182,6 +182,10 @@ class _Shown:
             at = self._flown.track.at(record.time) if record.label == "fault" else None
             if at is not None:
                 yield Mark("fault", at, f"{record.detail} at {clock(record.time)}, move {record.move}")
+        for entry in self._flown.given_up:
+            if (at := self._flown.track.at(entry.time)) is not None:
+                what, why = entry.content.get("what"), entry.content.get("why")
+                yield Mark("fault", at, f"{what} at {clock(entry.time)}: {why}")
 
 
 def _moves_done(program: RobotProgram, flown: Flown) -> str:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import hypot, inf
+from math import dist, hypot, inf
 
-from mmrs_core.cli.preview.markup import element, text, title
+from shapely import box
+from shapely.geometry import Point as ShapelyPoint
+from shapely.geometry import Polygon
+
+from mmrs_core.cli.preview.markup import element, number, text, title
 from mmrs_core.scene import Point
 
 FONT = 12.0
@@ -19,9 +23,12 @@ _SAMPLE = 10.0
 _FARTHEST = 4
 _SHARES = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)
 _COVERING = 100.0
+_MISLEADING = 25.0
 _CROSSING = 1.5
 _OUTSIDE = 30.0
 _FARTHER = 3.0
+_APART = 14.0
+"""Pixels between words and what they name from which on a line joins them."""
 
 
 def shortened(words: str, longest: int = _LONGEST) -> str:
@@ -46,6 +53,7 @@ class Labels:
     height: float = inf
     _taken: list[Box] = field(default_factory=list)
     _lines: list[Point] = field(default_factory=list)
+    _areas: list[Polygon] = field(default_factory=list)
     _markup: list[str] = field(default_factory=list)
 
     def keep_off(self, box: Box) -> None:
@@ -57,6 +65,12 @@ class Labels:
         for (x1, y1), (x2, y2) in pairwise(line):
             count = int(hypot(x2 - x1, y2 - y1) / _SAMPLE) + 1
             self._lines += [(x1 + (x2 - x1) * i / count, y1 + (y2 - y1) * i / count) for i in range(count)]
+
+    def lay_out(self, outline: Sequence[Point]) -> None:
+        """Keep later words off an area, but those of what lies in it: elsewhere they would name it, too."""
+        area = Polygon(outline) if len(outline) > 2 else Polygon()
+        if area.is_valid and not area.is_empty:
+            self._areas.append(area)
 
     def put(
         self,
@@ -82,8 +96,10 @@ class Labels:
         before = f"{icon[0]}\u00a0" if icon[0] else ""
         half = width_of(before + shown) / 2
         places = [(rank, self._inside(place, half)) for rank, place in _places(around, half)]
-        _, (x, y) = min((self._cost(rank, place, half), place) for rank, place in places)
+        others = self._others(around)
+        _, (x, y) = min((self._cost(rank, place, half, others), place) for rank, place in places)
         self._taken.append(_box((x, y), half + _GAP))
+        self._markup += _leader(around, _box((x, y), half))
         attributes = {"class": f"label {kind}", "x": x, "y": y, "fill": colour, "text_anchor": "middle"}
         sign = element("tspan", {"class": "icon", "fill": icon[1]}, text(before)) if before else ""
         self._markup.append(element("text", attributes, sign, text(shown), title(tip) if tip else ""))
@@ -96,14 +112,31 @@ class Labels:
         x = min(max(place[0], half + 4), max(self.width - half - 4, half + 4))
         return x, min(max(place[1], FONT + 2), max(self.height - 5, FONT + 2))
 
-    def _cost(self, rank: float, place: Point, half: float) -> float:
+    def _others(self, around: Box) -> list[Polygon]:
+        """Return the areas in which something does not lie that is to be named."""
+        middle = ShapelyPoint((around[0] + around[2]) / 2, (around[1] + around[3]) / 2)
+        return [area for area in self._areas if not area.covers(middle)]
+
+    def _cost(self, rank: float, place: Point, half: float, others: Sequence[Polygon]) -> float:
         left, top, right, bottom = _box(place, half)
+        words = box(left, top, right, bottom)
+        misleading = sum(area.intersects(words) for area in others)
         covered = sum(
             not (right < taken[0] or left > taken[2] or bottom < taken[1] or top > taken[3])
             for taken in self._taken
         )
         crossed = sum(left < x < right and top < y < bottom for x, y in self._lines)
-        return _COVERING * covered + _CROSSING * crossed + rank
+        return _COVERING * covered + _MISLEADING * misleading + _CROSSING * crossed + rank
+
+
+def _leader(named: Box, words: Box) -> Iterator[str]:
+    """Yield a line from words to what they name where these are so far apart that nobody would guess it."""
+    x, y = (named[0] + named[2]) / 2, (named[1] + named[3]) / 2
+    start = min(max(x, words[0]), words[2]), min(max(y, words[1]), words[3])
+    end = min(max(start[0], named[0]), named[2]), min(max(start[1], named[1]), named[3])
+    if dist(start, end) > _APART:
+        line = "L".join(f"{number(x)} {number(y)}" for x, y in (start, end))
+        yield element("path", {"class": "leader", "d": f"M{line}"})
 
 
 def _box(place: Point, half: float) -> Box:

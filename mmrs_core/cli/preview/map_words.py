@@ -36,6 +36,8 @@ def words(picture: Picture, projection: Projection, first: int = 0) -> str:
         labels.keep_off(box)
     for line in _lines(picture):
         labels.avoid([projection.place(point) for point in line])
+    for outline in _outlines(picture):
+        labels.lay_out([projection.place(point) for point in outline])
     kinds = (_of_tasks, _of_things, _of_zones)
     names = chain.from_iterable(of_kind(picture, projection) for of_kind in kinds)
     smallest_first = sorted(names, key=lambda name: _area(name.around))
@@ -70,6 +72,13 @@ def _lines(picture: Picture) -> Iterator[Sequence[Point | Position]]:
     yield from ((*zone.shell, zone.shell[0]) for zone in picture.zones if zone.shell)
     for thing in picture.things:
         yield from (*thing.lines, *((*ring, ring[0]) for ring in thing.outlines))
+
+
+def _outlines(picture: Picture) -> Iterator[Ring]:
+    """Yield what names of other things would be taken to name."""
+    yield from (zone.shell for zone in picture.zones if zone.types is None)
+    yield from (ring for task in picture.tasks for ring in task.rings[:1])
+    yield from (ring for thing in picture.things if not thing.inner for ring in thing.outlines)
 
 
 def _flown(robot: RobotPicture) -> Iterator[Sequence[Position]]:

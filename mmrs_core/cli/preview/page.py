@@ -50,20 +50,20 @@ def page(picture: Picture) -> str:
             {"class": "place"},
             _controls(picture),
             _frame(picture),
+            _player(picture),
         ),
-        _player(picture),
         element(
             "section",
             None,
             element("h2", None, "Who does what, and who waits for whom"),
-            timeline_markup(picture),
+            element("div", {"class": "wide"}, timeline_markup(picture)),
         ),
         element(
             "section",
             None,
             element("h2", None, "Heights above the origin"),
             element("p", {"class": "soft"}, BARS),
-            profile_markup(picture),
+            element("div", {"class": "wide"}, profile_markup(picture)),
         ),
         element("section", None, element("h2", None, "Robots"), _table(picture)),
         _things(picture),
@@ -135,7 +135,7 @@ def _sample(style: Style) -> str:
 def _player(picture: Picture) -> str:
     slider = {"type": "range", "id": "time", "min": 0, "max": picture.makespan, "value": 0, "step": "any"}
     return element(
-        "section",
+        "div",
         {"class": "player"},
         '<button type="button" id="play" aria-label="play">▶</button>',
         element("input", {**slider, "aria-label": "time"}),

@@ -147,6 +147,7 @@ class TaskPicture:
         rings: outlines of an area, the shell first; empty for other tasks.
         line: of a task along a line; empty for other tasks. point: of a task at a point.
         begin, end: seconds; None where it is not planned.
+        part: how much of it was done, 0 to 1.
     """
 
     name: str
@@ -157,6 +158,7 @@ class TaskPicture:
     begin: float | None = None
     end: float | None = None
     details: Details = ()
+    part: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

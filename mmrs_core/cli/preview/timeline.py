@@ -64,14 +64,20 @@ def _task_row(task: TaskPicture, axis: TimeAxis, middle: float) -> str:
     name = {"class": "task-name", "x": LEFT - 10, "y": middle + 4, "text_anchor": "end"}
     sign = element("tspan", {"class": "icon", "fill": task.symbol.colour}, text(task.symbol.icon + "\u00a0"))
     words = element("text", name, sign if task.symbol.icon else "", text(shortened(task.name, _NAMES)))
-    title = element("title", None, text(task_tip(task)))
+    partly = "" if task.part >= 1.0 else f", done to {100 * task.part:.0f} %"
+    title = element("title", None, text(task_tip(task) + partly))
     colour = {"fill": task.symbol.colour}
     left, right = axis.at(begin), axis.at(end)
     if right - left < 1:
         diamond = f"M{number(left)} {number(middle - 6)}l6 6l-6 6l-6-6Z"
         return words + element("path", {"class": "task-mark", "d": diamond, **colour}, title)
     bar = {"x": left, "y": middle - _TASK_BAR / 2, "width": right - left, "height": _TASK_BAR, "rx": 3}
-    return words + element("rect", {"class": "task-bar", **bar, **colour}, title)
+    if not partly:
+        return words + element("rect", {"class": "task-bar", **bar, **colour}, title)
+    look = {"class": "task-bar partly", "stroke": task.symbol.colour}
+    beside = {"class": "task-name", "x": min(right + 6, WIDTH - 34), "y": middle + 4}
+    told = element("text", beside, text(f"{100 * task.part:.0f} %"))
+    return words + element("rect", {**look, **bar, **colour}, title) + told
 
 
 def _row(index: int, robot: RobotPicture, axis: TimeAxis, middle: float) -> str:

@@ -9,7 +9,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.cli.preview.places import task_pictures
-from mmrs_core.cli.report.values import Report
+from mmrs_core.cli.report.values import Report, Status
 from mmrs_core.diagnostics import has_errors
 from mmrs_core.errors import MmrsError
 from mmrs_core.languages.modelset import model_in
@@ -31,8 +31,16 @@ def with_tasks(
         return picture
     begins = {task.name: task.flown[0] for task in report.tasks if task.flown is not None}
     ends = {t.name: t.flown[1] for t in report.tasks if t.flown is not None and t.flown[1] is not None}
-    symbols = workshop.contributions.map_symbols
-    return replace(picture, tasks=task_pictures(scene, begins, ends, symbols))
+    partly = {task.name: task.part for task in report.tasks if task.status is Status.PART}
+    ends |= {name: _last(picture, name) for name in partly if name in begins}
+    tasks = task_pictures(scene, begins, ends, workshop.contributions.map_symbols)
+    return replace(picture, tasks=tuple(replace(each, part=partly.get(each.name, 1.0)) for each in tasks))
+
+
+def _last(picture: Picture, task: str) -> float:
+    """Return when a robot worked last on a task."""
+    bars = (bar for robot in picture.robots for bar in robot.bars if bar.task == task and bar.kind == "work")
+    return max((bar.end for bar in bars), default=picture.makespan)
 
 
 def _scene_in(folder: Path, workshop: Workshop) -> Scene | None:

@@ -11,6 +11,7 @@ from mmrs_core.cli.flights.places import Place
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.privacy import without_secrets
 from mmrs_core.cli.report.values import Event, Reading
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.scene import Position
 
 MOST_TEXTS = 50
@@ -41,8 +42,11 @@ def _events(flown: Flown) -> Iterator[Event]:
         if record.label == "fault":
             kind = "order" if record.detail.partition(":")[0] in BY_PEOPLE else "fault"
             yield Event(flown.robot, record.time, kind, record.detail, f"program ended at move {record.move}")
+    logged = {record.detail.partition(":")[0] for record in flown.records if record.label == "fault"}
     for entry in flown.of_kind("decision"):
-        yield Event(flown.robot, entry.time, "decision", _words(entry, "what"), _decided(entry))
+        what = _words(entry, "what")
+        kind = "fault" if entry in flown.given_up and what not in logged else "decision"
+        yield Event(flown.robot, entry.time, kind, what, _decided(entry))
     for entry in flown.of_kind("order"):
         yield Event(flown.robot, entry.time, "order", _words(entry, "order"), _confirmed(entry))
     for entry in flown.of_kind("injected"):
@@ -63,6 +67,8 @@ def injected_by(entry: Entry) -> str:
 
 def _decided(entry: Entry) -> str:
     why, response = _words(entry, "why"), _words(entry, "response")
+    if response == NOTHING:
+        return why or "nothing is done"
     return f"{why}; response: {response}" if why else f"response: {response}"
 
 

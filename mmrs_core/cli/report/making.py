@@ -125,6 +125,8 @@ def _ending(robot: RobotProgram, flown: Flown, judged: ReplayResult) -> str:
         return last.detail.partition(":")[0]
     if last.move == robot.moves[robot.stop].id and last.label == "end":
         return "to its end"
+    if flown.given_up and flown.given_up[-1].time >= last.time:
+        return str(flown.given_up[-1].content.get("what"))
     left = [each for each in flown.of_kind("decision") if each.time >= last.time]
     if left and left[-1].content.get("response") in AWAY:
         return f"suspended: {without_secrets(str(left[-1].content.get('what')))}"

@@ -131,6 +131,21 @@ def test_logs_of_another_behaviour_are_called_that(mmrs, project):
     assert json.loads(out)["report"]["complaints"]
 
 
+def test_a_robot_whose_motors_stopped_on_its_way_home_has_crashed_and_is_on_the_map(mmrs, page, project):
+    log, box = project / "logs" / "left.jsonl", project / "logs" / "left.blackbox.ndjson"
+    log.write_text("".join(log.read_text().splitlines(keepends=True)[:-4]))
+    lines = box.read_text().splitlines(keepends=True)
+    last = json.loads(next(line for line in reversed(lines) if '"fix"' in line))
+    decided = {"what": "MOTORS_OFF", "why": "RETURN cannot be carried out", "response": "NOTHING"}
+    del last["place"]
+    box.write_text("".join([*lines, json.dumps({**last, "kind": "decision", **decided}) + "\n"]))
+    _, out, _ = mmrs("report", project, project / "logs", "--json")
+    assert json.loads(out)["report"]["robots"][0]["ending"] == "MOTORS_OFF"
+    shown = page()
+    assert "motors off" in Page(shown).text
+    assert 'class="mark fault"' in shown
+
+
 def test_damage_is_told_on_the_page(page, project):
     box = project / "logs" / "left.blackbox.ndjson"
     box.write_text(box.read_text()[:-30])

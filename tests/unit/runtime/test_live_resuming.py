@@ -72,9 +72,13 @@ def test_a_robot_that_is_not_known_to_have_come_down_is_not_told_to_have(live):
     run = live(ALONE, Script(two=inf, stop_RETURN=inf))
     run.wait_for_step("a begin two")
     run.script.robots["a"].fail("BATTERY_LOW")
-    run.wait_for(lambda: run.script.robots["a"].stops == ["RETURN"])
-    run.script.robots["a"].fail("NO_PROGRESS")
+    walker, noted = run.script.robots["a"], []
+    walker.note = lambda kind, content: noted.append((kind, *content.values()))
+    run.wait_for(lambda: walker.stops == ["RETURN"])
+    walker.fail("NO_PROGRESS")
     ending = run.end()
+    why = "RETURN cannot be carried out: says the test"
+    assert noted[-1] == ("decision", "NO_PROGRESS", why, "NOTHING")
     assert (ending.suspended, ending.unconfirmed, dict(ending.came_down)) == (("a",), ("a",), {})
 
 

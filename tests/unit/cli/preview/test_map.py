@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from lxml import etree
+from shapely.geometry import Point, Polygon
 
 from mmrs_core.cli.preview.labels import Labels, around, width_of
 from mmrs_core.cli.preview.map_drawing import map_markup
@@ -96,7 +97,9 @@ def test_words_do_not_cover_each_other():
     labels = Labels(400.0)
     for _ in range(4):
         labels.put("a name", around((200.0, 200.0), 5.0), "name")
-    at = [(float(e.get("x")), float(e.get("y"))) for e in etree.fromstring(f"<g>{labels.markup()}</g>")]
+    words = etree.fromstring(f"<g>{labels.markup()}</g>").findall("text")
+    at = [(float(e.get("x")), float(e.get("y"))) for e in words]
+    assert len(at) == 4
     wide = width_of("a name")
     pairs = [(a, b) for i, a in enumerate(at) for b in at[i + 1 :]]
     assert all(abs(a[0] - b[0]) >= wide or abs(a[1] - b[1]) >= 12 for a, b in pairs)
@@ -151,6 +154,41 @@ def test_words_are_placed_off_a_line_where_there_is_room():
     labels.put("a name", around((200.0, 200.0), 5.0), "name")
     y = float(etree.fromstring(labels.markup()).get("y"))
     assert not y - 12 < 186.0 < y + 3
+
+
+def box_around(labels):
+    """Return what the only words cover, and the line that joins them to what they name, if any."""
+    markup = etree.fromstring(f"<g>{labels.markup()}</g>")
+    (words,) = markup.findall("text")
+    x, y, half = float(words.get("x")), float(words.get("y")), width_of("a name") / 2
+    return Polygon.from_bounds(x - half, y - 12, x + half, y + 3), markup.find("path")
+
+
+def test_words_do_not_stand_on_something_else_than_they_name():
+    labels, beside = Labels(400.0, 400.0), [(150.0, 150.0), (250.0, 150.0), (250.0, 193.0), (150.0, 193.0)]
+    labels.lay_out(beside)
+    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    covered, _ = box_around(labels)
+    assert not covered.intersects(Polygon(beside))
+
+
+def test_words_may_stand_on_the_area_in_which_lies_what_they_name():
+    labels, field = Labels(400.0, 400.0), [(100.0, 100.0), (300.0, 100.0), (300.0, 300.0), (100.0, 300.0)]
+    labels.lay_out(field)
+    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    covered, leader = box_around(labels)
+    assert Polygon(field).covers(covered)
+    assert leader is None
+
+
+def test_words_far_from_what_they_name_are_joined_to_it_by_a_line():
+    labels = Labels(400.0, 400.0)
+    labels.keep_off((120.0, 170.0, 280.0, 230.0))
+    labels.put("a name", around((200.0, 200.0), 5.0), "name")
+    covered, leader = box_around(labels)
+    (x1, y1), (x2, y2) = (map(float, end.split()) for end in leader.get("d")[1:].split("L"))
+    assert covered.distance(Point(x1, y1)) < 0.1
+    assert Point(200.0, 200.0).distance(Point(x2, y2)) < 10.0
 
 
 def test_words_are_placed_on_what_is_large_enough_for_them():

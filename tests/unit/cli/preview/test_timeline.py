@@ -43,6 +43,14 @@ def test_a_task_without_duration_is_a_mark(picture):
     assert [mark.findtext(f"{SVG}title") for mark in marks] == ["fork: fork, 0:31 to 0:31"]
 
 
+def test_a_task_that_was_done_in_part_says_how_much(picture):
+    tasks = tuple(replace(task, part=0.934) for task in picture.tasks if task.name == "field")
+    markup = timeline_markup(replace(picture, tasks=tasks))
+    (bar,) = with_class(markup, "partly")
+    assert bar.findtext(f"{SVG}title").endswith(", done to 93 %")
+    assert "93 %" in [words.text for words in with_class(markup, "task-name")]
+
+
 def test_names_stand_on_bars_only_where_they_fit(picture):
     wide = with_class(timeline_markup(picture), "bar-words")
     robots = tuple(

@@ -166,6 +166,30 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
     ]
 
 
+def crashed(make):
+    """Return a robot whose motors stopped on its way home."""
+    entries = (
+        make.entry(2.0, "decision", what="BATTERY_LOW", why="20 % is left", response="RETURN"),
+        make.entry(
+            4.0, "decision", what="MOTORS_OFF", why="RETURN cannot be carried out", response="NOTHING"
+        ),
+    )
+    return make.flown("alpha", make.records("alpha", (1.0, "begin", "a2", "")), entries=entries)
+
+
+def test_what_could_not_be_carried_out_is_a_fault(make):
+    told = [(e.kind, e.what, e.why) for e in events_of(crashed(make))]
+    assert told[1] == ("fault", "MOTORS_OFF", "RETURN cannot be carried out")
+
+
+@pytest.mark.parametrize("logged", ["MOTORS_OFF", "TAKEN_OVER"])
+def test_a_fault_counts_once_and_a_pilot_is_none(make, logged):
+    records = make.records("alpha", (3.0, "fault", "a2", logged))
+    entries = (make.entry(3.0, "decision", what=logged, why="seen", response="NOTHING"),)
+    kinds = [event.kind for event in events_of(make.flown("alpha", records, entries=entries))]
+    assert kinds.count("fault") == (logged == "MOTORS_OFF")
+
+
 def test_a_fault_that_was_made_on_purpose_says_so(make):
     entry = make.entry(1.0, "injected", fault="gps-lost", state="begins")
     (event,) = events_of(make.flown("alpha", entries=(entry,)))
