@@ -105,6 +105,7 @@ class BackendInput:
         areas: of the context as drawn; empty where none was given.
         live: of a run in real time; None in simulated time.
         device_actions: how devices are wired, by property.
+        types: of all robots, by name, as far as they are known.
     """
 
     program: Program
@@ -118,6 +119,7 @@ class BackendInput:
     areas: tuple[Area, ...] = ()
     live: Live | None = None
     device_actions: Wirings = field(default_factory=dict)
+    types: Mapping[str, RobotType] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -278,9 +278,9 @@ class Robot:
         cruise: metres per second at which the robot goes back; None: the vehicle's own.
         fastest: metres per second that its type can do through air or water; None where nobody knows.
         descent: metres per second at which it comes down; None where nobody knows.
-        fence: polygons to stay out of; tight: what people must know of them.
-        rally: places to go to in an emergency.
-        escapes: by move, where to go in an emergency from where that move ends.
+        fence: polygons to stay out of; rally: places to go to in an emergency.
+        tight: what people must know of these.
+        escapes: by move, the way to go in an emergency from where that move ends.
         straight: whether the vehicle may fly straight to the nearest rally point from anywhere on its way.
         mission: name of it; plan: what differs where two plans of it do.
         fleet: all robots of it, this one included.
@@ -305,7 +305,7 @@ class Robot:
     runs: tuple[Run, ...] = ()
     fence: tuple[tuple[Place, ...], ...] = ()
     rally: tuple[Place, ...] = ()
-    escapes: tuple[tuple[str, Place], ...] = ()
+    escapes: tuple[tuple[str, tuple[Place, ...]], ...] = ()
     straight: bool = True
     tight: tuple[str, ...] = field(default=(), kw_only=True)
     mission: str = field(default="", kw_only=True)

@@ -81,7 +81,8 @@ def connect(given: BackendInput, live: Live) -> MavlinkBackend:
         LinkLostError: the port cannot be opened.
     """
     options = link_options(given.options)
-    input = TargetInput(given.program, {given.type.name: given.type}, given.robot_kinds, given.move_kinds)
+    types = {**given.types, given.type.name: given.type}
+    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
     input = replace(input, areas=given.areas, device_actions=given.device_actions)
     _refuse(given, input, options)
     program = robot_of(given.robot, input)

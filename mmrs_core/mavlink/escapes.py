@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, dist
 
 import numpy as np
 from shapely import Polygon, intersects, linestrings, prepare, unary_union
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Move
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, RobotProgram
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.escaping import Call
-from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.mavlink.movements import MULTICOPTER, place_of
-from mmrs_core.mavlink.safety import areas_of, escape_from
+from mmrs_core.errors import UnreachableError
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.movements import MULTICOPTER
+from mmrs_core.mavlink.safety import areas_of, clearance_of
+from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.planning.layers import Rates
+from mmrs_core.planning.paths import Space
 from mmrs_core.scene import AreaUse, Point, Position
 
 AT_HOME = ((BEHAVIOUR, "Start"), (BEHAVIOUR, "Recharge"))
@@ -25,38 +30,84 @@ STEP_METRES = 1.0
 SLACK = 0.1
 """Metres by which a line may be nearer to an area than it must: ways lead along the edge of clearance."""
 
+USUAL_UPRIGHT = 1.0
+"""Metres per second at which robots climb and descend whose type says nothing of that."""
+
+ACCELERATION = 2.0
+"""Metres per second squared; ways with fewer stops are quicker."""
+
 EITHER = 4.0
 """Metres by which one point may be farther than another and still be taken for the nearest."""
 
 
-def escapes_of(
-    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
-) -> Iterator[tuple[str, Call]]:
-    """Yield, by move, where to go from where that move ends; nothing for moves from which no way is safe."""
-    for move, _, place in _escapes(context, input, points, clearance):
-        yield move.id, place_of(place, context)
+@dataclass(frozen=True, slots=True)
+class Escape:
+    """A way to an emergency area.
+
+    Attributes:
+        move: where it begins: at the end of that one.
+        begin: that place; places: those that it leads by, the last one above where the robot comes down.
+    """
+
+    move: str
+    begin: Position
+    places: tuple[Position, ...]
+
+    @property
+    def legs(self) -> tuple[tuple[Point, Point], ...]:
+        """Return its legs as seen from above."""
+        flat = [place[:2] for place in (self.begin, *self.places)]
+        return tuple(pairwise(flat))
 
 
-def escape_legs(
-    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
-) -> tuple[tuple[Point, Point], ...]:
-    """Return the legs from where moves end to emergency areas, seen from above."""
-    legs = _escapes(context, input, points, clearance)
-    return tuple((begin[:2], end[:2]) for _, begin, end in legs)
+def escapes_of(robot: RobotProgram, input: TargetInput, points: Sequence[Point]) -> tuple[Escape, ...]:
+    """Return the quickest way from the end of each move to one of some points; none from where none is clear.
+
+    Ways keep what the robot must keep from all areas, and stay between the lowest and the highest place
+    that its moves lead to. Whoever comes down there does so in a clear column.
+    """
+    context = context_of(robot, input, geographic=False)
+    ends = [
+        (move.id, end)
+        for index, move in enumerate(robot.moves)
+        if (end := _end_of(index, move, context)) is not None
+    ]
+    if not points or not ends:
+        return ()
+    low, high = min(end[2] for _, end in ends), max(end[2] for _, end in ends)
+    kept_from = [area for area in areas_of(robot, input) if area.use is not AreaUse.EMERGENCY]
+    clearance = clearance_of(context.type, input.program.position_error)
+    space = Space(kept_from, clearance, low, high, rates=_rates(context))
+    clear = [
+        p for p in points if space.is_clear(((*p, min(low, context.zero)), (*p, max(high, context.zero))))
+    ]
+    found = ((move, end, _quickest(space, end, clear)) for move, end in ends)
+    return tuple(Escape(move, end, places) for move, end, places in found if places)
 
 
-def _escapes(
-    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
-) -> Iterator[tuple[Move, Position, Position]]:
-    """Yield moves, where they end, and where to go from there, as far as a way is safe."""
-    if not points:
-        return
-    areas = areas_of(context.robot, input)
-    for index, move in enumerate(context.robot.moves):
-        position = _end_of(index, move, context)
-        place = escape_from(position, points, areas, clearance) if position is not None else None
-        if position is not None and place is not None:
-            yield move, position, place
+def _quickest(space: Space, begin: Position, points: Sequence[Point]) -> tuple[Position, ...]:
+    """Return the quickest way to one of the points, without where it begins and without the last descent."""
+    routes = []
+    for point in points:
+        try:
+            routes.append(space.route(begin, (*point, begin[2])))
+        except UnreachableError:
+            continue
+    if not routes:
+        return ()
+    quickest = min(routes, key=space.seconds)[1:]
+    comes_down = len(quickest) > 1 and quickest[-2][:2] == quickest[-1][:2]
+    return quickest[:-1] if comes_down else quickest
+
+
+def _rates(context: RobotContext) -> Rates:
+    """Return how fast a robot travels, as far as its type says so."""
+    capability = capability_of(context.robot, context.type) if context.type is not None else None
+    if capability is None:
+        return Rates(1.0, 1.0, 1.0)
+    cruise = capability.speed[1] or 1.0
+    upright = min(cruise, USUAL_UPRIGHT)
+    return Rates(cruise, capability.climb_rate or upright, capability.descent_rate or upright, ACCELERATION)
 
 
 def _end_of(index: int, move: Move, context: RobotContext) -> Position | None:
@@ -77,9 +128,7 @@ def _leaves_home(index: int, context: RobotContext) -> bool:
     return bool(before) and all(kind in AT_HOME for move in before for kind in move.metaclasses[:1])
 
 
-def straight_lines_are_clear(
-    context: RobotContext, input: TargetInput, points: tuple[Point, ...], clearance: float
-) -> bool:
+def straight_lines_are_clear(context: RobotContext, input: TargetInput, points: Sequence[Point]) -> bool:
     """Return whether a vehicle may fly straight to the nearest point from anywhere on its way.
 
     That is what it does by itself: it knows no areas and, on its way up and down, no heights; so all
@@ -87,7 +136,7 @@ def straight_lines_are_clear(
     """
     if not points or context.frame.is_local:
         return False
-    kept = clearance - SLACK
+    kept = clearance_of(context.type, input.program.position_error) - SLACK
     shapes = [
         Polygon(area.shell).buffer(area.safety_distance + kept)
         for area in areas_of(context.robot, input)

@@ -21,8 +21,7 @@ from shapely.geometry.base import BaseGeometry
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.behaviour.walk import Graph, successors
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.mavlink.context import context_of
-from mmrs_core.mavlink.escapes import escape_legs
+from mmrs_core.mavlink.escapes import Escape
 from mmrs_core.mavlink.safety import areas_of, clearance_of
 from mmrs_core.scene import Area, AreaUse, Ring
 from mmrs_core.scene import Point as Vertex
@@ -77,17 +76,17 @@ class Fence:
         )
 
 
-def fences_of(robot: RobotProgram, input: TargetInput, points: tuple[Vertex, ...]) -> tuple[Fence, ...]:
+def fences_of(robot: RobotProgram, input: TargetInput, escapes: Iterable[Escape]) -> tuple[Fence, ...]:
     """Return what a robot must not enter, its ways to emergency areas left free.
 
     Args:
         robot: of the input's behaviour.
         input: the behaviour and what goes with it.
-        points: in emergency areas.
+        escapes: its ways to emergency areas.
     """
     error = input.program.position_error
     clearance = clearance_of(input.types.get(robot.type_name), error)
-    legs = escape_legs(context_of(robot, input, geographic=False), input, points, clearance)
+    legs = [leg for escape in escapes for leg in escape.legs]
     return fence_of(robot, areas_of(robot, input), clearance, error, legs)
 
 

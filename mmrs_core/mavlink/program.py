@@ -7,25 +7,36 @@ from dataclasses import dataclass
 
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, Transition
+from mmrs_core.behaviour.refuges import Refuges, refuges_of
 from mmrs_core.behaviour.walk import in_order
 from mmrs_core.contributions.targets import TargetInput, TracedStep
 from mmrs_core.generation.escaping import Call
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.context import RobotContext, context_of, neighbours_of
 from mmrs_core.mavlink.earth import metres
-from mmrs_core.mavlink.escapes import escapes_of, straight_lines_are_clear
+from mmrs_core.mavlink.escapes import Escape, escapes_of, straight_lines_are_clear
 from mmrs_core.mavlink.fencing import Fence, fences_of
 from mmrs_core.mavlink.movements import movement_of, objects_of, place_of
 from mmrs_core.mavlink.runs import Run, runs_of
-from mmrs_core.mavlink.safety import (
-    areas_of,
-    clearance_of,
-    explicit,
-    policies_of,
-    refuges,
-)
+from mmrs_core.mavlink.safety import explicit, policies_of
 from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of, manner_of
 from mmrs_core.scene import Point, Policy
+
+
+@dataclass(frozen=True, slots=True)
+class _Protection:
+    """What protects a robot beside its program."""
+
+    fences: tuple[Fence, ...]
+    refuges: Refuges
+    escapes: tuple[Escape, ...]
+
+    @property
+    def vertices(self) -> list[Point]:
+        """Return all points that it consists of, seen from above."""
+        corners = [vertex for fence in self.fences for vertex in fence.ring]
+        ways = [place[:2] for escape in self.escapes for place in escape.places]
+        return [*corners, *self.refuges.points, *ways]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,17 +68,13 @@ class RobotView:
 
 def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
     """Return a robot as the template sees it."""
-    areas, program = areas_of(robot, input), input.program
-    clearance = clearance_of(input.types.get(robot.type_name), program.position_error)
-    geographic = not program.frame.is_local
-    points = refuges(areas, clearance) if geographic else ()
-    fences = fences_of(robot, input, points) if geographic else ()
-    vertices: list[Point] = [vertex for fence in fences for vertex in fence.ring]
+    program, kept = input.program, _protection(robot, input)
     homes = [home[:2] for _, home in neighbours_of(robot, input)]
-    context = context_of(robot, input, [*vertices, *points, *homes], geographic=geographic)
+    geographic = not program.frame.is_local
+    context = context_of(robot, input, [*kept.vertices, *homes], geographic=geographic)
     traced = zip(_ordered(robot), trace_of(robot), strict=True)
     steps = tuple(_step(index, context, step) for index, step in traced)
-    head = tuple(each for each in _head(context, input, fences, points, clearance) if each[1] != ())
+    head = tuple(each for each in _head(context, input, kept) if each[1] != ())
     words = {"Robot"} | _words((head, [step.call for step in steps]))
     return RobotView(
         robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot), objects_in(robot)
@@ -169,13 +176,15 @@ def _then(transition: Transition, robot: RobotProgram) -> Call:
     return Call("Then", (to,), tuple(named))
 
 
-def _head(
-    context: RobotContext,
-    input: TargetInput,
-    fences: tuple[Fence, ...],
-    points: tuple[Point, ...],
-    clearance: float,
-) -> Iterator[tuple[str, object]]:
+def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:
+    if input.program.frame.is_local:
+        return _Protection((), Refuges(), ())
+    refuges = refuges_of(robot, input.program, input.types, input.areas)
+    escapes = escapes_of(robot, input, refuges.points)
+    return _Protection(fences_of(robot, input, escapes), refuges, escapes)
+
+
+def _head(context: RobotContext, input: TargetInput, kept: _Protection) -> Iterator[tuple[str, object]]:
     robot, program = context.robot, input.program
     home = robot.home or (0.0, 0.0, 0.0)
     yield "id", robot.id
@@ -198,12 +207,18 @@ def _head(
     how = tuple((name, getattr(manner, name)) for name in names)
     yield "travel", Call("Travel", (robot.travel_mode,), how)
     yield "runs", tuple(_run(run, robot) for run in runs_of(context))
-    yield "fence", tuple(tuple(_ground(vertex, context) for vertex in fence.ring) for fence in fences)
-    yield "tight", tuple(str(fence) for fence in fences if fence.is_tight)
+    yield "fence", tuple(tuple(_ground(vertex, context) for vertex in fence.ring) for fence in kept.fences)
+    shared = (kept.refuges.shared,) if kept.refuges.shared else ()
+    yield "tight", (*(str(fence) for fence in kept.fences if fence.is_tight), *shared)
+    points = kept.refuges.points
     yield "rally", tuple(place_of((*point, _highest(context)), context) for point in points)
-    yield "escapes", tuple(escapes_of(context, input, points, clearance))
-    if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points, clearance):
+    yield "escapes", tuple(_escape(each, context) for each in kept.escapes)
+    if _escapes_alone(robot, input) and not straight_lines_are_clear(context, input, points):
         yield "straight", False
+
+
+def _escape(escape: Escape, context: RobotContext) -> tuple[str, tuple[Call, ...]]:
+    return escape.move, tuple(place_of(place, context) for place in escape.places)
 
 
 def _escapes_alone(robot: RobotProgram, input: TargetInput) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from math import dist
 
+from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.errors import UnreachableError
-from mmrs_core.geometry.clearance import shrink
 from mmrs_core.planning.paths import Space
 from mmrs_core.scene import Area, AreaUse, Kinematics, Position
 
@@ -66,10 +66,10 @@ class Escapes:
 
     @cached_property
     def _refuges(self) -> tuple[tuple[float, float], ...]:
-        """Return a point inside every emergency area that is large enough for the robot."""
-        inside = (shrink(area.shell, self._keep(area)) for area in self._areas(AreaUse.EMERGENCY))
-        points = (shape.representative_point() for shape in inside if not shape.is_empty)
-        return tuple((point.x, point.y) for point in points)
+        """Return a point of the robot's own inside every emergency area that is large enough."""
+        given, spare = self._given, self._kinematics.turning_radius
+        types = {**given.types, given.type.name: given.type}
+        return refuges_of(given.robot, given.program, types, given.areas, spare).points
 
     @cached_property
     def _space(self) -> Space:
@@ -79,6 +79,3 @@ class Escapes:
     def _areas(self, use: AreaUse) -> tuple[Area, ...]:
         concerned = self._given.type.name
         return tuple(area for area in self._given.areas if area.use is use and area.concerns(concerned))
-
-    def _keep(self, area: Area) -> float:
-        return area.safety_distance + self._clearance

@@ -132,6 +132,7 @@ def inputs_of(
             policies,
             areas,
             device_actions=device_actions or {},
+            types=types,
         )
     return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, radians
+from math import cos, hypot, inf, radians, sqrt
 
 from ..places import bearing, distance, offset
 from ..policies import COMES_DOWN
@@ -19,6 +19,9 @@ SLOWEST = 0.5
 
 TURNING_SECONDS = 6.0
 """To brake, turn round, get up to speed, and stop at the end."""
+
+ACCELERATION = 2.0
+"""Metres per second squared with which vehicles speed up, and slow down at every place of the way."""
 
 USUAL_CRUISE = 3.0
 USUAL_DESCENT = 1.0
@@ -119,11 +122,19 @@ def seconds_back(robot: Robot, state: State, response: str, track: Track) -> flo
 
 
 def _seconds(robot: Robot, state: State, a: Place, b: Place) -> float:
+    """Return how long a leg takes from one stop to the next."""
     way, cruise = distance(a, b), robot.cruise or USUAL_CRUISE
     pace = min(cruise, max(cruise, robot.fastest or 0.0) - _headwind(state, a, b))
     if way == 0.0:
         return 0.0
-    return way / pace if pace >= SLOWEST else inf
+    if pace < SLOWEST:
+        return inf
+    if robot.vehicle == "copter":
+        rise = abs(offset(a, b)[2]) / way
+        pace = min(pace, (robot.descent or USUAL_DESCENT) / rise) if rise else pace
+    if way < pace**2 / ACCELERATION:
+        return 2.0 * sqrt(way / ACCELERATION)
+    return way / pace + pace / ACCELERATION
 
 
 def _headwind(state: State, a: Place, b: Place) -> float:

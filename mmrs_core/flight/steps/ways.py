@@ -11,7 +11,11 @@ from ..program import GoTo, Hold, Land, Object, Place, Robot, Skip, Step, Stop, 
 NEAR = 1.0
 """Metres within which two places of a way are one, and a robot is on a leg."""
 
+ALIGNED = 0.1
+"""Metres beside a straight leg at which a place lies on it."""
+
 Track = Sequence[tuple[str, Place]]
+Steps = list[tuple[int | None, Place]]
 _STAYS = (Hold, Turn, Skip)
 
 
@@ -33,34 +37,70 @@ def steps_back(
 ) -> Iterator[tuple[int | None, Place]]:
     """Yield the places of the way back, each with its number in the track; None: it is not on it.
 
-    The way is cut short wherever it comes back to a place that it has passed before. A robot that is
-    above the place where it took off has none, and one that is nearer to the end of its programmed way
-    home goes on to that.
+    The way is cut short wherever it comes back to a place that it has passed before, and leads straight
+    through places on one line. A robot that is above the place where it took off has none, and one that
+    is nearer to the end of its programmed way home goes on to that.
     """
     if response not in ("RETURN", "EMERGENCY_AREA") or not track:
         return
-    if response == "EMERGENCY_AREA":
-        yield from _to_area(robot, track, here)
-        return
+    start = track[-1][1] if here is None else here
+    found = _to_area(robot, track, here) if response == "EMERGENCY_AREA" else _home(robot, track, here)
+    yield from _straight(start, found)
+
+
+def _home(robot: Robot, track: Track, here: Place | None) -> Steps:
     start = track[-1][1] if here is None else here
     if _above(start, track[0][1]):
-        return
-    back = [(index, track[index][1]) for index in _cut_short(track, here)]
-    ahead = _home_ahead(robot, track)
-    if ahead and here is not None and _length(here, ahead) < _length(here, [place for _, place in back]):
-        yield from ((None, place) for place in ahead)
-    else:
-        yield from back
+        return []
+    back: Steps = [(index, track[index][1]) for index in _cut_short(track, here)]
+    return _shorter(here, back, [(None, place) for place in _home_ahead(robot, track)])
 
 
-def _to_area(robot: Robot, track: Track, here: Place | None) -> Iterator[tuple[int | None, Place]]:
-    escapes = dict(robot.escapes)
+def _to_area(robot: Robot, track: Track, here: Place | None) -> Steps:
+    escapes, back = dict(robot.escapes), Steps()
     for index in _cut_short(track, here):
         move, place = track[index]
-        yield index, place
+        back.append((index, place))
         if move in escapes:
-            yield None, escapes[move]
-            return
+            back += [(None, place) for place in escapes[move]]
+            break
+    return _shorter(here, back, _area_ahead(robot, track, here))
+
+
+def _shorter(here: Place | None, back: Steps, ahead: Steps) -> Steps:
+    if not ahead or here is None:
+        return back
+    ways = [_length(here, [place for _, place in way]) for way in (back, ahead)]
+    return ahead if ways[1] < ways[0] else back
+
+
+def _area_ahead(robot: Robot, track: Track, here: Place | None) -> Steps:
+    """Return the rest of the leg that the robot is on, and the way to an emergency area from its end."""
+    steps = {step.move: step for step in robot.steps}
+    move, begun = track[-1]
+    step = steps.get(move)
+    if step is not None and not (isinstance(step.movement, GoTo) and not _ends_at(step.movement, begun)):
+        step = steps.get(step.then.move) if isinstance(step.then, Then) else None
+    escape = dict(robot.escapes).get(step.move) if step is not None else None
+    if step is None or escape is None or here is None or not isinstance(step.movement, GoTo):
+        return []
+    ends = _ends(begun, step.movement) or []
+    legs = list(pairwise([begun, *ends]))
+    on = next((i for i, leg in enumerate(legs) if distance_to_leg(here, *leg) <= NEAR), None)
+    if on is None or distance(begun, here) <= NEAR:
+        return []
+    return [(None, place) for place in (*ends[on:], *escape)]
+
+
+def _straight(start: Place, places: Steps) -> Iterator[tuple[int | None, Place]]:
+    """Yield places without those on the straight line between the ones before and after them."""
+    corner, passed = start, list[Place]()
+    for (number, place), (_, following) in pairwise(places):
+        passed.append(place)
+        if any(distance_to_leg(each, corner, following) > ALIGNED for each in passed):
+            corner, passed = place, []
+            yield number, place
+    yield from places[-1:]
 
 
 def _cut_short(track: Track, here: Place | None) -> Iterator[int]:

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import RobotContext, context_of, require_home
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.escapes import escapes_of
 from mmrs_core.mavlink.fencing import fences_of
 from mmrs_core.mavlink.plans.flight import sorties_of
 from mmrs_core.mavlink.plans.items import Item, Row, rows_of
-from mmrs_core.mavlink.safety import areas_of, clearance_of, refuges
 from mmrs_core.scene import Point
 
 Vertex: TypeAlias = tuple[float, float]
@@ -59,14 +60,17 @@ def missions_of(input: TargetInput) -> Iterator[Mission]:
 
 
 def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Sequence[Item]) -> Mission:
-    robot, areas = context.robot, areas_of(context.robot, input)
-    points = refuges(areas, clearance_of(context.type, input.program.position_error))
+    robot = context.robot
+    points = refuges_of(robot, input.program, input.types, input.areas).points
     return Mission(
         context,
         stem,
         _home(robot, context),
         rows_of(context, sortie),
-        tuple(degrees_of(fence.ring, context.frame) for fence in fences_of(robot, input, points)),
+        tuple(
+            degrees_of(fence.ring, context.frame)
+            for fence in fences_of(robot, input, escapes_of(robot, input, points))
+        ),
         _rally(context, points, sortie),
     )
 

@@ -7,6 +7,7 @@ import re
 import threading
 import time
 from dataclasses import replace
+from math import nan
 
 import pytest
 from flight_crew import SPEEDUP, free_port, in_background, robot_of
@@ -19,7 +20,7 @@ from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.options import options_of, parser_for
 from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
-from mmrs_core.flight.program import Hold, Policy
+from mmrs_core.flight.program import Geographic, Hold, Policy
 from mmrs_core.flight.records.log import read
 from mmrs_core.flight.session import Shared, run_robot
 from mmrs_core.flight.slots import LocalSlots
@@ -276,7 +277,7 @@ def test_who_waits_for_a_battery_ends_when_somebody_says_so_or_nobody_works_any_
 
 
 LONG = tuple(replace(step, movement=Hold(200.0)) if step.move == "stay" else step for step in STEPS)
-NOWHERE = tuple((move, "no place at all") for move in ("up", "out"))
+NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))
 
 
 def fails_to_respond(*policies):
@@ -308,7 +309,7 @@ def test_a_response_that_fails_itself_leaves_a_robot_that_holds_and_obeys(proces
     ]
     box = map(json.loads, (tmp_path / "alpha.blackbox.ndjson").read_text("ascii").splitlines())
     (failed,) = (line for line in box if line["kind"] == "failed")
-    assert "have no common frame" in failed["error"]
+    assert "cannot convert float NaN" in failed["error"]
     assert "in go_to" in failed["trace"]
 
 

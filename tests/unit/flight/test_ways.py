@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
+from mmrs_core.flight.places import distance_to_leg
 from mmrs_core.flight.program import Choose, GoTo, Land, Local, Robot, Start, Step, Stop, TakeOff, Then
 from mmrs_core.flight.steps.ways import way_back
 
@@ -66,9 +69,36 @@ def test_nobody_goes_ahead_where_a_choice_is_still_open():
 
 def test_an_emergency_area_is_left_for_where_its_leg_was_checked():
     area = Local(120.0, -20.0, 10.0)
-    given = robot(A, B, C, escapes=(("p0", area),))
+    given = robot(A, B, C, escapes=(("p0", (area,)),))
     assert back(given, track(A, B), Local(95.0, 80.0, 10.0), "EMERGENCY_AREA") == [B, A, area]
 
 
 def test_other_responses_have_no_way():
     assert back(robot(A), track(A), A, "LAND") == []
+
+
+def test_the_way_to_an_emergency_area_may_have_corners():
+    over, area = Local(100.0, 0.0, 30.0), Local(120.0, -20.0, 30.0)
+    given = robot(A, B, C, escapes=(("p0", (over, area)),))
+    assert back(given, track(A, B), Local(95.0, 80.0, 10.0), "EMERGENCY_AREA") == [B, A, over, area]
+
+
+def test_the_end_of_the_leg_that_a_robot_is_on_is_gone_to_where_the_area_is_nearer_from_there():
+    area = Local(-20.0, 100.0, 10.0)
+    given = robot(A, B, C, escapes=(("p0", (area,)), ("p2", (area,))))
+    assert back(given, track(A, B), Local(20.0, 80.0, 10.0), "EMERGENCY_AREA") == [C, area]
+    assert back(given, track(A, B), Local(20.0, 60.0, 10.0), "EMERGENCY_AREA") == [B, A, area]
+    assert back(given, track(A, B), B, "EMERGENCY_AREA") == [B, A, area]
+
+
+def test_places_on_one_line_are_gone_through_at_once():
+    row = [Local(100.0, float(east), 10.0) for east in range(0, 81, 10)]
+    assert back(robot(*row), track(*row), None) == [row[-1], row[0], UP]
+
+
+def test_a_line_that_bends_little_by_little_is_no_straight_one():
+    bend = [Local(100.0 - 0.001 * east**2, float(east), 10.0) for east in range(0, 81, 10)]
+    found = back(robot(*bend), track(*bend), None)
+    assert 4 < len(found) < 9
+    legs = list(pairwise(found))
+    assert max(min(distance_to_leg(place, *leg) for leg in legs) for place in bend) <= 0.1

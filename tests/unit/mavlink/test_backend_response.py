@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from math import nan
+
 import pytest
 from flight_crew import manned, robot_of
 from patience import until
 
 from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.program import Place
+from mmrs_core.flight.program import Geographic, Place
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_response import Response
 
 pytestmark = pytest.mark.xdist_group("real time")
-NOWHERE = tuple((move, "no place at all") for move in ("up", "out"))
+NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))
 
 
 @pytest.fixture

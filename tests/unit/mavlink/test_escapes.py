@@ -1,9 +1,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
+from math import dist, inf
 
+import pytest
+from shapely import LineString, Polygon
+
+from mmrs_core import pipeline
+from mmrs_core.behaviour.refuges import refuges_of
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.mavlink.escapes import escapes_of
 from mmrs_core.mavlink.program import robot_view
-from mmrs_core.scene import Policy
+from mmrs_core.mavlink.safety import clearance_of
+from mmrs_core.plugins import load_plugins
+from mmrs_core.resources import shipped
+from mmrs_core.scene import Area, AreaUse, Policy
 from mmrs_core.testing.programs import (
     LAND,
     go_to,
@@ -33,8 +45,92 @@ def test_there_is_one_from_every_start_at_home_but_from_no_other_place():
 
 def test_the_way_out_is_level():
     robot = robot_program("alpha", [take_off("up", 10.0), LAND])
-    ((_, place),) = dict(robot_view(robot, target_input(program(robot))).head)["escapes"]
+    ((_, (place,)),) = dict(robot_view(robot, target_input(program(robot))).head)["escapes"]
     assert place.positional[2] == 10.0
+
+
+REFUGES = [(50.0, 0.0), (-30.0, 0.0)]
+
+
+def ways(*positions, areas=(), points=REFUGES, error=1.0):
+    """Return the way out of each of some places, all moves of one robot at home in the origin."""
+    robot = robot_program("alpha", [go_to(f"p{n}", place) for n, place in enumerate(positions)])
+    given = replace(target_input(replace(program(robot), position_error=error)), areas=areas)
+    return {each.move: each.places for each in escapes_of(robot, given, points)}
+
+
+def wall(low=-inf, high=inf, distance=0.0, north=(-5.0, 5.0)):
+    ring = ((-20.0, north[0]), (-10.0, north[0]), (-10.0, north[1]), (-20.0, north[1]))
+    return Area("wall", AreaUse.OBSTACLE, ring, low, high, distance)
+
+
+def test_the_nearest_refuge_is_taken():
+    assert ways((0.0, 0.0, 20.0)) == {"p0": ((-30.0, 0.0, 20.0),)}
+
+
+def test_a_refuge_farther_off_is_taken_where_the_way_to_the_nearest_one_is_longer():
+    high_wall = wall(north=(-80.0, 80.0))
+    assert ways((0.0, 0.0, 20.0), areas=[high_wall]) == {"p0": ((50.0, 0.0, 20.0),)}
+
+
+def test_the_way_leads_round_an_obstacle():
+    (places,) = ways((0.0, 0.0, 20.0), areas=[wall()], points=REFUGES[1:]).values()
+    assert places[-1] == (-30.0, 0.0, 20.0)
+    assert len(places) > 1
+    line = LineString([(0.0, 0.0), *(place[:2] for place in places)])
+    assert line.distance(Polygon(wall().shell)) >= 1.5
+
+
+def test_the_way_leads_over_what_the_robot_flies_over_anyway_and_ends_above_the_place():
+    line = wall(high=22.0, north=(-500.0, 500.0))
+    found = ways((0.0, 0.0, 20.0), (0.0, 60.0, 40.0), areas=[line], points=REFUGES[1:])
+    assert [place[2] for place in found["p0"]] == [pytest.approx(23.5, abs=0.1)] * 2
+    assert found["p0"][-1][:2] == (-30.0, 0.0)
+    low = ways((0.0, 0.0, 20.0), areas=[line], points=REFUGES[1:])["p0"]
+    assert {place[2] for place in low} == {20.0}
+    assert max(abs(place[1]) for place in low) > 500.0
+
+
+def test_nobody_comes_down_where_something_stands_below():
+    shed = replace(wall(high=3.0), shell=((-31.0, -1.0), (-29.0, -1.0), (-29.0, 1.0), (-31.0, 1.0)))
+    assert ways((0.0, 0.0, 20.0), areas=[shed]) == {"p0": ((50.0, 0.0, 20.0),)}
+
+
+@pytest.mark.parametrize(("north", "safe"), [(7.4, False), (7.6, True)])
+def test_a_way_keeps_clearance_and_safety_distance(north, safe):
+    long = wall(distance=1.0)
+    found = ways((0.0, north, 20.0), areas=[long], points=[(-30.0, north)])
+    assert (found["p0"] == ((-30.0, north, 20.0),)) is safe
+
+
+def carbon_dioxide() -> TargetInput:
+    """Return the example mission, planned."""
+    contributions = load_plugins().contributions
+    models, _ = pipeline.valid_models(shipped("examples") / "carbon-dioxide", contributions)
+    scene = pipeline.expand(pipeline.ground(models), contributions)
+    behaviour, _ = pipeline.transform(scene, pipeline.plan(scene), contributions)
+    place = pipeline.place_of_scene(scene)
+    planned = pipeline.program_of(behaviour, contributions)
+    return TargetInput(planned, place.types, {}, {}, place.areas or ())
+
+
+def test_ways_out_of_the_carbon_dioxide_mission_are_short_and_clear():
+    given = carbon_dioxide()
+    areas = [area for area in given.areas if area.use is not AreaUse.EMERGENCY]
+    for robot in given.program.robots:
+        points = refuges_of(robot, given.program, given.types, given.areas).points
+        found = escapes_of(robot, given, points)
+        assert len(found) > 0.9 * sum(move.target is not None for move in robot.moves)
+        own = clearance_of(given.types[robot.type_name], given.program.position_error)
+        for way in found:
+            legs = list(pairwise([way.begin, *way.places]))
+            assert sum(dist(a, b) for a, b in legs) < 450.0
+            for area in areas:
+                kept = area.safety_distance + own
+                beside = [(a, b) for a, b in legs if min(a[2], b[2]) < area.high + kept]
+                beside = [(a, b) for a, b in beside if max(a[2], b[2]) > area.low - kept]
+                shape = Polygon(area.shell)
+                assert all(LineString([a[:2], b[:2]]).distance(shape) >= kept for a, b in beside), area.name
 
 
 def alone(*moves, response: str = "EMERGENCY_AREA") -> dict:
