@@ -272,7 +272,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         say=say,
         questions=shared.crews.questions[robot.id],
         meet=_meeting(robot, shared),
-        recognise=_recognition(robot, options, link, vehicle, obedience),
+        recognise=_recognition(robot, options, link, vehicle, obedience, watch),
         abandon=shared.abandon,
         dry=options.dry,
     )
@@ -301,7 +301,12 @@ def _meeting(robot: Robot, shared: Shared) -> Meet | None:
 
 
 def _recognition(
-    robot: Robot, options: Options, link: Link | None, vehicle: Vehicle, obedience: Obedience
+    robot: Robot,
+    options: Options,
+    link: Link | None,
+    vehicle: Vehicle,
+    obedience: Obedience,
+    watch: Watch,
 ) -> Callable[[bool], None]:
     """Return what makes sure that the vehicle is the robot's, before anybody may tell it anything."""
     system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
@@ -313,8 +318,10 @@ def _recognition(
     def look(under_way: bool) -> None:
         obedience.begin(None, rests)
         if link is not None and isinstance(vehicle, MavlinkVehicle):
+            watch.strange = True
             near = inf if under_way and vehicle.state().armed else options.tolerances.home
             recognise(link, vehicle, robot, near, under_way=under_way, system=system)
+            watch.strange = False
         obedience.begin(vehicle)
 
     return look

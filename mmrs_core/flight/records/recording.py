@@ -113,12 +113,21 @@ class Recording:
             self._box.write("message", direction="in", type=kind, fields=_fields(message))
 
     def _on_command(self, message: Message) -> None:
+        params = [getattr(message, f"param{n}") for n in range(1, 8)]
+        self._asks(int(message.command), params, again=bool(message.confirmation))
+
+    def _on_command_at(self, message: Message) -> None:
         number = int(message.command)
+        params = [*(getattr(message, f"param{n}") for n in range(1, 5)), message.x, message.y, message.z]
+        _, _, before = self._commands.get(number, (0.0, 0, []))
+        self._asks(number, params, again=params == before)
+
+    def _asks(self, number: int, params: list[float], *, again: bool) -> None:
         begun, tries, _ = self._commands.get(number, (self._clock.now(), 0, []))
-        if not message.confirmation and tries:
+        if tries and not again:
             self._answered(number, NO_ANSWER)
             begun, tries = self._clock.now(), 0
-        self._commands[number] = (begun, tries + 1, [getattr(message, f"param{n}") for n in range(1, 8)])
+        self._commands[number] = (begun, tries + 1, params)
 
     def _on_command_ack(self, message: Message) -> None:
         if message.result != mavlink.MAV_RESULT_IN_PROGRESS and message.command in self._commands:
@@ -189,6 +198,7 @@ class Recording:
 
 _SENT: Mapping[str, Callable[[Recording, Any], None]] = {
     "COMMAND_LONG": Recording._on_command,
+    "COMMAND_INT": Recording._on_command_at,
     "MISSION_COUNT": Recording._on_count,
     "MISSION_CLEAR_ALL": Recording._on_clear,
     "PARAM_SET": Recording._on_set,

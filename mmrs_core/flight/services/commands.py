@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import struct
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import Refused
 from ..links.link import Link, Message
 from ..links.radio import GROUND_COMPONENT, GROUND_SYSTEM
+from ..program import Geographic
 
 PROGRESS_SECONDS = 60.0
 """For how long a vehicle that has begun may say nothing more."""
@@ -60,9 +61,30 @@ def command(
         Unanswered: no answer to any of the tries, or no end of what was begun.
         Refused: the vehicle does not do it.
     """
-    answer = _exchange(link, number, params, tries or link.retries.tries, component or link.component)
-    if answer.result != mavlink.MAV_RESULT_ACCEPTED:
-        raise Refused(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
+    to = component or link.component
+    _exchange(link, number, lambda sent: _message(link, number, params, to, sent), tries, to)
+
+
+def command_at(link: Link, number: int, place: Geographic, frame: int, *params: float) -> None:
+    """Have the vehicle carry out a command at a place, told to 1e-7 degrees.
+
+    Args:
+        link: to the vehicle.
+        number: a MAV_CMD.
+        place: its height counts as the frame says.
+        frame: a MAV_FRAME.
+        params: the first four at most.
+
+    Raises:
+        Unanswered: no answer to any of the tries.
+        Refused: the vehicle does not do it.
+    """
+    four = [*params, *[0.0] * (4 - len(params))]
+    at = (round(place.latitude * 1e7), round(place.longitude * 1e7), place.height)
+    message = mavlink.MAVLink_command_int_message(
+        link.system, link.component, frame, number, 0, 0, *four, *at
+    )
+    _exchange(link, number, lambda sent: message, None, link.component)
 
 
 def ask(link: Link, number: int, *params: float) -> None:
@@ -76,11 +98,27 @@ def name_of(number: int) -> str:
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {number}"
 
 
-def _exchange(link: Link, number: int, params: tuple[float, ...], tries: int, component: int) -> Message:
+def _exchange(
+    link: Link, number: int, message: Callable[[int], Message], tries: int | None, component: int
+) -> None:
+    """Send a command, given how often it was sent before, until the vehicle says that it does it.
+
+    Raises:
+        Unanswered: no answer to any of the tries, or no end of what was begun.
+        Refused: the vehicle does not do it.
+    """
+    answer = _answered(link, number, message, tries or link.retries.tries, component)
+    if answer.result != mavlink.MAV_RESULT_ACCEPTED:
+        raise Refused(f"{name_of(number)}: the vehicle answers '{_word(answer.result)}'")
+
+
+def _answered(
+    link: Link, number: int, message: Callable[[int], Message], tries: int, component: int
+) -> Message:
     answer: Message | None = None
     with link.inbox("COMMAND_ACK", component=component) as inbox:
         for sent in link.attempts(tries):
-            link.send(_message(link, number, params, component, min(sent, LAST_CONFIRMATION)))
+            link.send(message(min(sent, LAST_CONFIRMATION)))
             heard = link.wait(lambda: _answer(inbox, number), link.patience)
             answer = heard or answer
             if heard is not None and heard.result == _BEGUN:

@@ -128,7 +128,7 @@ class Ending:
                 if self.suspended and fault.event != BATTERY_LOW:
                     self.suspended = False
                     self._log(fault)
-        self.down = True
+        self.down = crew.obedience.has_vehicle
         crew.say("stopped" if first.event == STOPPED else "ended early")
         return LINK if LINK_LOST in self._handled else CODES.get(first.event, FAILED)
 

@@ -21,7 +21,7 @@ from .doing import Doing
 from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
 from .journal import Journal
-from .rejoining import OFF_ITS_WAY, rest_of_way, way_ahead
+from .rejoining import OFF_ITS_WAY, Rejoined, rejoined, way_ahead
 from .resuming import still_on, track_of
 from .waits import Waits
 from .watch import Watch
@@ -94,9 +94,7 @@ class Pilot:
             if not (records and self._vehicle.state().armed):
                 return
             track = track_of(self._robot, records)
-            here, below = self._vehicle.state().place, at_height(self._robot.home, 0.0)
-            if track or distance(at_height(here, 0.0), below) > OFF_ITS_WAY:
-                self._rest_of_way([place for _, place in track])
+            self.track = track[: self._rejoined(track).behind]
         except Refused as error:
             raise Strange(str(error)) from error
         self._vehicle.carry_on()
@@ -143,50 +141,56 @@ class Pilot:
     def _take_up_again(self) -> None:
         """Be where the interrupted leg began, by the way that the robot came in this sortie."""
         records = self._desk.log.steps
-        self.track = track_of(self._robot, records)
+        passed = track_of(self._robot, records)
         step = self._steps[self.journal.move]
         self._desk.say(f"{self._robot.id!r}: goes on with {step.move!r}")
         self.journal.decide("resume", f"its log ends at {step.move}", "goes the way it came")
-        if self.track and not self._is_down(step):
+        if passed and not self._is_down(step, passed[-1][1]):
             self._watch.moving = True
-            for place in self._way_to_work():
-                self._go(place, self._robot.cruise, None, through=False)
+            self._go_to_work(passed)
             for action in still_on(self._robot, records):
                 self._doing.operate(action)
-
+        self.track = passed
         self._obedience.conclude()
 
     def lacks_energy(self) -> str:
         """Return why the battery is not to be flown with; empty where it is, or nobody knows."""
         return still_low(self._vehicle.state().energy, self._robot.reserve)
 
-    def _is_down(self, step: Step) -> bool:
-        """Return whether the robot stands where it was to land, or is about to."""
+    def _is_down(self, step: Step, last: Place) -> bool:
+        """Return whether the robot stands where it was to land, below the last place, or is about to."""
         state = self._vehicle.state()
-        here = at_height(state.place, self.track[-1][1].height)
         low = not state.armed or state.place.height - self._robot.home.height < ON_THE_GROUND
-        return isinstance(step.movement, Land) and low and distance(here, self.track[-1][1]) < OFF_ITS_WAY
+        near = distance(at_height(state.place, last.height), last) < OFF_ITS_WAY
+        return isinstance(step.movement, Land) and low and near
 
-    def _way_to_work(self) -> Sequence[Place]:
-        places = [place for _, place in self.track]
-        state = self._vehicle.state()
-        if not state.armed:
+    def _go_to_work(self, passed: Sequence[tuple[str, Place]]) -> None:
+        """Fly to the last of the places that were passed; `track` has what is behind the robot meanwhile."""
+        if not self._vehicle.state().armed:
             if why := self.lacks_energy():
                 self.waits.raise_unless_carried_on(Fault(BATTERY_LOW, why))
+            self.track = []
             if self._robot.vehicle == "copter":
-                self._obedience.repeat(partial(self._vehicle.take_off, places[0].height))
-            return places
-        self._vehicle.carry_on()
-        return self._rest_of_way(places)
+                self._obedience.repeat(partial(self._vehicle.take_off, passed[0][1].height))
+        else:
+            self._vehicle.carry_on()
+            found = self._rejoined(passed)
+            self.track = list(passed[: found.behind])
+            for place in found.back:
+                self._go(place, self._robot.cruise, None, through=False)
+        for move, place in passed[len(self.track) :]:
+            self._go(place, self._robot.cruise, None, through=False)
+            self.track.append((move, place))
 
-    def _rest_of_way(self, passed: Sequence[Place]) -> Sequence[Place]:
-        """Return the places to go to, in the air, to be where the interrupted leg began."""
-        state, came = self._vehicle.state(), [self._robot.home, *passed]
+    def _rejoined(self, passed: Sequence[tuple[str, Place]]) -> Rejoined:
+        """Return where the robot is, in the air, on the way to where the interrupted leg began."""
+        state, home, places = self._vehicle.state(), self._robot.home, [place for _, place in passed]
 
         def locate(movement: GoTo) -> Place:
             return place_of(movement.at, self._desk.locators, state)
 
-        return rest_of_way(came, way_ahead(self._robot, self.journal.move, came[-1], locate), state.place)
+        begun = places[-1] if places else home
+        return rejoined(home, places, way_ahead(self._robot, self.journal.move, begun, locate), state.place)
 
     def _perform(self, step: Step) -> Step | None:
         self._tell(step)

@@ -7,6 +7,7 @@ nobody told it anything any more, or on what is left of a run, which it flies to
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 from ..faults import Refused
@@ -42,21 +43,36 @@ def way_ahead(robot: Robot, move: str, here: Place, locate: Callable[[GoTo], Pla
     return tuple(ahead)
 
 
-def rest_of_way(came: Sequence[Place], ahead: Sequence[Place], here: Place) -> Sequence[Place]:
-    """Return the places to go to, one after the other, to be at the last of those that were passed.
+@dataclass(frozen=True, slots=True)
+class Rejoined:
+    """Where a vehicle is on its way, to which places that it has passed it must go once more.
+
+    Attributes:
+        behind: how many of those it still has behind it.
+        back: places ahead of the last of them, by which it comes back to that; where there are any, or it is
+            there, all are behind it.
+    """
+
+    behind: int
+    back: tuple[Place, ...] = ()
+
+
+def rejoined(home: Place, passed: Sequence[Place], ahead: Sequence[Place], here: Place) -> Rejoined:
+    """Return where a vehicle is on its way.
 
     Args:
-        came: places passed in this sortie, from home on; at least one.
+        home: of the robot, where its way begins.
+        passed: places passed in this sortie.
         ahead: ends of the legs after the last of them.
         here: where the vehicle is.
 
     Raises:
         Refused: it is not on its way.
     """
-    way = [*came, *ahead]
-    away = [distance_to_leg(here, a, b) for a, b in pairwise(way)] or [distance(here, way[0])]
+    way = [home, *passed, *ahead]
+    away = [distance_to_leg(here, a, b) for a, b in pairwise(way)] or [distance(here, home)]
     nearest = max(range(len(away)), key=lambda leg: (-round(away[leg] / ALIKE), leg))
     if away[nearest] > OFF_ITS_WAY:
         raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")
-    last = len(came) - 1
-    return way[nearest + 1 : last + 1] if nearest < last else way[last : nearest + 1][::-1]
+    last = len(passed)
+    return Rejoined(nearest) if nearest < last else Rejoined(last, tuple(way[last : nearest + 1][::-1]))

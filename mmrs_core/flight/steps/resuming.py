@@ -11,6 +11,7 @@ from ..program import (
     Action,
     Choose,
     GoTo,
+    Land,
     Local,
     Notify,
     Object,
@@ -104,7 +105,7 @@ def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]
             continue
         if isinstance(movement, TakeOff):
             track = [(move, at_height(robot.home, movement.height))]
-        elif isinstance(movement, Recharge):
+        elif isinstance(movement, Land | Recharge):
             track = []
         elif isinstance(movement, GoTo):
             here = track[-1][1] if track else robot.home

@@ -69,6 +69,7 @@ class Watch:
         say: tells people what the robot hears.
         moving: whether the robot is under way; one that stands on the ground may start anew.
         silence: whether the vehicle may be silent, as while its battery is changed.
+        strange: whether nobody knows yet that the vehicle is the robot's: then only its link is watched.
     """
 
     def __init__(self, robot: Robot, clock: Clock, stop: threading.Event) -> None:
@@ -79,7 +80,7 @@ class Watch:
         self.decide: Decide = lambda event, why, response: None
         self.say: Callable[[str], None] = lambda line: None
         self.moving = True
-        self.silence = False
+        self.silence = self.strange = False
         self._robot = robot
         self._clock = clock
         self._stop = stop
@@ -199,13 +200,13 @@ class Watch:
             return
         stops = self._stop.is_set() and self._heeded is None
         link, vehicle, signs, departures = self._link, self._vehicle, self._signs, self._departures
-        if link is None or vehicle is None or signs is None or departures is None:
+        if link is not None and not stops:
+            self._check_link(link)
+        if self.strange or link is None or vehicle is None or signs is None or departures is None:
             if stops:
                 raise Stopped()
             self._weigh(LOG_FAILED, self.unkept())
             return
-        if not stops:
-            self._check_link(link)
         if self._hands_off:
             return
         # Whoever has the vehicle goes before all policies and stops, also where both are seen at once.

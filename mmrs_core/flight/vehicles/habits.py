@@ -57,8 +57,8 @@ class Habits(Protocol):
         """Return whether the vehicle heeds a commanded speed when it is steered."""
         ...
 
-    def above(self, height: float) -> float:
-        """Return a height above home as commands without a frame have it, metres."""
+    def level(self, height: float) -> tuple[int, float]:
+        """Return the frame in which it takes commands at places, and a height above home in it, metres."""
         ...
 
     def mission(self, items: Sequence[Item]) -> Sequence[Item]:
@@ -110,9 +110,9 @@ class ArduPilot:
         """Return that it heeds DO_CHANGE_SPEED."""
         return True
 
-    def above(self, height: float) -> float:
-        """Return the height itself."""
-        return height
+    def level(self, height: float) -> tuple[int, float]:
+        """Return the frame of heights above home, and the height itself."""
+        return mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, height
 
     def mission(self, items: Sequence[Item]) -> Sequence[Item]:
         """Return the items as they are."""

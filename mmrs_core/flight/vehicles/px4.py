@@ -134,7 +134,7 @@ class Px4:
         Raises:
             Refused: the vehicle has not told how high its home is.
         """
-        return (-1.0, 0.0, 0.0, nan, nan, nan, self.above(height))
+        return (-1.0, 0.0, 0.0, nan, nan, nan, self._above(height))
 
     def climbing(self) -> tuple[int, ...]:
         """Return take-off, and loitering when it is high enough."""
@@ -144,12 +144,15 @@ class Px4:
         """Return that it heeds no commanded speed: set-points move as fast as it shall."""
         return False
 
-    def above(self, height: float) -> float:
-        """Return a height above sea level.
+    def level(self, height: float) -> tuple[int, float]:
+        """Return the frame of heights above sea level, and the height there.
 
         Raises:
             Refused: the vehicle has not told how high its home is.
         """
+        return mavlink.MAV_FRAME_GLOBAL, self._above(height)
+
+    def _above(self, height: float) -> float:
         level = self._telemetry.sea_level()
         if level is None:
             raise Refused("the vehicle has not told how high above the sea its home is")

@@ -10,7 +10,7 @@ from ..faults import NO_PROGRESS, Fault
 from ..links.link import Link
 from ..places import bearing, distance, offset
 from ..program import Geographic, Local, Look, Object, Place
-from ..services.commands import command
+from ..services.commands import command, command_at
 from .helm import Helm
 from .telemetry import Telemetry
 
@@ -93,8 +93,9 @@ class Steering:
         if isinstance(look.at, Local):
             self._aim_gimbal(look, look.at)
         elif isinstance(look.at, Geographic):
-            at = (look.at.latitude, look.at.longitude, self._helm.habits.above(look.at.height))
-            command(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, look.device, 0, 0, 0, *at)
+            frame, height = self._helm.habits.level(look.at.height)
+            at = Geographic(look.at.latitude, look.at.longitude, height)
+            command_at(self._link, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, at, frame, look.device)
 
     def _aim_gimbal(self, look: Look, at: Local) -> None:
         """Turn a gimbal to a place near home: regions of interest are places on the Earth."""

@@ -100,3 +100,17 @@ def test_an_answer_that_comes_while_a_command_is_sent_again_ends_that_command(tm
     lines = (json.loads(line) for line in path.read_text("ascii").splitlines())
     told = [(line["result"], line["tries"]) for line in lines if line["kind"] == "command"]
     assert told == [("ACCEPTED", 2), ("ACCEPTED", 1)]
+
+
+def test_a_command_at_a_place_is_told_with_its_place_and_its_tries(tmp_path):
+    path = black_box_path(tmp_path / "alpha.jsonl")
+    box = BlackBox(path, "run-0", "alpha", lambda: 1.5)
+    record = Recording(box, Interrupting(), lambda: BEFORE)
+    places = (423_705_000, 423_705_000, 423_706_000)
+    for x in places:
+        record(mavlink.MAVLink_command_int_message(1, 1, 3, 195, 0, 0, 2, 0, 0, 0, x, 133_500_000, 5.0), True)
+    record(mavlink.MAVLink_command_ack_message(195, mavlink.MAV_RESULT_ACCEPTED), False)
+    box.close()
+    lines = (json.loads(line) for line in path.read_text("ascii").splitlines())
+    told = [(line["result"], line["tries"], line["params"][4]) for line in lines if line["kind"] == "command"]
+    assert told == [("no answer", 2, places[0]), ("ACCEPTED", 1, places[2])]

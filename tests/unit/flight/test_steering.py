@@ -10,6 +10,7 @@ from mmrs_core.flight import Geographic, Local, Look
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 
 ROI, ROI_NONE, GIMBAL, SPEED = 195, 197, 1000, 178
+RELATIVE = 3
 HOME = Geographic(42.37, 13.35, 0.0)
 
 
@@ -29,7 +30,7 @@ class Obedient:
         self.wire = wire
 
     def __call__(self, message):
-        if message.get_type() == "COMMAND_LONG":
+        if message.get_type() in ("COMMAND_LONG", "COMMAND_INT"):
             yield acknowledged(message.command)
             self.wire.beat(mode=4, armed=True)
         elif message.get_type() == "SET_POSITION_TARGET_GLOBAL_INT":
@@ -68,9 +69,10 @@ def test_a_gimbal_looks_at_a_place_on_the_earth_until_the_leg_ends(driven):
     vehicle, wire = driven(HOME, on_the_earth())
     look = Look(Geographic(42.3705, 13.35, 5.0), gimbal=True, device=2)
     vehicle.go_to(Geographic(42.371, 13.35, 20.0), 5.0, look, False)
-    roi, none = commands(wire, ROI, ROI_NONE)
-    assert (roi.command, roi.param1, roi.param7) == (ROI, 2.0, 5.0)
-    assert roi.param5 == pytest.approx(42.3705)
+    (roi,) = wire.of("COMMAND_INT")
+    assert (roi.command, roi.param1, roi.frame, roi.z) == (ROI, 2.0, RELATIVE, 5.0)
+    assert (roi.x, roi.y) == (423_705_000, 133_500_000)
+    (none,) = commands(wire, ROI, ROI_NONE)
     assert (none.command, none.param1) == (ROI_NONE, 2.0)
 
 
