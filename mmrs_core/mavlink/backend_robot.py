@@ -20,6 +20,7 @@ from mmrs_core.flight.faults import (
     Displaced,
 )
 from mmrs_core.flight.faults import Fault as VehicleFault
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
 from mmrs_core.flight.steps.obeying import astray, obeying
@@ -65,11 +66,13 @@ class MavlinkBackend:
         self._reach = Reach(equipment.link, equipment.clock)
         self._brakes: Callable[[], bool] = lambda: False
         self._seen: VehicleFault | None = None
+        self._left: VehicleFault | None = None
         # Last: it looks at all of the above from now on.
         self._worker = Worker(
             f"robot {robot.id!r}", self._look, self._idle, self._halt, equipment.vehicle.carry_on
         )
         self._worker.changed = equipment.wake
+        self._worker.faulty = self._come_back
         self._worker.failed = self._response.failed = self._note_failure
         equipment.link.guard = self._worker.guard
 
@@ -193,7 +196,7 @@ class MavlinkBackend:
             return armed
         if found is not None:
             return found.event == LINK_LOST and self._reach.may_come_back(found) and armed
-        return self._response.holds or (self._response.hands_off and armed)
+        return self._response.holds or (armed and (self._response.hands_off or not self._worker.done))
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why there is no way back now; empty where there is one."""
@@ -272,6 +275,22 @@ class MavlinkBackend:
 
     def _note_decision(self, what: str, why: str, response: str) -> None:
         self.note("decision", {"what": what, "why": why, "response": response})
+
+    def _come_back(self, lost: VehicleFault) -> None:
+        """Have a vehicle that is heard again respond to its lost link, if it does nothing by itself."""
+        name, state = self._response.name, self._with.vehicle.state()
+        if lost.event != LINK_LOST or lost is self._left or name in ("", NOTHING):
+            return
+        if not (self._reach.is_heard and state.armed):
+            return
+        if self._watch.answers_alone():
+            self._left = lost
+            return
+        self._with.say(f"is heard again, in mode {state.mode}, and has done nothing by itself: {name}")
+        job = self._response.begin(name, lost, self._note_decision, heard=True)
+        if job is not None:
+            job.append(lambda: self._with.say(f"has done {name}"))
+            self._worker.instead(lost, job)
 
     def _note_failure(self, error: BaseException) -> None:
         """Tell people, and the black box, where the program itself has failed."""

@@ -49,6 +49,7 @@ class Worker:
     Attributes:
         fault: what went wrong, until something is begun afresh.
         changed: called when it has done something, or failed to.
+        faulty: called again and again while there is a fault.
         failed: is told what comes out of code that is wrong, or somebody else's.
     """
 
@@ -71,6 +72,7 @@ class Worker:
         """
         self.fault: Fault | None = None
         self.changed: Callable[[], None] = lambda: None
+        self.faulty: Callable[[Fault], None] = lambda fault: None
         self.failed: Callable[[BaseException], None] = lambda error: None
         self._watch, self._idle, self._halt, self._go_on = watch, idle, halt, go_on
         self._news = threading.Condition()
@@ -111,6 +113,12 @@ class Worker:
     def halted(self) -> bool:
         """Return whether the vehicle stands, and has not gone on yet."""
         return self._halted
+
+    def instead(self, fault: Fault, job: Job) -> None:
+        """Do a job about a fault that is still there, unless something else was begun since."""
+        with self._news:
+            if self.fault is fault and self._newest == self._running:
+                self.begin(job, afresh=True)
 
     def forgive(self, fault: Fault) -> None:
         """Forget a fault; what it has broken off counts as done."""
@@ -167,8 +175,10 @@ class Worker:
             self._attempt(task)
 
     def _task(self) -> Callable[[], None]:
-        if self.fault is not None or self._closing:
+        if self._closing:
             return lambda: None
+        if (fault := self.fault) is not None:
+            return lambda: self.faulty(fault)
         if self._holds:
             return self._idle if self._halted else self._come_to_a_halt
         if self._halting:

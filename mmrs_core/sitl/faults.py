@@ -16,6 +16,7 @@ class Faults:
 
     Attributes:
         link_down: whether nothing comes through, either way. ground_down: the same, to a ground station.
+        dumb: whether nothing comes through of what it sends, while it hears everything.
         answer_delay: seconds by which every answer to an upload is late.
     """
 
@@ -29,7 +30,7 @@ class Faults:
             lock: held for every change.
             watched: whether the vehicle has a radio of its own to a ground station.
         """
-        self.link_down = self.ground_down = False
+        self.link_down = self.ground_down = self.dumb = False
         self._watched = watched
         self.answer_delay = 0.0
         self._autopilot = autopilot
@@ -109,6 +110,14 @@ class Faults:
     def mend_link(self) -> None:
         """Let everything through again."""
         self.link_down = False
+
+    def fall_dumb(self) -> None:
+        """Let nothing through of what the vehicle sends; it hears everything."""
+        self.dumb = True
+
+    def speak(self) -> None:
+        """Let through again what it sends."""
+        self.dumb = False
 
     def cut_ground(self) -> None:
         """Let nothing through to and from the ground station that looks on.
@@ -199,6 +208,7 @@ FAULTS: Mapping[str, Act] = {
     "battery": lambda faults, level: faults.set_battery(_finite(level)),
     "silent": lambda faults, *commands: faults.silence(*map(int, commands)),
     "link-down": Faults.cut_link,
+    "dumb": Faults.fall_dumb,
     "ground-down": Faults.cut_ground,
     "clock-jump": lambda faults, seconds="3600": faults.jump_clock(_finite(seconds)),
     "refuse-arming": lambda faults, *words: faults.refuse_arming(" ".join(words) or "Compass not calibrated"),
@@ -214,6 +224,7 @@ ENDS: Mapping[str, Act] = {
     "breach": Faults.mend_fence,
     "silent": Faults.silence,
     "link-down": Faults.mend_link,
+    "dumb": Faults.speak,
     "ground-down": Faults.mend_ground,
     "refuse-arming": lambda faults: faults.refuse_arming(""),
     "slow-upload": lambda faults: faults.slow_uploads(0.0),

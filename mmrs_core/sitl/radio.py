@@ -24,7 +24,7 @@ class Radio:
     """Speaks to one address, and hears what comes back.
 
     Attributes:
-        down: returns whether nothing comes through at the moment.
+        down: returns whether nothing comes through at the moment. dumb: the same, of what it sends.
         sent, heard: how many messages.
     """
 
@@ -54,6 +54,7 @@ class Radio:
             ValueError: the host has no address.
         """
         self.down: Callable[[], bool] = lambda: False
+        self.dumb: Callable[[], bool] = lambda: False
         self.sent = self.heard = 0
         self._address = _found(address)
         self._loss, self._delay = loss, delay
@@ -133,6 +134,8 @@ class Radio:
         return bytes(message.pack(self._mav))
 
     def _transmit(self, data: bytes) -> None:
+        if self.dumb():
+            return
         try:
             self._socket.sendto(data, self._address)
             self.sent += 1

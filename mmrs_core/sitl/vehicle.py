@@ -86,6 +86,7 @@ class SimulatedVehicle:
         self.received: list[tuple[float, str]] = []
         self.lock = threading.RLock()
         self.faults = Faults(self.autopilot, self.lock, watched=ground is not None)
+        self.radio.dumb = lambda: self.faults.dumb
         self.radio.down = lambda: self.faults.link_down or self.autopilot.booting
         self._router = Router(given.system, self.radio, *self._second(ground, given))
         self._missions = self._protocol(given)

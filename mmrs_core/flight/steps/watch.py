@@ -154,6 +154,18 @@ class Watch:
         self._hands_off, self._alone = False, True
         return answers
 
+    def answers_alone(self) -> bool:
+        """Return whether a vehicle that is heard again answers its lost link by itself.
+
+        Raises:
+            Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
+        """
+        self.lose()
+        try:
+            return self.accept()
+        finally:
+            self.find()
+
     def find(self) -> None:
         """Heed the link, and who has the vehicle, again."""
         self.silence = self._hands_off = self._alone = False
@@ -386,11 +398,7 @@ class Watch:
             Fault: one has.
         """
         if event == LINK_LOST:
-            self.lose()
-            try:
-                self.accept()
-            finally:
-                self.find()
+            self.answers_alone()
         elif self._departures is not None:
             self._departures.check(event, moving=self.moving)
 

@@ -104,3 +104,21 @@ def test_a_vehicle_that_obeys_confirms_a_return_within_a_second(fly, execution):
     (reply,) = give(fleet.logs, "return", seconds=4.0)
     assert reply["confirmed"], reply
     assert reply["seconds"] < 1.0
+
+
+@every_execution
+def test_a_vehicle_that_does_nothing_about_its_link_is_told_the_response_once_it_is_heard_again(
+    fly, execution
+):
+    fleet, vehicle = fly(execution, ("LINK_LOST", "LAND", 5.0))
+    assert wait_for(lambda: any(step["move"] == "stay" for step in fleet.steps("a")), PATIENCE)
+    with vehicle.lock:
+        vehicle.autopilot.parameters["FS_GCS_ENABLE"] = 0.0
+    vehicle.faults.fall_dumb()
+    assert wait_for(lambda: any("LINK_LOST" in line for line in fleet.process.said), PATIENCE)
+    time.sleep(10.0 / SPEEDUP)
+    assert vehicle.autopilot.mode_name == "guided"
+    vehicle.faults.speak()
+    assert fleet.process.end(PATIENCE) == 5, fleet.process.said
+    assert not vehicle.autopilot.armed, fleet.process.said
+    assert vehicle.autopilot.mode_name == "land"

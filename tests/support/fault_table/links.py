@@ -46,4 +46,24 @@ def link_rows() -> list[Row]:
         )
         for during, response in ((LEG, "RETURN"), (AUTO, "LAND"), (AT, "EMERGENCY_AREA"))
     ]
+    rows += [
+        Row(
+            "link lost one way, the vehicle hears",
+            during,
+            policy("LINK_LOST", response, 6.0),
+            strikes.fall_dumb,
+            "LINK_LOST",
+            ends,
+            within=20.0,
+            least=2.0 * SILENCE,
+            mends=mends,
+            fast=during == AUTO,
+        )
+        for during, response, ends, mends in (
+            (LEG, "RETURN", "home", None),
+            (AUTO, "LAND", "here", None),
+            (AT, "HOLD", "holds", None),
+            (AT, "RETURN", "home", (45.0, strikes.speak)),
+        )
+    ]
     return rows

@@ -17,6 +17,14 @@ def mend_link(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.mend_link()
 
 
+def fall_dumb(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.fall_dumb()
+
+
+def speak(vehicle: SimulatedVehicle) -> None:
+    vehicle.faults.speak()
+
+
 def stick(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.take_stick("loiter")
 
