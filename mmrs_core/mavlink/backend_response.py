@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mmrs_core.flight.faults import FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
-from mmrs_core.flight.policies import NOTHING
+from mmrs_core.flight.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
+from mmrs_core.flight.policies import COMES_DOWN, NOTHING
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.steps.obeying import obeying, undone
-from mmrs_core.flight.steps.responding import respond
-from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION
+from mmrs_core.flight.steps.responding import HINDRANCES, respond_or_less
+from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION, alone, policy_for
 from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend_moves import Moves
@@ -45,6 +45,7 @@ class Response:
         self._handled: set[str] = set()
         self._shown: Callable[[], bool] = lambda: False
         self._instead = ""
+        self._decide: Decide = lambda event, why, response: None
         self.failed: Callable[[BaseException], None] = lambda error: None
 
     def begin(self, name: str, found: Fault | None, decide: Decide, *, heard: bool) -> Job | None:
@@ -57,6 +58,7 @@ class Response:
             heard: whether a vehicle whose link was lost is heard again.
         """
         self.name, self.holds, self._instead, self._shown = name, False, "", lambda: False
+        self._decide = decide
         self._handled.add("" if found is None else found.event)
         self._watch.relax(self._handled, name)
         event = "" if found is None else found.event
@@ -93,17 +95,43 @@ class Response:
 
     def _carry_out(self, name: str, event: str) -> None:
         self._watch.check_hands(event)
-        self.holds = self._respond(name)
+        self.holds = self._respond(name, low=event == BATTERY_LOW)
         self._watch.moving = self.holds
 
-    def _respond(self, name: str) -> bool:
-        """Do what was told, or, where the program itself fails, halt; return whether it must be watched."""
-        track = self._moves.track
+    def _respond(self, name: str, *, low: bool) -> bool:
+        """Do what was told, or what is plainer, or, where the program itself fails, halt.
+
+        Returns:
+            Whether it must be watched, as one that does nothing of what it is told, and would not come down
+            without us either.
+        """
+        robot, vehicle, track = self._robot, self._vehicle, self._moves.track
         try:
-            return respond(name, self._robot, self._vehicle, track, lambda movement: movement())
-        except (Fault, Interrupted):
+            return respond_or_less(
+                name, robot, vehicle, track, lambda movement: movement(), self._do_less, low=low
+            )
+        except Interrupted:
             raise
+        except Fault as fault:
+            if fault.event not in HINDRANCES or self._comes_down_alone():
+                raise
+            self._instead = self._instead or f"{name} cannot be carried out: {fault}"
+            self._say(f"cannot carry out {name}: {fault}; take over by hand")
+            self._watch.relax(self._handled, HOLD)
+            return True
         except FAILURES as error:
             self.failed(error)
             self._instead = f"the program itself fails: {error!r}: it does {HOLD}"
             return self._vehicle.hold()
+
+    def _do_less(self, name: str, why: Fault, less: str) -> None:
+        """Tell that something plainer is done than what was told."""
+        self._instead = f"{name} cannot be carried out: {why}: it does {less}"
+        self._decide(why.event, f"{name} cannot be carried out: {why}", less)
+        self._say(f"cannot carry out {name}: {why}; response: {less}")
+        self._watch.relax(self._handled, less)
+
+    def _comes_down_alone(self) -> bool:
+        """Return whether the vehicle comes down when it hears nobody any more, or is down."""
+        policy = alone(policy_for(LINK_LOST, self._robot, self._watch.current()), self._robot)
+        return policy.response in COMES_DOWN or not self._vehicle.state().armed

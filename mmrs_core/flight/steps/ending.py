@@ -22,11 +22,12 @@ from ..links.link import Link
 from ..orders.obedience import Obedience, Ordered
 from ..policies import COMES_DOWN, NOTHING, OVERTAKES
 from ..program import Robot
+from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
 from .obeying import obeying, undone
 from .pilot import Pilot
-from .responding import respond
-from .responses import HOLD, response_to
+from .responding import HINDRANCES, respond_or_less
+from .responses import HOLD, alone, policy_for, response_to
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -167,13 +168,46 @@ class Ending:
         if isinstance(fault, Ordered):
             seen = obeying(response, crew.robot, crew.vehicle, crew.pilot.track)
             crew.obedience.expect(fault.receipt, seen)
-        holds = respond(response, crew.robot, crew.vehicle, crew.pilot.track, crew.obedience.repeat)
+        holds = self._respond(fault, response)
         crew.obedience.conclude(undone(response, crew.robot, crew.vehicle, crew.near_home))
         crew.watch.moving = holds
-        if holds and fault.event == STOPPED:
+        if holds and (fault.event == STOPPED or crew.desk.stop.is_set()):
             self._leave_it_holding()
         elif holds:
             self._watch_over()
+
+    def _respond(self, fault: Fault, response: str) -> bool:
+        """Carry out a response, or what is plainer; return whether the vehicle must be watched.
+
+        One that does nothing of what it is told, and would not come down without us either, is stayed with.
+        """
+        crew = self._crew
+        repeat, low = crew.obedience.repeat, fault.event == BATTERY_LOW
+        try:
+            return respond_or_less(
+                response, crew.robot, crew.vehicle, crew.pilot.track, repeat, self._do_less, low=low
+            )
+        except Fault as hindrance:
+            if hindrance.event not in HINDRANCES or fault.event == STOPPED or self._comes_down_alone():
+                raise
+            crew.obedience.overtake(hindrance)
+            self._tell_undone(hindrance, response)
+            crew.watch.relax(self._handled, HOLD)
+            return True
+
+    def _do_less(self, response: str, why: Fault, less: str) -> None:
+        """Tell that something plainer is done than a response."""
+        crew = self._crew
+        crew.obedience.overtake(why)
+        crew.pilot.journal.decide(why.event, f"{response} cannot be carried out: {why}", less)
+        crew.say(f"cannot carry out {response}: {why}; response: {less}")
+        crew.watch.relax(self._handled, less)
+
+    def _comes_down_alone(self) -> bool:
+        """Return whether the vehicle comes down when it hears nobody any more, or is down."""
+        crew = self._crew
+        policy = alone(policy_for(LINK_LOST, crew.robot, crew.pilot.waits.policies), crew.robot)
+        return policy.response in COMES_DOWN or not crew.vehicle.state().armed
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew
@@ -273,6 +307,8 @@ class Ending:
             self._stand_back()
             return FAILED
         crew.say(f"cannot carry out {response}: {fault}; take over by hand")
+        if crew.vehicle.state().armed:
+            crew.say("heartbeats end now: the vehicle does what it does about a lost link")
         return CODES.get(fault.event, FAILED)
 
     def _acts_by_itself(self) -> bool:
@@ -289,7 +325,8 @@ class Ending:
         Raises:
             Fault: the link is lost, somebody has taken over, or has ordered something else.
         """
-        self._crew.say("holds; interrupt to end")
+        holds = self._crew.vehicle.state().mode == modes.HOLD
+        self._crew.say(f"{'holds' if holds else 'is left as it is, and watched'}; interrupt to end")
         while not self._crew.desk.stop.is_set():
             self._crew.vehicle.rest(WATCH_SECONDS)
 

@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
+from ..faults import NO_PROGRESS, REFUSED, Fault
 from ..policies import NOTHING
 from ..program import Place, Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .responses import ESCAPE, LAND, RETURN
+from .responses import ESCAPE, HOLD, LAND, RETURN
 from .ways import Track, steps_back
 
 SURFACE = "SURFACE"
@@ -24,6 +25,12 @@ RESTS: Mapping[str, Mapping[str, str]] = {
     "rover": {LAND: modes.HOLD, SURFACE: modes.HOLD},
 }
 """The mode in which each kind of vehicle comes down, or up: a rover stops, and a copter cannot surface."""
+
+DOWN: Mapping[str, str] = {"copter": LAND, "sub": SURFACE, "rover": ""}
+"""What is left to be tried, by kind of vehicle, where it cannot even hold; a rover can do nothing less."""
+
+HINDRANCES = frozenset({NO_PROGRESS, REFUSED})
+"""Faults that say that a vehicle does not do what it was told, while all else is well."""
 
 Movement = Callable[[], None]
 Repeat = Callable[[Movement], None]
@@ -95,6 +102,53 @@ def respond(
         return vehicle.hold()
     _come_to_rest(course.rest, vehicle, repeat)
     return False
+
+
+def respond_or_less(
+    response: str,
+    robot: Robot,
+    vehicle: Vehicle,
+    track: list[tuple[str, Place]],
+    repeat: Repeat,
+    tell: Callable[[str, Fault, str], None],
+    *,
+    low: bool,
+) -> bool:
+    """Carry out a response, or what is plainer, where the vehicle does not do what it is told.
+
+    Args:
+        response, robot, vehicle, track, repeat: as for `respond`.
+        tell: is told the response that cannot be carried out, why, and what is done instead.
+        low: whether the battery is, so that nothing may be waited for in the air.
+
+    Returns:
+        Whether the vehicle now holds and somebody must watch it.
+
+    Raises:
+        Fault: nothing plainer can be carried out either, or something else has gone wrong.
+    """
+    while True:
+        try:
+            return respond(response, robot, vehicle, track, repeat)
+        except Fault as fault:
+            less = plainer(response, robot.vehicle, low=low) if fault.event in HINDRANCES else ""
+            if not less or not vehicle.state().armed:
+                raise
+            tell(response, fault, less)
+            response = less
+
+
+def plainer(response: str, kind: str, *, low: bool) -> str:
+    """Return what is done where a response cannot be carried out; empty: there is nothing plainer.
+
+    Args:
+        response: as in policies.
+        kind: of the vehicle.
+        low: whether its battery is.
+    """
+    if response in (LAND, SURFACE):
+        return ""
+    return HOLD if response != HOLD and not (low and DOWN[kind]) else DOWN[kind]
 
 
 def _come_to_rest(rest: str, vehicle: Vehicle, repeat: Repeat) -> None:

@@ -13,6 +13,7 @@ from ..faults import (
     LOG_FAILED,
     MOTORS_OFF,
     POSITION_LOST,
+    STOPPED,
     TAKEN_OVER,
     VEHICLE_RESTARTED,
     Displaced,
@@ -117,9 +118,9 @@ class Watch:
         Args:
             handled: the events that it has responded to; None: heed none any more.
             response: what it does; what this cannot be carried out with, or would end by, is heeded,
-                and always the link and who has the vehicle.
+                and always the link, who has the vehicle, and whether all are to stop.
         """
-        heeded = {POSITION_LOST, VEHICLE_RESTARTED} if handled is not None else set()
+        heeded = {POSITION_LOST, VEHICLE_RESTARTED, STOPPED} if handled is not None else set()
         if handled is not None and response not in COMES_DOWN:
             heeded |= {BATTERY_LOW, GROUND_LOST}
         self._heeded = frozenset(heeded - set(handled or ()))
@@ -210,7 +211,7 @@ class Watch:
         """
         if self.looking:
             return
-        stops = self._stop.is_set() and self._heeded is None
+        stops = self._stop.is_set() and self._heeds(STOPPED)
         link, vehicle, signs, departures = self._link, self._vehicle, self._signs, self._departures
         if link is not None and not stops:
             self._check_link(link)

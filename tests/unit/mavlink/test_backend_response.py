@@ -9,7 +9,7 @@ from flight_crew import manned, robot_of
 from patience import until
 
 from mmrs_core.flight.faults import Fault
-from mmrs_core.flight.program import Geographic, Place
+from mmrs_core.flight.program import Geographic, Place, Policy
 from mmrs_core.mavlink.backend_moves import Moves
 from mmrs_core.mavlink.backend_response import Response
 
@@ -62,3 +62,38 @@ def test_a_vehicle_that_a_pilot_has_just_taken_is_left_to_him_whatever_is_ordere
     with pytest.raises(Fault, match="somebody else has taken over"):
         response.begin("LAND", None, lambda what, why, does: None, heard=True).run()
     assert made.mode == mode
+
+
+@pytest.mark.parametrize(
+    ("answer", "stays"), [("CONTINUE", True), pytest.param("LAND", False, marks=pytest.mark.thorough)]
+)
+def test_a_vehicle_that_obeys_nothing_is_watched_where_it_would_not_come_down_by_itself(
+    tmp_path, answer, stays
+):
+    with manned(tmp_path, robot_of(Policy("LINK_LOST", answer))) as made:
+        made.fly_out()
+        made.crew.vehicle.hold()
+        made.simulated.faults.silence(176)
+        response, _ = response_of(made)
+        job = response.begin("RETURN", None, lambda what, why, does: None, heard=True)
+        if not stays:
+            with pytest.raises(Fault, match="DO_SET_MODE"):
+                job.run()
+            return
+        job.run()
+        assert response.holds
+        assert response.undone.startswith("HOLD cannot be carried out")
+
+
+def test_a_return_that_cannot_be_steered_is_a_landing_and_told_as_that(tmp_path):
+    with manned(tmp_path, robot_of(Policy("POSITION_LOST", "CONTINUE"))) as made:
+        made.fly_out()
+        made.crew.vehicle.hold()
+        made.simulated.autopilot.parameters["FS_EKF_ACTION"] = 0.0
+        made.simulated.faults.lose_position()
+        response, _ = response_of(made)
+        decided = []
+        response.begin("RETURN", None, lambda *words: decided.append(words[2]), heard=True).run()
+        assert decided == ["HOLD", "LAND"]
+        assert not made.simulated.autopilot.armed
+        assert response.undone.endswith(": it does LAND")
