@@ -24,6 +24,15 @@ class Preparing(Protocol):
 
 
 @runtime_checkable
+class Recognising(Protocol):
+    """A backend that finds out, while its robot gets ready, whether that is the one of the program."""
+
+    def known(self, now: float) -> bool:
+        """Return whether it is known to be, so that it may be told what to do about whatever goes wrong."""
+        ...
+
+
+@runtime_checkable
 class Recovering(Protocol):
     """A backend whose robot can go on where its program was broken off."""
 

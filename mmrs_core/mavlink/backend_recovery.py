@@ -10,7 +10,7 @@ from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import distance_to_leg, ends_of, offset
 from mmrs_core.flight.policies import still_low
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
-from mmrs_core.flight.steps.rejoining import OFF_ITS_WAY, way_ahead
+from mmrs_core.flight.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
@@ -62,6 +62,14 @@ class WayBack:
         self._parts(sortie_of(self._robot, passed), begun)
         self._moves.track = track
 
+    def know(self, passed: Sequence[str], begun: str) -> None:
+        """Know the places that a vehicle has come past in this sortie, by which it can go back, if it flies.
+
+        Raises:
+            Refused: it is not on its way.
+        """
+        self._parts(sortie_of(self._robot, passed), begun)
+
     def _parts(self, sortie: Sequence[str], begun: str) -> list[Callable[[], None]]:
         here = self._vehicle.state().place
         low = here.height <= IN_THE_AIR
@@ -78,20 +86,35 @@ class WayBack:
             return [lambda: self._moves.climb(sortie[0], height), *self._legs(came[1:])]
         last = came[-1][1]
         ahead = way_ahead(self._robot, begun, last, self._moves.target_of) if begun else ()
-        return self._along(here, came, ahead)
+        leg = self._leg(here, [self._robot.home, *(place for _, place in came), *ahead])
+        if leg < len(came):
+            self._moves.track = came[:leg]
+            return self._legs(came[leg:])
+        run = next((run.moves for run in self._robot.runs if begun in run.moves), (begun,))
+        flown = list(self._places(last, run[run.index(begun) :]))[: leg - len(came)] if begun else []
+        self._moves.track = [*came, *flown]
+        return self._legs_back(came, flown)
 
-    def _along(self, here: Place, came: list[Point], ahead: Sequence[Place]) -> list[Callable[[], None]]:
-        """Return the legs along the way from a place on it to the end of what has been passed."""
-        legs = pairwise([self._robot.home, *(place for _, place in came), *ahead])
-        gaps = [distance_to_leg(here, *leg) for leg in legs]
-        nearest = min(range(len(gaps)), key=gaps.__getitem__)
+    def _leg(self, here: Place, way: Sequence[Place]) -> int:
+        """Return on which leg of its way a vehicle is; of two, the later one is meant."""
+        gaps = [distance_to_leg(here, *leg) for leg in pairwise(way)]
+        nearest = max(range(len(gaps)), key=lambda leg: (-round(gaps[leg] / ALIKE), leg))
         self._refuse_far(gaps[nearest], OFF_ITS_WAY)
-        if nearest < len(came):
-            self._moves.track = came[:nearest]
-            return self._legs(came[nearest:])
-        self._moves.track = came[:-1]
-        back = ahead[: nearest - len(came)]
-        return self._legs([*((came[-1][0], place) for place in reversed(back)), came[-1]])
+        return nearest
+
+    def _legs_back(self, came: list[Point], flown: list[Point]) -> list[Callable[[], None]]:
+        """Return the legs back from places that were flown past to the last of those that count as passed."""
+
+        def leg(kept: list[Point]) -> Callable[[], None]:
+            move, place = kept[-1]
+
+            def go() -> None:
+                self._vehicle.go_to(place, self._moves.speed_of(move), None, False)
+                self._moves.track = kept
+
+            return go
+
+        return [leg([*came, *flown[:count]]) for count in range(len(flown), -1, -1)]
 
     def _places(self, here: Place, moves: Sequence[str]) -> Iterator[Point]:
         for move in moves:

@@ -81,6 +81,10 @@ class MavlinkBackend:
         self._with.start()
         self._begin(Job(self._setup.meet, self._setup.set_up))
 
+    def known(self, now: float) -> bool:
+        """Return whether the vehicle is known to be the robot's."""
+        return self._setup.is_known
+
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
         """Begin a movement; those in the midst of an uploaded run have begun with its first."""
         self._lost_link.follow(())
@@ -155,7 +159,8 @@ class MavlinkBackend:
 
     def told(self) -> Mapping[str, object]:
         """Return what the vehicle has told last, as controllers say it; empty before it was heard."""
-        return told_of(self._with.vehicle.state()) if self._with.link.component else {}
+        heard = self._with.link.latest("HEARTBEAT") is not None
+        return told_of(self._with.vehicle.state()) if heard else {}
 
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Carry out a response, from any state, or what comes nearest to it that can be done then."""
@@ -301,7 +306,8 @@ class MavlinkBackend:
     def _look(self) -> None:
         """Look after the vehicle, whatever it does; what it has left by itself is begun again.
 
-        One that has started anew before its take-off is first set up again.
+        One that has started anew before its take-off is first set up again. Of a vehicle that is not known
+        to be the robot's, nothing but its silence counts.
         """
         try:
             self._watch.check()
@@ -312,10 +318,13 @@ class MavlinkBackend:
             else:
                 self._with.vehicle.regain()
             raise Interrupted from None
+        except VehicleFault as fault:
+            if self._setup.is_known or fault.event == LINK_LOST:
+                raise
 
     def _idle(self) -> None:
         """Look after a vehicle that has nothing to do, and that somebody else may take over."""
-        if self._setup.is_done and not self._response.hands_off:
+        if self._setup.is_known and not self._response.hands_off:
             self._with.vehicle.rest(0.0)
         else:
             self._look()

@@ -21,6 +21,7 @@ class Setup:
     """Gets a vehicle ready, and again where it has started anew.
 
     Attributes:
+        is_known: whether it is known to be the robot's, so that it may be told what to do.
         is_done: whether it was ready once.
     """
 
@@ -36,7 +37,7 @@ class Setup:
         note: Callable[[str, Mapping[str, object]], None],
     ) -> None:
         """Do nothing yet; `note` writes into the black box."""
-        self.is_done = self._restarted = False
+        self.is_known = self.is_done = self._restarted = False
         self._robot, self._with, self._options = robot, equipment, options
         self._uploads, self._watch, self._lost_link = uploads, watch, lost_link
         self._way, self._note = way, note
@@ -77,9 +78,12 @@ class Setup:
         self.begin_sortie()
 
     def begin_sortie(self) -> None:
-        """Be under way; a vehicle that has started anew, as with a new battery, is set up again first."""
+        """Be under way.
+
+        A vehicle that has started anew, as with a new battery, or was not set up to the end, is set up first.
+        """
         self._restarted = self._restarted or self._watch.restarted
-        if self._restarted:
+        if self._restarted or not self.is_done:
             self.set_up()
         self._restarted = False
         self._watch.renew()
@@ -97,4 +101,5 @@ class Setup:
             system=self._with.system,
         )
         if resumed and not self.is_done:
-            self._way.check(self._with.passed, self._with.begun)
+            self._way.know(self._with.passed, self._with.begun)
+        self.is_known = True

@@ -78,7 +78,7 @@ class Obedience:
         """Return whether it is not known yet what there is to be ended, or something ends right now."""
         robot = self._robots.get(id)
         return robot is not None and (
-            (robot.preparing and order.kind in ENDINGS) or robot.ordered is not None
+            robot.ordered is not None or (order.kind in ENDINGS and robot.is_unknown(self._clock.now()))
         )
 
     def _overtake(self, robot: RunningRobot, by: Order, *kinds: str) -> None:
@@ -224,10 +224,15 @@ class Obedience:
             elif robot.fault is not None:
                 order.refuse(id, f"something has happened since: {robot.fault}")
             elif order.kind == HOLD:
-                if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
-                    order.confirm(id)
+                self._see_halt(order, robot, now)
             elif self._goes_on(robot, now):
                 order.confirm(id)
+
+    def _see_halt(self, order: Order, robot: RunningRobot, now: float) -> None:
+        if robot.held:
+            robot.hold(now)
+        if isinstance(robot.backend, Pausable) and robot.backend.paused(now):
+            order.confirm(robot.id)
 
     def _confirm_rest(self, order: Order, robot: RunningRobot) -> bool:
         """Confirm to a robot that still gets ready, and is to stay where it is, that its motors are off."""

@@ -9,7 +9,15 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import Bearing, Noting, Pausable, Preparing, Recovering, Watched
+from mmrs_core.contributions.abilities import (
+    Bearing,
+    Noting,
+    Pausable,
+    Preparing,
+    Recognising,
+    Recovering,
+    Watched,
+)
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
@@ -72,7 +80,7 @@ class RunningRobot:
         down: whether it has come down, as it was told to, and not gone on since.
         rested: whether its motors were seen to be off then.
         recovering: whether it is on its way back to where its program was broken off.
-        preparing: whether it has still to get ready, and must not be told anything else before.
+        preparing: whether it has still to get ready.
         absent: whether it did not get ready, so that it is left alone.
         questions: that its choices ask the operator.
     """
@@ -91,7 +99,7 @@ class RunningRobot:
         self.ordered: tuple[Fault, str] | None = None
         self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
         self.preparing = self.absent = self.rested = self._returns = False
-        self._held_since = 0.0
+        self._halts, self._held_since = False, 0.0
         conditions = (transition.condition for transition in program.transitions.values())
         self.questions = Questions(each for each in conditions if each is not None)
         self._chosen: bool | None = None
@@ -182,10 +190,11 @@ class RunningRobot:
         return at_work and isinstance(self.backend, Recovering) and self.backend.moves(now)
 
     def hold(self, now: float) -> None:
-        """Have it stay where it is from now on; nothing is held against others meanwhile."""
+        """Have it stay where it is, once it may be told; nothing counts against others meanwhile."""
         if not self.held:
-            self.held, self._held_since = True, now
-        if not self.preparing and isinstance(self.backend, Pausable):
+            self.held, self._halts, self._held_since = True, False, now
+        if not self._halts and isinstance(self.backend, Pausable) and not self.is_unknown(now):
+            self._halts = True
             self.backend.pause(now)
 
     def go_on(self, now: float) -> None:
@@ -193,7 +202,7 @@ class RunningRobot:
         self.held = False
         self.wait.extend(now - self._held_since)
         self.notify.extend(now - self._held_since)
-        if not self.preparing and isinstance(self.backend, Pausable):
+        if self._halts and isinstance(self.backend, Pausable):
             self.backend.resume(now)
 
     def prepare(self, now: float) -> None:
@@ -203,20 +212,29 @@ class RunningRobot:
             self.preparing = True
             self.backend.prepare(now)
 
+    def is_unknown(self, now: float) -> bool:
+        """Return whether it must not be told anything: nobody knows yet if it is the program's robot."""
+        return self.preparing and not (isinstance(self.backend, Recognising) and self.backend.known(now))
+
     def get_ready(self, now: float) -> bool:
-        """Return whether it is ready now; one that never will be is to be touched by nobody."""
+        """Return whether it is ready now.
+
+        What goes wrong meanwhile is answered as on the way back to where its program was broken off, unless
+        nobody knows yet whether it is the program's robot: then nobody is to touch it.
+        """
         try:
             found = self.backend.fault(now)
             if found is None and self.backend.finished(now):
                 self.preparing = False
-                if self.held and isinstance(self.backend, Pausable):
-                    self.backend.pause(now)
+                if self.held:
+                    self.hold(now)
         except LinkLostError as error:
             found = Fault(LINK_LOST, str(error))
         if found is not None:
-            self._suspend(found, NOTHING)
-            self.preparing, self.absent, self.released = False, True, True
-        return not (self.preparing or self.absent)
+            known = not self.is_unknown(now)
+            self._suspend(found, self._answers().response(found) if known else NOTHING)
+            self.preparing, self.absent, self.released = False, not known, not known
+        return not (self.preparing or self.suspended)
 
     @property
     def _underway(self) -> str:
@@ -231,7 +249,7 @@ class RunningRobot:
 
         The only place where a fault of a robot, its device, its link or a condition becomes a step.
         """
-        if self.preparing or self.absent:
+        if self.absent or (self.preparing and self.ordered is None):
             return None
         if self.suspended:
             return self._ended(*self.ordered) if self.ordered is not None else None
@@ -286,6 +304,7 @@ class RunningRobot:
         self.fault, self.response = found, response
         self._answered.add(found.which)
         self.ordered, self.suspended, self.recovering, self.held = None, False, False, False
+        self.preparing = False
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:

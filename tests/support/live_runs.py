@@ -27,6 +27,7 @@ class Walker:
         self.done, self.trouble, self.stops, self.begun = True, None, [], []
         self.halted = self.closed = self.watched_for = self.doubted = False
         self.recovered, self.astray, self.heard, self.armed = None, "", True, True
+        self.recognised = False
         script.robots[given.robot.id] = self
 
     def _go(self, what):
@@ -47,6 +48,9 @@ class Walker:
 
     def prepare(self, now):
         self._go("ready")
+
+    def known(self, now):
+        return self.recognised
 
     def begin(self, move, now, *, through=False):
         self._go(move.id)

@@ -314,7 +314,7 @@ def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(
     vehicle = flown.vehicles["a"].autopilot
     assert wait_for(lambda: any("waits for a vehicle" in line for line in resumed.said), PATIENCE)
     assert control(flown, "hold", "a")["a"]["confirmed"], resumed.said
-    assert vehicle.mode == HOLDING
+    assert wait_for(lambda: vehicle.mode == HOLDING, PATIENCE), resumed.said
     landing = control(flown, "land", "a")["a"]
     assert landing["confirmed"]
     assert landing["seconds"] < 1.0
@@ -337,6 +337,24 @@ def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_hear
     assert not vehicle.armed
     assert vehicle.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
     assert flown.steps("b") == before
+
+
+def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_in_the_resumed_run(fleet):
+    low = (("BATTERY_LOW", "RETURN", None),)
+    flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=8.0)
+    killed = flown.start()
+    vehicle = begun(flown, "a", "tour 3")
+    vehicle.faults.set_battery(0.15)
+    assert wait_for(lambda: any("BATTERY_LOW" in line for line in killed.said), PATIENCE)
+    killed.signal(signal.SIGKILL)
+    killed.end(PATIENCE)
+    resumed = flown.start("--resume")
+    assert resumed.end(PATIENCE) == 1, resumed.said
+    assert any("'a': came home for its battery" in line for line in resumed.said), resumed.said
+    assert not vehicle.autopilot.armed
+    assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
+    assert "fault" not in {step["label"] for step in flown.steps("a")}
+    assert flown.steps("b")[-1]["move"] == "stop"
 
 
 def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):

@@ -51,7 +51,7 @@ class Vehicle:
     def fail(self, which: str) -> None:
         if not self.hands_off:
             self.trouble = Fault(which)
-            self.at = "absent" if self.at == "ready" and self.steps > 0 else self.at
+            self.at = self.at if self.known(0.0) else "absent"
 
     @property
     def obeys_stop(self) -> bool:
@@ -62,8 +62,10 @@ class Vehicle:
         return not self.armed or (self.response in COMES_DOWN and self.steps == 0)
 
     def _touch(self) -> None:
-        assert self.at != "absent", "is told something although it is not known to be the robot's"
-        assert self.at != "ready" or self.steps == 0, "is told something before it is ready"
+        assert self.known(0.0), "is told something although it is not known to be the robot's"
+
+    def known(self, now):
+        return self.at != "absent" and (self.at != "ready" or self.steps < 2)
 
     def _begin(self, at: str, steps: int) -> None:
         self._touch()
@@ -135,7 +137,7 @@ class Vehicle:
         return self.armed
 
     def told(self):
-        return {} if self.at == "ready" and self.steps == 2 else {"armed": self.armed}
+        return {"armed": self.armed} if self.known(now=0.0) else {}
 
 
 @dataclass

@@ -177,3 +177,32 @@ def test_the_corner_of_a_trajectory_is_on_the_way():
     vehicle = Vehicle(40.0, 0.0, 15.0)
     recovered("far", "end", vehicle)
     assert distance(vehicle.state().place, Vehicle(80.0, 0.0, 15.0).state().place) < 1.0
+
+
+def known(passed_until, begun, vehicle):
+    """Return the places that a vehicle in the air counts as having come past: moves, and metres from home."""
+    moves = Moves(ROBOT, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    WayBack(ROBOT, moves, vehicle, 20.0).know(MOVES[: MOVES.index(passed_until) + 1], begun)
+    assert vehicle.went == []
+    return [(move, tuple(map(round, offset(ROBOT.home, place)[:2]))) for move, place in moves.track]
+
+
+def test_a_vehicle_on_its_way_knows_the_places_behind_it():
+    assert known("s1", "s2", Vehicle(2.0, 30.0, 20.0)) == [("up", (0, 0))]
+    assert known("out", "s1", Vehicle(20.0, 50.0, 20.0)) == [("up", (0, 0)), ("out", (50, 0))]
+
+
+def test_a_vehicle_ahead_on_its_run_knows_the_places_that_it_flew_past_by_itself():
+    behind = [("up", (0, 0)), ("out", (50, 0)), ("s1", (50, 50)), ("s2", (60, 50))]
+    assert known("out", "s1", Vehicle(25.0, 60.0, 20.0)) == behind
+
+
+def test_a_vehicle_on_the_ground_has_come_past_nothing():
+    assert known("s1", "s2", Vehicle()) == []
+
+
+def test_where_a_way_leads_back_over_itself_the_later_leg_is_meant():
+    vehicle = Vehicle(0.0, 30.0, 20.0)
+    went, track = recovered("s4", "back", vehicle)
+    assert went == [(0, 70, 20)]
+    assert track == ["up", "out", "s1", "s2", "s3", "s4"]

@@ -164,3 +164,62 @@ def test_a_robot_that_is_not_ready_is_not_touched_where_the_run_is_broken_off_ag
     assert isinstance(run.error, KeyboardInterrupt)
     assert run.script.robots["a"].stops == ["HOLD"]
     assert run.script.robots["b"].stops == []
+
+
+LOW = program(
+    *(robot(id, [do("walk")], policies=(Policy("BATTERY_LOW", "RETURN"),)) for id in ("a", "b")),
+)
+
+
+def test_what_goes_wrong_with_a_robot_that_is_known_is_answered_by_its_policy_before_it_is_ready(broken_off):
+    run = broken_off(LOW)
+    walker = run.script.robots["a"]
+    walker.recognised = True
+    walker.fail("BATTERY_LOW")
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    assert walker.stops == ["RETURN"]
+    ready(run, "b")
+    ending = run.end()
+    assert (ending.suspended, ending.absent) == (("a",), ())
+    assert ending.came_down == {"a": "came home for its battery"}
+    assert "b end stop" in run.shown()
+
+
+def test_a_robot_that_came_home_before_it_was_ready_goes_on_with_a_new_battery(broken_off):
+    run = broken_off(LOW)
+    walker = run.script.robots["a"]
+    walker.recognised = True
+    walker.fail("BATTERY_LOW")
+    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
+    run.wait_for_step("a end stop")
+    assert walker.recovered == (("start",), "walk")
+
+
+@pytest.mark.parametrize(("kind", "response"), [(LAND, "LAND"), (RETURN, "RETURN"), (STOP, "HOLD")])
+def test_a_robot_that_is_known_obeys_before_it_is_ready(broken_off, kind, response):
+    run = broken_off(TWO)
+    walker = run.script.robots["a"]
+    order = run.orders.give(kind, ["a"])
+    time.sleep(0.2)
+    assert order.open == ("a",)
+    walker.recognised = True
+    assert order.settled.wait(20.0)
+    assert list(order.confirmed) == ["a"]
+    assert walker.begun == ["ready", f"stop {response}"]
+
+
+def test_a_robot_that_is_known_halts_before_it_is_ready_and_goes_on_when_it_may(broken_off):
+    run = broken_off(TWO)
+    walker = run.script.robots["a"]
+    held = run.orders.give(HOLD, ["a"])
+    time.sleep(0.2)
+    assert not walker.halted
+    walker.recognised = True
+    assert held.settled.wait(20.0)
+    assert walker.halted
+    ready(run, "a")
+    time.sleep(0.2)
+    assert walker.recovered is None
+    assert list(run.order(RESUME, "a").confirmed) == ["a"]
+    run.wait_for_step("a end stop")
