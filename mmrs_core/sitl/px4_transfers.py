@@ -83,7 +83,7 @@ class Px4MissionProtocol:
             self._heard = -1.0
             self._ask()
         else:
-            self._heard = -1.0
+            self._heard = -1.0 if self._state is _State.RECEIVING else self._heard
             self._complain(BUSY)
             self._stored.acknowledge(peer, mavlink.MAV_MISSION_ERROR, self._kind)
 

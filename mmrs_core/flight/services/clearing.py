@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..faults import Refused
 from ..links.link import Link, Message
 from .exchanges import asked, concerns, lacks_kinds, old_port
-from .items import MISSION
+from .items import MISSION, NAMES
 from .reading import count_of
 from .sending import cancellation
 
@@ -34,7 +34,13 @@ def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
         *before, ask = _ending(link, kind) if receiving else (_clearing(link, kind),)
         for message in before:
             link.send(message)
-        answer = asked(link, ask, inbox, lambda found: concerns(found, kind), link.retries.answer)
+        try:
+            answer = asked(link, ask, inbox, lambda found: concerns(found, kind), link.retries.answer)
+        except Refused as refused:
+            unknown = "whether it keeps what it had is not known"
+            raise Refused(
+                f"{NAMES[kind]}: the vehicle answers nothing to being told to clear it; {unknown}"
+            ) from refused
     if lacks_kinds(answer, kind):
         raise old_port(kind)
     return int(answer.type)

@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..faults import Refused
 from ..links.link import Link, Message
 from .exchanges import concerns, first, lacks_kinds, old_port, words_of
-from .items import MISSION, Item
+from .items import MISSION, NAMES, Item
 
 ANSWERS = ("MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_ACK")
 BUSY_SECONDS, LEAST_BUSY_SECONDS = 12.0, 2.0
@@ -124,7 +124,7 @@ class _Reading:
             if found is not None:
                 break
         does = f"answers '{self.refusal}'" if self.refusal else "does not answer"
-        raise Refused(f"{ask.get_type()}: the vehicle {does}")
+        raise Refused(f"{NAMES[self.kind]}: the vehicle {does} when it is read back ({ask.get_type()})")
 
     def _fits(self, message: Message, answer: str, seq: int | None) -> bool:
         """Return whether a message is the answer, or ends the reading.

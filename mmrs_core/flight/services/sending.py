@@ -101,13 +101,13 @@ class _Sending:
             if message is None:
                 self.over = self.refused
                 return False
-            if message.get_type() == "MISSION_ACK":
+            if not concerns(message, self.kind):
+                self.link.send(cancellation(self.link, message.mission_type))
+            elif message.get_type() == "MISSION_ACK":
                 self._take(message)
-            elif concerns(message, self.kind):
+            else:
                 self._give(int(message.seq))
                 return True
-            else:
-                self.link.send(cancellation(self.link, message.mission_type))
             if self.over:
                 return False
         return False
@@ -115,14 +115,15 @@ class _Sending:
     def _heeds(self, message: Message) -> bool:
         """Return whether a message says something about this transfer.
 
-        A PX4 that still wants items of another kind, since a doubled count has reached it late, wants no
-        others until it is told that there are none.
+        A PX4 that still wants or gives items of another kind, since a doubled count has reached it late or
+        our last word has not, begins nothing else until it is told that this is over.
         """
-        if message.get_type() != "MISSION_ACK":
-            ours = 0 <= message.seq < len(self.items)
-            return bool(ours if concerns(message, self.kind) else not self.transfer.begun)
+        answers = message.get_type() == "MISSION_ACK"
         if not concerns(message, self.kind):
-            return False
+            busy = not answers or message.type == mavlink.MAV_MISSION_ERROR
+            return busy and not self.transfer.begun
+        if not answers:
+            return bool(0 <= message.seq < len(self.items))
         if message.type == mavlink.MAV_MISSION_ACCEPTED:
             return self.transfer.whole
         if message.type == mavlink.MAV_MISSION_INVALID_SEQUENCE:

@@ -141,11 +141,12 @@ def test_mavsdk_as_the_autopilot_gets_everything_over_a_bad_network(link, items,
 
 
 def test_mavsdk_as_the_ground_uploads_a_plan_over_a_network_that_loses_and_doubles(tmp_path, free_port):
+    # To a PX4: MAVSDK takes what an ArduPilot answers to a doubled item for the end.
     write(render(QGC_PLAN, target_input(two_drones()), allow_lossy=True), tmp_path)
     port = free_port()
     with (
         LossyProxy(("127.0.0.1", port), loss=0.1, double=0.1, seed=4) as network,
-        SimulatedVehicle(network.port, Settings(boot=0.0, ready=0.0)) as vehicle,
+        SimulatedVehicle(network.port, Settings(firmware="px4", boot=0.0, ready=0.0)) as vehicle,
         Peer("mavsdk_import.py", str(port), str(tmp_path / "alpha.plan")) as peer,
     ):
         found = peer.next()
