@@ -71,6 +71,15 @@ def empty(made, vehicle, links, move: str) -> str:
     return said
 
 
+def killed_at(made, links, move: str) -> None:
+    """Kill the process of a robot soon after a move has begun."""
+    with made.start("fleet.py", *links) as process:
+        made.await_step(move)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=60)
+
+
 @pytest.mark.parametrize("fluid", [pytest.param(False, marks=pytest.mark.thorough), True])
 def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar, fluid):
     made = controllers(coverage(fluid=fluid))
@@ -170,6 +179,49 @@ def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(cont
     code, said = made.run("fleet.py", *links, "--resume")
     assert code == 0, said
     assert made.replayed().complaints == ()
+
+
+@pytest.mark.parametrize(
+    "stay", [move("stay", "Recharge", duration=30.0), move("stay", "HoldPosition", duration=30.0)], ids=str
+)
+def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(controllers, hangar, stay):
+    ways = [take_off("up", 6.0), go_to("out", (0.0, 30.0, 6.0)), go_to("home", (0.0, 0.0, 6.0)), LAND]
+    made = controllers(program(robot_program("alpha", [*ways, stay])))
+    vehicles, links = hangar(made.program, speedup=10.0, recharge=20.0)
+    alpha = vehicles["alpha"].autopilot
+    killed_at(made, links, "stay")
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert sum(command == TAKE_OFF for _, command, _ in alpha.history) == 1
+    assert not alpha.armed
+    assert made.replayed().complaints == ()
+
+
+@pytest.mark.parametrize("move", ["t1", "home"])
+def test_a_process_that_is_killed_as_its_robot_comes_home_for_its_battery_brings_it_home(
+    controllers, hangar, move
+):
+    made = controllers(coverage(Policy("BATTERY_LOW", "RETURN"), Policy("LINK_LOST", "HOLD", 60.0)))
+    vehicles, links = hangar(made.program, speedup=5.0)
+    alpha = vehicles["alpha"]
+    with made.start("fleet.py", *links) as process:
+        made.await_step(move)
+        time.sleep(0.3)
+        alpha.faults.set_battery(0.15)
+        assert any("response: RETURN" in line for line in process.stderr)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGKILL)
+        process.communicate(timeout=60)
+    assert alpha.autopilot.body.position[2] > 5.0
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 1, said
+    assert "came home for its battery" in said
+    assert not alpha.autopilot.armed
+    assert max(map(abs, alpha.autopilot.body.position)) < AT_HOME
+    alpha.faults.set_battery(1.0)
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert all(covered(alpha))
 
 
 def test_a_log_that_was_cut_off_is_gone_on_with_after_its_last_whole_line(controllers):

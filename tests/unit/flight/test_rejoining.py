@@ -8,7 +8,7 @@ import pytest
 
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.program import GoTo, Land, Local, Robot, Run, Step, Stop, TakeOff, Then
-from mmrs_core.flight.steps.rejoining import rest_of_way, way_ahead
+from mmrs_core.flight.steps.rejoining import Rejoined, rejoined, way_ahead
 
 HOME, OVERHEAD = Local(0.0, 0.0, 0.0), Local(0.0, 0.0, 40.0)
 WEST, EAST = Local(100.0, 0.0, 15.0), Local(100.0, 50.0, 15.0)
@@ -37,9 +37,15 @@ ROBOT = Robot(
 )
 
 
+def found(came, move, here, robot=ROBOT):
+    """Return where a vehicle is on its way from home."""
+    return rejoined(came[0], came[1:], way_ahead(robot, move, came[-1], lambda go_to: go_to.at), here)
+
+
 def back_to(came, move, here, robot=ROBOT):
     """Return where a vehicle goes to be where a move begins."""
-    return list(rest_of_way(came, way_ahead(robot, move, came[-1], lambda go_to: go_to.at), here))
+    there = found(came, move, here, robot)
+    return [*there.back, *came[1:][there.behind :]]
 
 
 def test_on_the_way_that_it_came_it_goes_along_it():
@@ -88,6 +94,12 @@ def test_a_vehicle_that_was_taking_off_is_on_its_way():
 def test_of_two_legs_along_one_line_the_later_one_is_meant():
     there_and_back = [HOME, OVERHEAD, Local(90.0, 0.0, 40.0), OVERHEAD]
     assert back_to(there_and_back, "down", Local(45.0, 0.0, 40.0)) == [OVERHEAD]
+
+
+def test_only_what_it_has_passed_is_behind_it():
+    assert found([HOME, OVERHEAD, WEST], "east", Local(30.0, 1.0, 30.0)) == Rejoined(1)
+    assert found([HOME, OVERHEAD, WEST], "east", Local(0.0, 1.0, 20.0)) == Rejoined(0)
+    assert found([HOME, OVERHEAD, WEST], "east", Local(100.0, 20.0, 15.0)).behind == 2
 
 
 def test_elsewhere_it_is_refused():

@@ -106,6 +106,12 @@ def test_the_way_of_a_sortie_begins_at_its_take_off_and_ends_where_the_last_leg_
     assert track_of(ROBOT, records()) == [("up", Local(0.0, 0.0, 10.0)), ("far", FAR)]
 
 
+def test_a_sortie_ends_where_the_robot_has_landed():
+    landed = (("end", "near", ""), ("take", "near", "down"), ("begin", "down", ""))
+    assert track_of(ROBOT, records(12, *landed)) != []
+    assert track_of(ROBOT, records(12, *landed, ("end", "down", ""))) == []
+
+
 def test_what_a_camera_did_by_itself_is_told_again():
     assert list(still_on(ROBOT, records())) == [TRIGGER]
     assert list(still_on(ROBOT, records(6))) == []
