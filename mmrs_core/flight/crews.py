@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from .orders.orders import Inbox, Receipt
-from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS
+from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering
 from .questions import Questions
 from .records.blackbox import plain
 from .steps.journal import Journal
@@ -52,6 +52,8 @@ class Crews:
 
     def engage(self, robot: str) -> None:
         """Have a robot work, or work again."""
+        if robot in self._manned:
+            self._manned[robot][1].response = ""
         self._enter(robot, WORKS)
 
     def suspend(self, robot: str) -> None:
@@ -79,6 +81,8 @@ class Crews:
             return {"phase": phase}
         told, journal = self._manned[robot]
         found: dict[str, object] = {"phase": phase, "move": journal.move, **told_of(told())}
+        if phase == WORKS and journal.response:
+            found |= answering(journal.response)
         asked = self.questions[robot].asked
         found |= ({"asks": asked} if asked else {}) | (
             {"reported": journal.reported} if journal.reported else {}

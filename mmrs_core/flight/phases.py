@@ -1,7 +1,18 @@
 """What robots are at, as whoever asks is told."""
 
+from __future__ import annotations
+
+from .policies import NOTHING
+
 WAITS = "waits for its vehicle"
 WORKS = "works"
+RESPONDS = "responds"
+TAKEN = "somebody else has it"
 SUSPENDED = "waits for its battery"
 LOST = "has ended by a lost link"
 ENDED = "has ended"
+
+
+def answering(response: str) -> dict[str, object]:
+    """Return what there is to say of a robot that does something else than its program, as JSON has it."""
+    return {"phase": TAKEN} if response == NOTHING else {"phase": RESPONDS, "response": response}

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from mmrs_core.contributions.abilities import Telling
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.flight.faults import LINK_LOST
-from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS
+from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering
 from mmrs_core.runtime.robot import RunningRobot
 
 
@@ -36,6 +36,8 @@ class Standing:
             found["move"] = running.move.id
         if isinstance(backend, Telling):
             found |= backend.told()
+        if running is not None and _responds(running, armed=found.get("armed") is True):
+            found |= answering(running.response)
         if running is not None and running.questions.asked:
             found["asks"] = running.questions.asked
         return found
@@ -49,3 +51,9 @@ class Standing:
             lost = running.fault is not None and running.fault.which == LINK_LOST
             return LOST if lost else ENDED
         return SUSPENDED if running.suspended else WORKS
+
+
+def _responds(robot: RunningRobot, *, armed: bool) -> bool:
+    """Return whether a robot does, or is held by, what has broken its program off."""
+    lost = robot.fault is not None and robot.fault.which == LINK_LOST and not robot.stopping
+    return robot.fault is not None and not lost and (robot.stopping or armed)

@@ -31,7 +31,7 @@ def lines_of(replies: Sequence[Reply]) -> Iterator[str]:
 def _cells(reply: Reply) -> tuple[str, ...]:
     return (
         repr(reply["robot"]),
-        str(reply.get("phase", "")),
+        ": ".join(str(reply[name]) for name in ("phase", "response") if reply.get(name)),
         _move(reply),
         _motors(reply),
         _battery(reply),

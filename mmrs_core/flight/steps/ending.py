@@ -221,6 +221,7 @@ class Ending:
 
     def _tell(self, fault: Fault, response: str) -> None:
         self._crew.say(f"{fault.event}: {fault}; response: {response}")
+        self._crew.pilot.journal.response = response
         self._crew.pilot.journal.decide(fault.event, str(fault), response)
 
     def _log(self, fault: Fault) -> None:

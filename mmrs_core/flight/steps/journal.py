@@ -17,6 +17,7 @@ class Journal:
     Attributes:
         progress: where the robot is in its program.
         reported: what it has reported last: `name` and `content`; empty before it has.
+        response: what it does instead of its program, a literal of PolicyResponse or NOTHING; else empty.
     """
 
     def __init__(self, robot: Robot, vehicle: Vehicle, desk: Desk) -> None:
@@ -27,6 +28,7 @@ class Journal:
         """
         self.progress = progress_of(robot, desk.log.steps)
         self.reported: Mapping[str, object] = {}
+        self.response = ""
         self._steps = {step.move: step for step in robot.steps}
         self._vehicle = vehicle
         self._desk = desk

@@ -177,6 +177,8 @@ def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controlle
         assert any("holds; interrupt to end" in line for line in process.stderr)
         refused = order(made, "resume")
         assert (refused["confirmed"], refused["why"]) == (False, "its program has ended")
+        told = order(made, "status")
+        assert (told["phase"], told["response"]) == ("responds", "HOLD")
         assert order(made, "return")["confirmed"]
         _, said = process.communicate(timeout=60)
     assert process.returncode == 1, said

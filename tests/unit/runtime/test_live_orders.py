@@ -464,6 +464,21 @@ def test_a_question_nobody_answers_ends_by_the_policy_of_long_waits(live):
     assert run.end().faults["r"] == Fault("WAIT_TOO_LONG", "waits for answer:q")
 
 
+def test_people_who_ask_are_told_what_a_robot_does_instead_of_its_program_and_who_has_it(live):
+    run = live(WALK, Script(walk=inf, stop_RETURN=inf))
+    run.wait_for_step("r begin walk")
+    walker, standing = run.script.robots["r"], run.venture.standing
+    run.orders.give(RETURN, ["r"])
+    run.wait_for(lambda: walker.stops == ["RETURN"])
+    told = standing.status("r")
+    assert (told["phase"], told["response"]) == ("responds", "RETURN")
+    walker.fail("TAKEN_OVER")
+    run.wait_for(lambda: walker.stops == ["RETURN", "NOTHING"])
+    told = standing.status("r")
+    assert (told["phase"], "response" in told) == ("somebody else has it", False)
+    run.end()
+
+
 def test_people_who_ask_are_told_how_robots_are_in_the_words_of_controllers(live):
     behaviour = program(robot("r", [do("h"), do("x")], choices={"h": ("answer:go on?", "x", "stop")}))
     run = live(behaviour, Script(ready=0.3), conditions=standard_conditions(["answer:go on?"]))
