@@ -24,7 +24,8 @@ from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import over_by
-from mmrs_core.runtime.robot import Rules, RunningRobot
+from mmrs_core.runtime.robot import RunningRobot
+from mmrs_core.runtime.rules import Rules
 from mmrs_core.runtime.stopping import Stopping
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Policy

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
 from math import inf
 
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
@@ -20,42 +19,19 @@ from mmrs_core.contributions.abilities import (
 )
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
-from mmrs_core.contributions.execution import Condition, Fault
+from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.conditions import awaiting, question_of
 from mmrs_core.flight.faults import LINK_LOST, STOPPED, TAKEN_OVER
 from mmrs_core.flight.policies import COMES_DOWN, NOTHING, OVERTAKES, still_low
-from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.answers import Answers
-from mmrs_core.runtime.conditions import decided
+from mmrs_core.runtime.choosing import Choosing
 from mmrs_core.runtime.outgoing import Outgoing
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import step_of
+from mmrs_core.runtime.rules import Rules
 from mmrs_core.runtime.waiting import Wait
-from mmrs_core.scene import Policy
 
 OVERTAKING = OVERTAKES | {TAKEN_OVER}
-
-
-@dataclass(frozen=True, slots=True)
-class Rules:
-    """What a robot goes by beside its program.
-
-    Attributes:
-        conditions: by identifier.
-        policies: of its type and kind, which go after the program's.
-        suspends: whether a low battery only breaks the program off, to go on with a full one.
-        reserve: part of the energy with which a program is not gone on with.
-        live: whether robots are real ones: steps then tell only which fault it is, black boxes the reason.
-        say: tells people what goes on.
-    """
-
-    conditions: Mapping[str, Condition]
-    policies: tuple[Policy, ...]
-    suspends: bool
-    reserve: float = 0.0
-    live: bool = False
-    say: Callable[[str], None] = lambda words: None
 
 
 class RunningRobot:
@@ -100,9 +76,8 @@ class RunningRobot:
         self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
         self.preparing = self.absent = self.rested = self._returns = False
         self._halts, self._held_since = False, 0.0
-        conditions = (transition.condition for transition in program.transitions.values())
-        self.questions = Questions(each for each in conditions if each is not None)
-        self._chosen: bool | None = None
+        self._choosing = Choosing(program, backend, rules)
+        self.questions = self._choosing.questions
         self._program, self._bus, self._rules = program, bus, rules
         self._policies = (*program.policies, *rules.policies)
         self._passed: list[str] = []
@@ -308,8 +283,8 @@ class RunningRobot:
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:
-        self._begun, self.wait, self._chosen = False, Wait(self.id), None
-        self.questions.asked = ""
+        self._begun, self.wait = False, Wait(self.id)
+        self._choosing.forget()
 
     def _unkept(self) -> Fault | None:
         """Return the fault that is left where what others tell this robot cannot be kept."""
@@ -386,7 +361,8 @@ class RunningRobot:
             return self._wait(now, active, peers)
         if len(possible) == 1:
             return possible[0]
-        holds = self._decision(now)
+        condition = self._program.transitions[self.point.move].condition or ""
+        holds = self._choosing.decision(condition, self.wait, now)
         if holds is None:
             return self._wait(now, active, peers)
         if isinstance(holds, Fault):
@@ -398,31 +374,6 @@ class RunningRobot:
         if self.wait.begin(now):
             self.backend.wait(now)
         return self._unborne(now) or self.wait.overdue(now, self._answers(), peers)
-
-    def _decision(self, now: float) -> bool | Fault | None:
-        """Return what the condition says, once and for all here; None as long as nobody can know."""
-        if self._chosen is not None:
-            return self._chosen
-        identifier = self._program.transitions[self.point.move].condition or ""
-        heard = self.questions.heard()
-        holds = decided(
-            self._rules.conditions[identifier], lambda: replace(self.backend.state(now), answers=heard)
-        )
-        if holds is None:
-            self._tell_undecided(identifier)
-        elif isinstance(holds, bool):
-            self._chosen = holds
-            self.questions.use_up(heard)
-        return holds
-
-    def _tell_undecided(self, identifier: str) -> None:
-        if self.wait.question == identifier:
-            return
-        self.wait.question, self.questions.asked = identifier, question_of(identifier)
-        words = awaiting(identifier)
-        self._rules.say(f"'{self.id}': {words}")
-        if isinstance(self.backend, Noting):
-            self.backend.note("decision", {"what": "CHOICE", "why": identifier, "response": words})
 
     def _may_pass(self) -> bool:
         """Return whether nothing as yet keeps it from going into the next move without a stop."""

@@ -56,4 +56,5 @@ class Standing:
 def _responds(robot: RunningRobot, *, armed: bool) -> bool:
     """Return whether a robot does, or is held by, what has broken its program off."""
     lost = robot.fault is not None and robot.fault.which == LINK_LOST and not robot.stopping
-    return robot.fault is not None and not lost and (robot.stopping or armed)
+    answers = robot.fault is not None and not robot.absent and not lost
+    return answers and (robot.stopping or armed)
