@@ -96,13 +96,14 @@ def _replies(
         for channel in asked
     ]
     heard: set[str] = set()
-    lost: list[tuple[Channel, Exception]] = []
+    failed: dict[int, Exception] = {}
     for number, said in asked_at_once(requests, seconds):
         if isinstance(said, Exception):
-            lost.append((asked[number], said))
+            failed[number] = said
         else:
             heard.add(said["robot"])
             yield said
+    lost = [(asked[number], failed[number]) for number in sorted(failed)]
     if not heard:
         _raise_for(lost)
     # Who was started again has a process that answers beside the one that does not.
