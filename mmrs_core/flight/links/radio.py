@@ -202,11 +202,14 @@ class Radio:
 
     def _deliver(self, message: Message, sender: Address | None) -> None:
         system = message.get_srcSystem()
-        self._speakers[sender] = time.monotonic()
+        met, self._speakers[sender] = sender not in self._speakers, time.monotonic()
         self.trouble = ""
         if is_autopilot(message):
             self.heard.add(system)
             self._introduce(message)
+        if met:
+            # Whoever has just come may answer a lost link, until it hears the first heartbeat.
+            self.send(_heartbeat(), sender)
         if is_station(message) and not self._is_own(message) and not self.claimed(system):
             self._hear_station(message, sender)
             return

@@ -134,9 +134,12 @@ class Ending:
         return LINK if LINK_LOST in self._handled else CODES.get(first.event, FAILED)
 
     def refuse(self, fault: Strange | Alone) -> int:
-        """Leave a vehicle alone that is not the robot's, or robots that have not come; return the exit code.
+        """Leave a vehicle alone that is not the robot's, or cannot go on, or robots that have not come.
 
         A log that others will go on with, or which can still begin, is left as it is.
+
+        Returns:
+            The exit code.
         """
         self._tell(fault, NOTHING)
         self._crew.obedience.overtake(fault)
@@ -147,7 +150,8 @@ class Ending:
         self.suspended = waits or bool(self._crew.desk.log.steps)
         if not self.suspended:
             self._log(fault)
-        self._crew.say("has not begun; --resume tries again" if waits else "ended early")
+        begun = "begun" if waits else "gone on"
+        self._crew.say(f"has not {begun}; --resume tries again" if self.suspended else "ended early")
         return LINK if waits else FAILED
 
     def _carry_out(self, fault: Fault, response: str) -> None:

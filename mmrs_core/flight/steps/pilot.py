@@ -7,7 +7,7 @@ from functools import partial
 
 from ..bus import Incomplete
 from ..desk import Desk, Meet
-from ..faults import BATTERY_LOW, Alone, Fault, Refused, Strange
+from ..faults import BATTERY_LOW, NO_PROGRESS, REFUSED, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, distance, ends_of
@@ -72,15 +72,31 @@ class Pilot:
             Fault: it cannot be carried out to its end.
         """
         self._recognise()
-        self._prepare()
-        if self._desk.log.steps:
-            self._take_up_again()
-        elif self._desk.meet is not None:
-            self._meet(self._desk.meet)
+        self._begin()
         step: Step | None = self._steps[self.journal.move]
         while step is not None:
             step = self._perform(step)
         self._vehicle.finish()
+
+    def _begin(self) -> None:
+        """Be where the program begins, or where its log ends, and ready to go on.
+
+        Raises:
+            Strange: it is to go on from the ground, and cannot: that is no fault, and may be tried again.
+            Fault: it cannot be carried out.
+        """
+        resumed = bool(self._desk.log.steps)
+        try:
+            self._prepare()
+            if resumed:
+                self._take_up_again()
+            elif self._desk.meet is not None:
+                self._meet(self._desk.meet)
+        except Fault as fault:
+            grounded = resumed and not self._vehicle.state().armed
+            if grounded and fault.event in (NO_PROGRESS, REFUSED) and not self._vehicle.hold():
+                raise Strange(str(fault)) from fault
+            raise
 
     def _recognise(self) -> None:
         """Make sure that the vehicle is the robot's and where it may be, and have it wait there.

@@ -22,6 +22,7 @@ from .telemetry import Telemetry
 MODE_SECONDS = 5.0
 MODE_TRIES = 3
 TAKE_OFF_TRIES = 3
+ARM_TRIES = 3
 WORDS_SECONDS = 0.5
 """After which a vehicle that refuses has said why."""
 
@@ -196,13 +197,24 @@ class Helm:
         self.start_motors()
 
     def start_motors(self) -> None:
-        """Arm, if the vehicle is not armed.
+        """Arm, if the vehicle is not armed; again where it disarms itself at once, as one that missed us.
 
         Raises:
             Refused: it does not arm; it says why, where the vehicle does.
+            Fault: it does not stay armed.
         """
         if self._telemetry.armed():
             return
+        begun, patience = self._link.clock.now(), self._link.clock.patience(AFRESH_SECONDS)
+        for _ in range(ARM_TRIES):
+            self._ask_to_arm()
+            if self._link.wait(self._telemetry.armed, patience, heard=True):
+                self._arming = False
+                return
+        said = "; ".join(dict.fromkeys(text.text for text in self._telemetry.texts.since(begun)))
+        raise Fault(NO_PROGRESS, f"the vehicle takes too long to arm{': ' if said else ''}{said}")
+
+    def _ask_to_arm(self) -> None:
         self._arming = True
         try:
             command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
@@ -212,8 +224,6 @@ class Helm:
             said = self._telemetry.texts.refusals(REPEATED_SECONDS)
             why = "; ".join(said or self._telemetry.lacks())
             raise Refused(f"{error}{': ' if why else ''}{why}") from error
-        self.until(self._telemetry.armed, MODE_SECONDS, "to arm")
-        self._arming = False
 
     def leave_ground(self, height: float) -> None:
         """Arm and take off, again where the vehicle has disarmed itself in between.

@@ -121,6 +121,37 @@ def test_a_vehicle_that_does_not_arm_says_why(steered):
         helm.arm()
 
 
+def test_a_vehicle_that_disarms_itself_at_once_is_asked_to_arm_again(steered):
+    helm, telemetry, vehicle, wire = steered()
+    asked = []
+
+    def at_first_disarmed(message):
+        if message.get_type() == "COMMAND_LONG" and message.command == ARM:
+            asked.append(message.param1)
+        for answer in vehicle(message):
+            vehicle.armed = vehicle.armed and len(asked) > 1
+            yield answer
+
+    wire.answer = at_first_disarmed
+    helm.arm()
+    assert telemetry.armed()
+    assert asked == [1.0, 1.0]
+
+
+def test_a_vehicle_that_never_stays_armed_is_told_with_what_it_has_said(steered):
+    helm, _, vehicle, wire = steered()
+
+    def never_armed(message):
+        for answer in vehicle(message):
+            vehicle.armed = False
+            yield answer
+            yield text("GCS Failsafe")
+
+    wire.answer = never_armed
+    with pytest.raises(Fault, match=r"takes too long to arm: GCS Failsafe$"):
+        helm.arm()
+
+
 def test_a_take_off_whose_first_answer_was_lost_is_no_refusal(steered):
     helm, _, _, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
     wire.say(FLYING)

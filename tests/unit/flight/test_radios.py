@@ -41,6 +41,11 @@ def test_what_is_sent_goes_to_where_the_system_speaks_from(shared):
     assert [(message.target_system, to) for message, to in shared.wire.sent] == [(1, HERE), (2, THERE)]
 
 
+def test_who_is_met_hears_a_heartbeat_at_once():
+    with linked() as (_, wire):
+        assert HERE in wire.beats
+
+
 def test_heartbeats_go_to_everybody_who_has_spoken(shared):
     eventually(lambda: {HERE, THERE} <= set(shared.wire.beats))
 

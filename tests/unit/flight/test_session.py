@@ -238,6 +238,20 @@ def test_an_order_to_a_resumed_robot_whose_vehicle_is_not_heard_is_not_confirmed
     assert (receipt.confirmed, receipt.why) == (False, "its vehicle was not heard, and was told nothing")
 
 
+def test_a_robot_that_cannot_take_off_again_may_be_resumed_once_more(process, vehicle, tmp_path, capsys):
+    simulated, port = vehicle
+    assert empty(process(robot_of(), port=port), simulated).result(30.0) == 1
+    simulated.faults.set_battery(1.0)
+    simulated.faults.refuse_arming("Compass not calibrated")
+    assert run_robot(robot_of(), process(robot_of(), port=port, words=["--resume"])) == 1
+    said = capsys.readouterr().err
+    assert "Compass not calibrated" in said
+    assert "'alpha': has not gone on; --resume tries again" in said
+    assert "fault" not in labels(tmp_path)
+    simulated.faults.refuse_arming("")
+    assert run_robot(robot_of(), process(robot_of(), port=port, words=["--resume"])) == 0
+
+
 @pytest.mark.parametrize("name", ["hold", "land", "resume"])
 def test_who_waits_for_a_battery_obeys_nothing_while_somebody_else_flies_its_vehicle(process, vehicle, name):
     simulated, port = vehicle
