@@ -181,12 +181,10 @@ def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(cont
     assert made.replayed().complaints == ()
 
 
-@pytest.mark.parametrize(
-    "stay", [move("stay", "Recharge", duration=30.0), move("stay", "HoldPosition", duration=30.0)], ids=str
-)
-def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(controllers, hangar, stay):
+@pytest.mark.parametrize("stays", ["Recharge", "HoldPosition"])
+def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(controllers, hangar, stays):
     ways = [take_off("up", 6.0), go_to("out", (0.0, 30.0, 6.0)), go_to("home", (0.0, 0.0, 6.0)), LAND]
-    made = controllers(program(robot_program("alpha", [*ways, stay])))
+    made = controllers(program(robot_program("alpha", [*ways, move("stay", stays, duration=30.0)])))
     vehicles, links = hangar(made.program, speedup=10.0, recharge=20.0)
     alpha = vehicles["alpha"].autopilot
     killed_at(made, links, "stay")
@@ -197,12 +195,12 @@ def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(contr
     assert made.replayed().complaints == ()
 
 
-@pytest.mark.parametrize("move", ["t1", "home"])
+@pytest.mark.parametrize("move", ["t1", pytest.param("home", marks=pytest.mark.thorough)])
 def test_a_process_that_is_killed_as_its_robot_comes_home_for_its_battery_brings_it_home(
     controllers, hangar, move
 ):
     made = controllers(coverage(Policy("BATTERY_LOW", "RETURN"), Policy("LINK_LOST", "HOLD", 60.0)))
-    vehicles, links = hangar(made.program, speedup=5.0)
+    vehicles, links = hangar(made.program, speedup=10.0)
     alpha = vehicles["alpha"]
     with made.start("fleet.py", *links) as process:
         made.await_step(move)
