@@ -95,9 +95,9 @@ def test_robots_fly_where_nothing_that_is_said_can_be_written(fleet):
 
 
 def test_a_full_disk_ends_a_robot_by_its_policy_also_where_what_is_said_goes_there(fleet, tmp_path):
-    flown = fleet(Pad("a"))
+    flown = fleet(Pad("a"), speedup=8.0)
     with (tmp_path / "said.txt").open("w") as into:
-        process = flown.start("--inject", "disk-full@30+25", into=into)
+        process = flown.start("--inject", "disk-full@35+400", into=into)
         assert process.end(PATIENCE) == 1
     moves = {step["move"] for step in flown.steps("a")}
     assert "start" in moves
