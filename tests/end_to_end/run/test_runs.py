@@ -297,6 +297,10 @@ def test_a_return_that_is_held_is_watched_until_it_goes_on(fleet):
     assert vehicle.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
 
 
+STAYS = ("LINK_LOST", "HOLD", 5.0)
+"""Has a vehicle be in the air still when its run is resumed, however long that takes on a busy machine."""
+
+
 def broken_off(flown, **moves):
     """Kill a run once its robots have begun these moves; nobody hears `b` from then on."""
     killed = flown.start()
@@ -308,7 +312,7 @@ def broken_off(flown, **moves):
 
 
 def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(fleet):
-    flown = fleet(Pad("a"), Pad("b", stay=2.0), speedup=8.0)
+    flown = fleet(Pad("a", policies=(STAYS,)), Pad("b", stay=2.0), speedup=8.0)
     broken_off(flown, a="out", b="out")
     resumed = flown.start("--resume", "--backend-option", "patience=120")
     vehicle = flown.vehicles["a"].autopilot
@@ -326,7 +330,9 @@ def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(
 
 
 def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_heard_again(fleet):
-    flown = fleet(Pad("a", "wait", (("PEER_LOST", "RETURN", 2.0),)), Pad("b", "give", stay=100.0, gives="a"))
+    flown = fleet(
+        Pad("a", "wait", (STAYS, ("PEER_LOST", "RETURN", 2.0))), Pad("b", "give", stay=100.0, gives="a")
+    )
     broken_off(flown, a="out", b="stay")
     before = flown.steps("b")
     resumed = flown.start("--resume", "--backend-option", "patience=3")
@@ -340,7 +346,7 @@ def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_hear
 
 
 def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_in_the_resumed_run(fleet):
-    low = (("BATTERY_LOW", "RETURN", None),)
+    low = (STAYS, ("BATTERY_LOW", "RETURN", None))
     flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=8.0)
     killed = flown.start()
     vehicle = begun(flown, "a", "tour 3")
