@@ -258,7 +258,7 @@ def test_a_stop_ends_the_listening_for_a_vehicle_that_is_not_heard(robot):
     ending = made.ending()
     ending._lose = lambda: True
     code = in_background(lambda: ending.end(made.caught()))
-    until(lambda: made.events() == ["LINK_LOST"])
+    until(lambda: made.crew.obedience.hands_off)
     made.stop.set()
     assert code.result(20.0) == 5
     assert made.simulated.autopilot.armed
