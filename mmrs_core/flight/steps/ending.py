@@ -131,7 +131,10 @@ class Ending:
                     self._log(fault)
         self.down = crew.obedience.has_vehicle
         crew.say("stopped" if first.event == STOPPED else "ended early")
-        return LINK if LINK_LOST in self._handled else CODES.get(first.event, FAILED)
+        return self._code(first)
+
+    def _code(self, fault: Fault) -> int:
+        return LINK if LINK_LOST in self._handled else CODES.get(fault.event, FAILED)
 
     def refuse(self, fault: Strange | Alone) -> int:
         """Leave a vehicle alone that is not the robot's, or cannot go on, or robots that have not come.
@@ -314,7 +317,8 @@ class Ending:
         crew.say(f"cannot carry out {response}: {fault}; take over by hand")
         if crew.vehicle.state().armed:
             crew.say("heartbeats end now: the vehicle does what it does about a lost link")
-        return CODES.get(fault.event, FAILED)
+            return LINK if STOPPED in self._handled else self._code(fault)
+        return self._code(fault)
 
     def _acts_by_itself(self) -> bool:
         """Return whether the vehicle is in a mode that nobody here told it."""

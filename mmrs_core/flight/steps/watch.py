@@ -144,7 +144,7 @@ class Watch:
             Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
         """
         link, vehicle, departures = self._link, self._vehicle, self._departures
-        answers = True
+        answers, self._hands_off = True, True
         if link is not None and vehicle is not None and departures is not None:
             limit = self._clock.patience(BEAT_SECONDS, 1.0)
             if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):

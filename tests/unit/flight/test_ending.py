@@ -580,3 +580,24 @@ def test_a_stop_stops_a_robot_that_holds_as_it_was_started(robot):
     made.stop.set()
     assert code.result(20.0) == 1
     assert not made.simulated.autopilot.armed
+
+
+def test_a_vehicle_that_answers_a_link_before_the_program_notices_is_let_come_home_by_itself(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 100.0))
+    made.crew.vehicle.answer_lost_link("RETURN", 5.0)
+    made.simulated.faults.cut_link()
+    until(lambda: made.mode == "smart_return")
+    made.simulated.faults.mend_link()
+    fault = made.caught()
+    assert fault.event == "LINK_LOST"
+    told = len(made.simulated.received)
+    assert made.ending().end(fault) == 5
+    assert away(made, HOME) < 1.5
+    names = {name for _, name in made.simulated.received[told:]}
+    assert not names & {"COMMAND_LONG", "SET_POSITION_TARGET_GLOBAL_INT"}
+
+
+def test_a_stop_that_is_not_obeyed_is_told_by_the_exit_code(halted):
+    made = halted(Policy("LINK_LOST", "LAND"), on_stop="land")
+    made.simulated.faults.silence(SET_MODE)
+    assert made.ending().end(Stopped()) == 5
