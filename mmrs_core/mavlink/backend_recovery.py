@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import hypot
 
 from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
-from mmrs_core.flight.places import distance_to_leg, ends_of, offset
+from mmrs_core.flight.places import at_height, distance_to_leg, ends_of, offset
 from mmrs_core.flight.policies import still_low
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from mmrs_core.flight.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
@@ -44,7 +44,7 @@ class WayBack:
         job = Job()
 
         def set_out() -> None:
-            parts = self._parts(sortie_of(self._robot, passed), begun)
+            parts = self._parts(passed, begun)
             if parts:
                 self._refuse_low()
             job.then(*parts)
@@ -59,7 +59,7 @@ class WayBack:
             Refused: there is none that anybody has checked.
         """
         track = self._moves.track
-        self._parts(sortie_of(self._robot, passed), begun)
+        self._parts(passed, begun)
         self._moves.track = track
 
     def know(self, passed: Sequence[str], begun: str) -> None:
@@ -68,17 +68,21 @@ class WayBack:
         Raises:
             Refused: it is not on its way.
         """
-        self._parts(sortie_of(self._robot, passed), begun)
+        self._parts(passed, begun)
 
-    def _parts(self, sortie: Sequence[str], begun: str) -> list[Callable[[], None]]:
+    def _parts(self, passed: Sequence[str], begun: str) -> list[Callable[[], None]]:
+        sortie = sortie_of(self._robot, passed)
+        start = self._start(passed[: len(passed) - len(sortie)])
         here = self._vehicle.state().place
         low = here.height <= IN_THE_AIR
         if low and bool(begun) and self._moves.kind(begun) is Land:
             return []
-        if not sortie:
-            self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
+        if low:
+            self._refuse_elsewhere(start)
+        came = list(self._places(start, sortie))
+        if not came:
+            self._refuse_far(hypot(*offset(start, here)[:2]), self._home_tolerance)
             return []
-        came = list(self._places(self._robot.home, sortie))
         first = self._steps[sortie[0]].movement
         if isinstance(first, TakeOff) and low:
             self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
@@ -86,7 +90,7 @@ class WayBack:
             return [lambda: self._moves.climb(sortie[0], height), *self._legs(came[1:])]
         last = came[-1][1]
         ahead = way_ahead(self._robot, begun, last, self._moves.target_of) if begun else ()
-        leg = self._leg(here, [self._robot.home, *(place for _, place in came), *ahead])
+        leg = self._leg(here, [start, *(place for _, place in came), *ahead])
         if leg < len(came):
             self._moves.track = came[:leg]
             return self._legs(came[leg:])
@@ -94,6 +98,27 @@ class WayBack:
         flown = list(self._places(last, run[run.index(begun) :]))[: leg - len(came)] if begun else []
         self._moves.track = [*came, *flown]
         return self._legs_back(came, flown)
+
+    def _start(self, before: Sequence[str]) -> Place:
+        """Return where a sortie begins: at home, or where the robot has landed before by its program."""
+        here = self._robot.home
+        for move in before:
+            movement = self._steps[move].movement
+            if isinstance(movement, Start | Recharge):
+                here = self._robot.home
+            elif isinstance(movement, Land):
+                here = at_height(here, self._robot.home.height)
+            else:
+                here = next((place for _, place in reversed(list(self._places(here, [move])))), here)
+        return here
+
+    def _refuse_elsewhere(self, start: Place) -> None:
+        away = hypot(*offset(self._robot.home, start)[:2])
+        if away > self._home_tolerance:
+            raise Refused(
+                f"it is to go on from where it landed, {away:.0f} m from its home: nobody has checked a way"
+                " there from its home"
+            )
 
     def _leg(self, here: Place, way: Sequence[Place]) -> int:
         """Return on which leg of its way a vehicle is; of two, the later one is meant."""
@@ -120,7 +145,7 @@ class WayBack:
         for move in moves:
             movement = self._steps[move].movement
             if isinstance(movement, TakeOff):
-                here = self._moves.above_home(movement.height)
+                here = at_height(here, self._moves.above_home(movement.height).height)
                 yield move, here
             elif isinstance(movement, GoTo):
                 target = self._moves.target_of(movement)

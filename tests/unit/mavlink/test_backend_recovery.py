@@ -206,3 +206,51 @@ def test_where_a_way_leads_back_over_itself_the_later_leg_is_meant():
     went, track = recovered("s4", "back", vehicle)
     assert went == [(0, 70, 20)]
     assert track == ["up", "out", "s1", "s2", "s3", "s4"]
+
+
+DELIVERY = program(
+    robot_program(
+        "r",
+        [
+            take_off("up", 20.0),
+            go_to("b", (70.0, 0.0, 20.0)),
+            LAND,
+            move("wait", "HoldPosition", duration=10.0),
+            move("wait on", "HoldPosition", duration=10.0),
+            take_off("again", 15.0),
+            go_to("c", (70.0, 60.0, 15.0)),
+            go_to("d", (0.0, 60.0, 15.0)),
+            move("end", "Land", uri=MULTICOPTER),
+        ],
+    )
+)
+PARCEL = robot_of(DELIVERY.robots[0], target_input(DELIVERY))
+
+
+def delivered(passed_until, begun, vehicle):
+    """Return what a vehicle counts as having come past, after it has landed elsewhere than at home."""
+    moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    order = [step.move for step in PARCEL.steps]
+    WayBack(PARCEL, moves, vehicle, 20.0).know(order[: order.index(passed_until) + 1], begun)
+    return [(move, tuple(map(round, offset(PARCEL.home, place)[:2]))) for move, place in moves.track]
+
+
+def test_a_sortie_begins_where_the_robot_landed_by_its_program():
+    assert delivered("again", "c", Vehicle(70.0, 30.0, 15.0)) == [("again", (0, 70))]
+    assert delivered("c", "d", Vehicle(40.0, 60.0, 15.0)) == [("again", (0, 70)), ("c", (60, 70))]
+
+
+@pytest.mark.parametrize(("passed", "begun"), [("wait", "wait on"), ("down", "wait"), ("again", "c")])
+def test_a_robot_at_home_is_refused_whose_program_goes_on_elsewhere(passed, begun):
+    with pytest.raises(Refused, match="70 m from its home: nobody has checked a way there"):
+        delivered(passed, begun, Vehicle())
+
+
+def test_a_robot_that_has_waited_and_been_nowhere_goes_on_at_home():
+    waits = [move(name, "HoldPosition", duration=10.0) for name in ("one", "two")]
+    behaviour = program(robot_program("r", [*waits, take_off("up", 20.0), LAND]))
+    robot = robot_of(behaviour.robots[0], target_input(behaviour))
+    moves = Moves(robot, Vehicle(), Clock(1e6), {}, lambda kind, name, content: None)
+    for passed, begun in ((["start", "one"], "two"), (["start", "one", "two"], "up")):
+        WayBack(robot, moves, Vehicle(), 20.0).know(passed, begun)
+    assert moves.track == []
