@@ -22,7 +22,7 @@ from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
 from .journal import Journal
 from .rejoining import OFF_ITS_WAY, Rejoined, rejoined, way_ahead
-from .resuming import still_on, track_of
+from .resuming import began_at, still_on, track_of
 from .waits import Waits
 from .watch import Watch
 
@@ -108,12 +108,26 @@ class Pilot:
         try:
             self._desk.recognise(bool(records))
             if not (records and self._vehicle.state().armed):
+                self._refuse_elsewhere()
                 return
             track = track_of(self._robot, records)
             self.track = track[: self._rejoined(track).behind]
         except Refused as error:
             raise Strange(str(error)) from error
         self._vehicle.carry_on()
+
+    def _refuse_elsewhere(self) -> None:
+        """Make sure that a robot on the ground at home began its sortie there, else no way is known.
+
+        Raises:
+            Refused: it did not.
+        """
+        began = began_at(self._robot, self._desk.log.steps)
+        away = distance(at_height(began, 0.0), at_height(self._robot.home, 0.0))
+        if away > OFF_ITS_WAY and not self._desk.dry:
+            raise Refused(
+                f"its program goes on where it landed, {away:.0f} m from its home: no way leads there"
+            )
 
     def _prepare(self) -> None:
         """Set the vehicle up; again where it has started anew meanwhile."""
@@ -200,13 +214,14 @@ class Pilot:
 
     def _rejoined(self, passed: Sequence[tuple[str, Place]]) -> Rejoined:
         """Return where the robot is, in the air, on the way to where the interrupted leg began."""
-        state, home, places = self._vehicle.state(), self._robot.home, [place for _, place in passed]
+        state, places = self._vehicle.state(), [place for _, place in passed]
+        began = began_at(self._robot, self._desk.log.steps)
 
         def locate(movement: GoTo) -> Place:
             return place_of(movement.at, self._desk.locators, state)
 
-        begun = places[-1] if places else home
-        return rejoined(home, places, way_ahead(self._robot, self.journal.move, begun, locate), state.place)
+        last = places[-1] if places else began
+        return rejoined(began, places, way_ahead(self._robot, self.journal.move, last, locate), state.place)
 
     def _perform(self, step: Step) -> Step | None:
         self._tell(step)

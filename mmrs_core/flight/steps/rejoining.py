@@ -57,11 +57,11 @@ class Rejoined:
     back: tuple[Place, ...] = ()
 
 
-def rejoined(home: Place, passed: Sequence[Place], ahead: Sequence[Place], here: Place) -> Rejoined:
+def rejoined(began: Place, passed: Sequence[Place], ahead: Sequence[Place], here: Place) -> Rejoined:
     """Return where a vehicle is on its way.
 
     Args:
-        home: of the robot, where its way begins.
+        began: where its way begins, on the ground.
         passed: places passed in this sortie.
         ahead: ends of the legs after the last of them.
         here: where the vehicle is.
@@ -69,8 +69,8 @@ def rejoined(home: Place, passed: Sequence[Place], ahead: Sequence[Place], here:
     Raises:
         Refused: it is not on its way.
     """
-    way = [home, *passed, *ahead]
-    away = [distance_to_leg(here, a, b) for a, b in pairwise(way)] or [distance(here, home)]
+    way = [began, *passed, *ahead]
+    away = [distance_to_leg(here, a, b) for a, b in pairwise(way)] or [distance(here, began)]
     nearest = max(range(len(away)), key=lambda leg: (-round(away[leg] / ALIKE), leg))
     if away[nearest] > OFF_ITS_WAY:
         raise Refused(f"the vehicle is in the air and {away[nearest]:.0f} m from the way of its program")

@@ -94,7 +94,21 @@ def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]
     Raises:
         Refused: it went to an object, and nobody knows where that was.
     """
+    return _sortie(robot, records)[1]
+
+
+def began_at(robot: Robot, records: Iterable[Record]) -> Place:
+    """Return where a robot's present sortie began: where its program has landed last; else its home.
+
+    Raises:
+        Refused: it went to an object, and nobody knows where that was.
+    """
+    return _sortie(robot, records)[0]
+
+
+def _sortie(robot: Robot, records: Iterable[Record]) -> tuple[Place, list[tuple[str, Place]]]:
     steps = {step.move: step.movement for step in robot.steps}
+    began = here = robot.home
     track: list[tuple[str, Place]] = []
     for record in records:
         move = str(record["move"])
@@ -104,14 +118,18 @@ def track_of(robot: Robot, records: Iterable[Record]) -> list[tuple[str, Place]]
         if record["label"] != "end":
             continue
         if isinstance(movement, TakeOff):
-            track = [(move, at_height(robot.home, movement.height))]
-        elif isinstance(movement, Land | Recharge):
-            track = []
+            here = at_height(began, movement.height)
+            track = [(move, here)]
+        elif isinstance(movement, Land):
+            began, track = at_height(here, robot.home.height), []
+        elif isinstance(movement, Recharge):
+            began, track = robot.home, []
         elif isinstance(movement, GoTo):
-            here = track[-1][1] if track else robot.home
+            here = track[-1][1] if track else began
             track += [] if track else [(move, here)]
             track += [(move, place) for place in _ends(here, movement)]
-    return track
+            here = track[-1][1]
+    return began, track
 
 
 def slots_of(robots: Iterable[Robot], records: Iterable[Record]) -> tuple[set[tuple[str, str]], int]:

@@ -15,6 +15,7 @@ from mmrs_core.flight.orders.ordering import give
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import (
     LAND,
+    MULTICOPTER,
     go_to,
     move,
     notify,
@@ -193,6 +194,39 @@ def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(contr
     assert sum(command == TAKE_OFF for _, command, _ in alpha.history) == 1
     assert not alpha.armed
     assert made.replayed().complaints == ()
+
+
+def delivery():
+    """Fly to a place, land there, take off again, and come home by another way."""
+    there = [take_off("up", 6.0), go_to("out", (0.0, 40.0, 6.0)), move("there", "Land", uri=MULTICOPTER)]
+    onward = [take_off("again", 8.0), go_to("on", (60.0, 40.0, 8.0)), go_to("home", (0.0, 0.0, 8.0)), LAND]
+    robot = robot_program("alpha", [*there, *onward])
+    return program(replace(robot, policies=(Policy("LINK_LOST", "HOLD", 60.0),)))
+
+
+def test_a_killed_process_goes_on_in_the_air_after_it_has_landed_elsewhere(controllers, hangar):
+    made = controllers(delivery())
+    vehicles, links = hangar(made.program, speedup=10.0)
+    killed_at(made, links, "on")
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 0, said
+    assert not vehicles["alpha"].autopilot.armed
+    assert made.replayed().complaints == ()
+
+
+def test_a_robot_that_was_carried_home_does_not_go_on_where_nobody_has_checked_a_way(controllers, hangar):
+    made = controllers(delivery())
+    vehicles, links = hangar(made.program, speedup=10.0)
+    alpha = vehicles["alpha"]
+    killed_at(made, links, "again")
+    with alpha.lock:
+        alpha.autopilot.disarm()
+        alpha.autopilot.body.position = alpha.autopilot.body.velocity = (0.0, 0.0, 0.0)
+    before = len(alpha.autopilot.history)
+    code, said = made.run("fleet.py", *links, "--resume")
+    assert code == 1, said
+    assert "its program goes on where it landed, 40 m from its home: no way leads there" in said
+    assert TAKE_OFF not in [command for _, command, _ in alpha.autopilot.history[before:]]
 
 
 @pytest.mark.parametrize("move", ["t1", pytest.param("home", marks=pytest.mark.thorough)])

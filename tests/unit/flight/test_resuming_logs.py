@@ -9,6 +9,7 @@ import pytest
 from mmrs_core.flight.faults import Fault, Refused
 from mmrs_core.flight.program import (
     Choose,
+    Geographic,
     GoTo,
     Land,
     Local,
@@ -22,7 +23,7 @@ from mmrs_core.flight.program import (
     Then,
 )
 from mmrs_core.flight.records.log import Log, read
-from mmrs_core.flight.steps.resuming import Progress, progress_of, slots_of, still_on, track_of
+from mmrs_core.flight.steps.resuming import Progress, began_at, progress_of, slots_of, still_on, track_of
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))
@@ -110,6 +111,27 @@ def test_a_sortie_ends_where_the_robot_has_landed():
     landed = (("end", "near", ""), ("take", "near", "down"), ("begin", "down", ""))
     assert track_of(ROBOT, records(12, *landed)) != []
     assert track_of(ROBOT, records(12, *landed, ("end", "down", ""))) == []
+
+
+def test_a_sortie_begins_where_the_program_has_landed():
+    there = Geographic(42.3705, 13.35, 15.0)
+    moves = {
+        "up": TakeOff(10.0),
+        "out": GoTo(there),
+        "down": Land(),
+        "again": TakeOff(20.0),
+        "on": GoTo(there),
+    }
+    names = [*moves, None]
+    steps = tuple(
+        Step(name, movement, then=Then(following) if following else None)
+        for (name, movement), following in zip(moves.items(), names[1:], strict=True)
+    )
+    robot = Robot("r", "r.jsonl", "copter", Geographic(42.37, 13.35, 0.0), "up", steps)
+    log = [{"label": label, "move": name, "detail": ""} for name in moves for label in ("begin", "end")]
+    assert began_at(robot, log[:4]) == robot.home
+    assert began_at(robot, log[:6]) == Geographic(42.3705, 13.35, 0.0)
+    assert track_of(robot, log[:8]) == [("again", Geographic(42.3705, 13.35, 20.0))]
 
 
 def test_what_a_camera_did_by_itself_is_told_again():
