@@ -351,22 +351,32 @@ class Ending:
             self._crew.say(f"{refusal}: it may not stay where it is when this program has ended")
 
     def _stand_back(self) -> None:
-        """Send nothing but heartbeats until the motors are off: without them, the vehicle might fly away."""
+        """Send nothing but heartbeats until the motors are off: without them, the vehicle might fly away.
+
+        That it is not heard for a while changes nothing: it may still hear the heartbeats.
+        """
         crew = self._crew
         if crew.link is None:
             return
         crew.watch.let_go()
+        crew.watch.lose()
         crew.obedience.hands_off = True
         crew.say("hands off until its motors are off; interrupt twice to end before")
         if self.suspended:
             crew.say("its program can go on later: start again with --resume")
         told = False
+        while crew.vehicle.state().armed and not crew.desk.abandon.is_set():
+            self._let_time_pass(crew.link)
+            crew.obedience.refuse_all("somebody else has the vehicle")
+            if crew.desk.stop.is_set() and not told:
+                told = True
+                crew.say(KEPT_UP)
+
+    def _let_time_pass(self, link: Link) -> None:
+        """Wait a little, on and on: whoever has a vehicle that is no longer heard may still fly it."""
+        crew = self._crew
         try:
-            while crew.vehicle.state().armed and not crew.desk.abandon.is_set():
-                crew.link.wait(lambda: None, crew.desk.clock.patience(0.0, WATCH_SECONDS))
-                crew.obedience.refuse_all("somebody else has the vehicle")
-                if crew.desk.stop.is_set() and not told:
-                    told = True
-                    crew.say(KEPT_UP)
+            link.wait(lambda: None, crew.desk.clock.patience(0.0, WATCH_SECONDS))
         except Fault as lost:
-            crew.say(f"{lost}")
+            crew.watch.lose()
+            crew.say(f"{lost}: heartbeats go on, since somebody else has it")

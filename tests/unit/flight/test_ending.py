@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
-from flight_crew import HOME, NORTH, in_background
+from flight_crew import HOME, NORTH, SPEEDUP, in_background
 from patience import until
 
 from mmrs_core.flight.faults import Fault, Stopped, Strange
@@ -379,6 +379,22 @@ def test_a_pilot_who_takes_over_on_the_way_back_is_left_alone(robot):
     assert made.mode == "loiter"
 
 
+def test_a_vehicle_that_a_pilot_has_hears_the_program_also_while_nobody_hears_it(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.simulated.faults.take_stick("loiter")
+    until(lambda: made.mode == "loiter")
+    code = in_background(lambda: made.ending().end(Fault("TAKEN_OVER", "somebody has it")))
+    until(lambda: any("hands off" in line for line in made.said))
+    made.simulated.faults.fall_dumb()
+    until(lambda: any("heartbeats go on" in line for line in made.said))
+    silent_since = made.simulated.autopilot.time
+    until(lambda: made.simulated.autopilot.heard > silent_since + 10.0)
+    assert not code.done()
+    assert made.simulated.autopilot.mode_name == "loiter"
+    made.crew.desk.abandon.set()
+    assert code.result(20.0) == 1
+
+
 PILOTED = pytest.mark.parametrize(
     "mode",
     [
@@ -601,3 +617,19 @@ def test_a_stop_that_is_not_obeyed_is_told_by_the_exit_code(halted):
     made = halted(Policy("LINK_LOST", "LAND"), on_stop="land")
     made.simulated.faults.silence(SET_MODE)
     assert made.ending().end(Stopped()) == 5
+
+
+def test_a_pilots_vehicle_that_is_not_heard_for_a_while_still_gets_heartbeats(robot):
+    made = robot(Policy("LINK_LOST", "RETURN", 5.0))
+    made.crew.pilot.waits.tell_vehicle()
+    made.simulated.faults.take_stick("loiter")
+    code = in_background(lambda: made.ending().end(made.caught()))
+    until(lambda: any("hands off until its motors are off" in line for line in made.said))
+    made.ears.deaf = True
+    until(lambda: made.crew.link.silent_for() > 4 * SPEEDUP)
+    assert not code.done()
+    assert made.mode == "loiter"
+    made.ears.deaf = False
+    with made.simulated.lock:
+        made.simulated.autopilot.disarm()
+    assert code.result(20.0) == 1
