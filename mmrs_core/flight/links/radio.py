@@ -26,7 +26,7 @@ SENDERS = 64
 """From how many addresses frames are put together at once; beyond, the oldest is forgotten."""
 
 FORGOTTEN_SECONDS = 60.0
-"""Real seconds for which heartbeats still go to an address that has fallen silent."""
+"""Real seconds for which heartbeats still go to an address that has fallen silent, unless it was the last."""
 
 
 class Ear(Protocol):
@@ -243,10 +243,9 @@ class Radio:
             return
         self._beaten = self.clock.now()
         now = time.monotonic()
-        recent = {
-            sender: spoke for sender, spoke in self._speakers.items() if now - spoke < FORGOTTEN_SECONDS
-        }
-        self._speakers = dict(sorted(recent.items(), key=lambda entry: entry[1])[-SENDERS:])
+        speakers = sorted(self._speakers.items(), key=lambda entry: entry[1])
+        recent = [each for each in speakers if now - each[1] < FORGOTTEN_SECONDS]
+        self._speakers = dict((recent or speakers[-1:])[-SENDERS:])
         for sender in self._speakers or (None,):
             if self._is_to_hear(sender):
                 self.send(_heartbeat(), sender)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable, Mapping
+from itertools import count
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -12,6 +13,12 @@ from ..links.link import Link, Message
 
 ROUNDS = 2
 """How often parameters are asked for that a vehicle may not have."""
+
+MARKS = 16
+"""How many numbers are used in turn for what is asked for last; every vehicle has more parameters."""
+
+_marks = count()
+"""Counts what was asked for last, in this process: an answer that comes late must answer nothing else."""
 
 BY_NAME = -1
 """The number that stands for none, where a parameter is asked for by its name."""
@@ -37,8 +44,8 @@ def read(link: Link, names: Iterable[str]) -> dict[str, float]:
     """
     wanted, found = list(names), dict[str, float]()
     with link.inbox("PARAM_VALUE") as inbox:
-        for number in link.attempts(ROUNDS):
-            asked = link.clock.now()
+        for _ in link.attempts(ROUNDS):
+            asked, number = link.clock.now(), next(_marks) % MARKS
             for name in (name for name in wanted if name not in found):
                 _ask(link, name)
             _ask(link, "", number)

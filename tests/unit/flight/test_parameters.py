@@ -34,6 +34,8 @@ class Values:
         if message.get_type() == "PARAM_REQUEST_READ" and 0 <= message.param_index < len(self.values):
             name = list(self.values)[message.param_index]
             yield value(name, self.values[name], index=message.param_index)
+        elif message.get_type() == "PARAM_REQUEST_READ" and message.param_index >= 0:
+            yield value(f"OTHER_{message.param_index}", 0.0, index=message.param_index)
         elif name in self.values:
             if message.get_type() == "PARAM_SET" and not self.stubborn:
                 self.values[name] = message.param_value
@@ -67,6 +69,26 @@ def test_an_answer_that_was_lost_or_doubled_on_the_way_makes_no_parameter_unknow
 
     with linked(answer) as (link, _):
         assert parameters.read(link, ["A", "NONE", "B"]) == {"A": 1.0, "B": 2.0}
+
+
+def test_an_answer_to_one_reading_that_comes_in_the_next_is_no_answer_to_that():
+    values, late = Values(A=1.0, B=2.0), []
+
+    def answer(message):
+        replies = list(values(message))
+        if message.get_type() == "PARAM_REQUEST_READ" and message.param_index >= 0 and not late:
+            late.extend(replies)
+            return
+        if message.param_id == "B":
+            yield from late
+            time.sleep(0.05)
+        yield from replies
+
+    with linked(answer) as (link, wire):
+        assert parameters.read(link, ["A"]) == {"A": 1.0}
+        assert parameters.read(link, ["B"]) == {"B": 2.0}
+        asked = [message.param_id for message in wire.of("PARAM_REQUEST_READ")]
+        assert asked == ["A", "", "B", ""]
 
 
 def test_a_vehicle_that_tells_none_is_asked_once():
