@@ -351,15 +351,11 @@ class Ending:
             self._crew.say(f"{refusal}: it may not stay where it is when this program has ended")
 
     def _stand_back(self) -> None:
-        """Send nothing but heartbeats until the motors are off: without them, the vehicle might fly away.
-
-        That it is not heard for a while changes nothing: it may still hear the heartbeats.
-        """
+        """Send nothing but heartbeats until the motors are off: without them, the vehicle might fly away."""
         crew = self._crew
         if crew.link is None:
             return
         crew.watch.let_go()
-        crew.watch.lose()
         crew.obedience.hands_off = True
         crew.say("hands off until its motors are off; interrupt twice to end before")
         if self.suspended:
