@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
-from flight_crew import HOME, NORTH, SPEEDUP, in_background
+from flight_crew import HOME, NORTH, in_background
 from patience import until
 
 from mmrs_core.flight.faults import Fault, Stopped, Strange
