@@ -8,21 +8,18 @@ from pathlib import Path
 
 import pytest
 
-IN_REAL_TIME = tuple(
-    str(Path(__file__).parent / folder)
-    for folder in (
-        "conformance/bus",
-        "end_to_end/bus",
-        "end_to_end/controllers",
+HERE = Path(__file__).parent
+IN_REAL_TIME = {
+    "whole flights": ("conformance/bus", "end_to_end/bus", "end_to_end/controllers", "end_to_end/run"),
+    "parts of flights": (
         "end_to_end/faults",
-        "end_to_end/run",
         "end_to_end/vehicles",
         "unit/flight",
         "unit/runtime",
         "unit/sitl",
-    )
-)
-"""Tests that keep to the wall clock: they mostly wait, and would disturb each other's times."""
+    ),
+}
+"""Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -32,10 +29,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give tests with full counts time enough, and those in real time one worker."""
+    """Give tests with full counts time enough, and each group of those in real time one worker."""
     for item in items:
-        if str(item.path).startswith(IN_REAL_TIME):
-            item.add_marker(pytest.mark.xdist_group("real time"))
+        for group, folders in IN_REAL_TIME.items():
+            if any(item.path.is_relative_to(HERE / folder) for folder in folders):
+                item.add_marker(pytest.mark.xdist_group(group))
         if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
 

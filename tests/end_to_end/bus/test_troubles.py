@@ -69,7 +69,9 @@ def test_answers_of_any_form_do_not_keep_the_state_of_slots_from_being_seen(tool
 
     tool.declare_queryable("mmrs/**", answer)
     found = states_of("mission", "run-0", Endpoints(connect=ends.endpoints("c").connect), 2.0, ["a", "b"])
-    assert not json.loads(found[digest("a")])["go"]["active"]
+    told = json.loads(found[digest("a")])
+    assert told["robot"] == "a"
+    assert not told["slots"]["go"]["active"]
 
 
 @pytest.fixture
