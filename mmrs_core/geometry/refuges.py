@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 import shapely
@@ -27,6 +28,12 @@ def refuge_points(ring: Sequence[Vertex], keep: float, apart: float, count: int)
         apart: metres between two points, at least.
         count: how many are wanted; the first one does not depend on it.
     """
+    return _points(tuple(ring), keep, apart, count)
+
+
+@lru_cache(maxsize=64)
+def _points(ring: tuple[Vertex, ...], keep: float, apart: float, count: int) -> tuple[Vertex, ...]:
+    """Return them, once for all robots of a fleet."""
     parts = [part for part in _parts(shrink(ring, keep)) if not part.is_empty]
     if not parts or count < 1:
         return ()

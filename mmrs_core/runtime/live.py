@@ -84,11 +84,18 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     venture = replace(venture, inputs={id: each for id, each in venture.inputs.items() if id not in over})
     with ExitStack() as stack:
         stack.callback(venture.orders.close, "the run has ended")
-        robots = _connected(venture, backend, attention, stack)
-        venture.standing.connect(robots)
-        under_way = any(record.robot in robots for record in venture.resumed)
-        if not under_way:
-            _get_ready(robots, venture)
+        robots: dict[str, Backend] = {}
+        under_way = any(record.robot in venture.inputs for record in venture.resumed)
+        early = None if under_way else _EarlyOrders(venture, robots)
+        try:
+            _connect(robots, venture, backend, attention, stack, early)
+            venture.standing.connect(robots)
+            if early is not None:
+                _get_ready(robots, venture, early)
+        except BaseException:
+            if early is not None:
+                early.give_up("the run has ended")
+            raise
         steps = interpret(
             venture.program,
             robots,
@@ -118,11 +125,16 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         return ending
 
 
-def _connected(
-    venture: Venture, backend: BackendFactory, attention: Attention, stack: ExitStack
-) -> dict[str, Backend]:
+def _connect(
+    robots: dict[str, Backend],
+    venture: Venture,
+    backend: BackendFactory,
+    attention: Attention,
+    stack: ExitStack,
+    early: _EarlyOrders | None,
+) -> None:
+    """Connect robots one after the other, and look out for orders to those that are there."""
     shared: dict[str, object] = {}
-    robots: dict[str, Backend] = {}
     for id, given in venture.inputs.items():
         own = [record for record in venture.resumed if record.robot == id]
         live = Live(
@@ -141,14 +153,15 @@ def _connected(
         robots[id] = backend.connect(replace(given, live=live))
         if isinstance(robots[id], Closing):
             stack.callback(robots[id].close)  # type: ignore[attr-defined]
-    return robots
+        if early is not None:
+            early.look(set(venture.inputs))
 
 
 def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:
     return lambda words: say(f"'{robot}': {words}")
 
 
-def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
+def _get_ready(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) -> None:
     clock = venture.clock
     preparing: dict[str, Backend] = {}
     for id, robot in robots.items():
@@ -156,13 +169,8 @@ def _get_ready(robots: Mapping[str, Backend], venture: Venture) -> None:
             robot.prepare(clock.now())
             preparing[id] = robot
     venture.orders.called = clock.wake
-    early = _EarlyOrders(venture, robots)
-    try:
-        _await_ready(preparing, clock, early)
-        _meet(robots, venture, early)
-    except BaseException:
-        early.give_up("the run has ended")
-        raise
+    _await_ready(preparing, clock, early)
+    _meet(robots, venture, early)
     early.pass_on()
 
 
@@ -223,7 +231,7 @@ class _EarlyOrders:
                 if id not in unready or self._rests(id):
                     self._confirm(order, id)
         self._open = [order for order in self._open if order.open]
-        if self._ended >= set(self._robots):
+        if self._ended >= set(self._venture.inputs):
             self._venture.say("stopped before anything moved")
             for order in self._open:
                 for id in order.open:
@@ -243,7 +251,7 @@ class _EarlyOrders:
                 order.refuse(id, why)
 
     def _take(self, order: Order) -> None:
-        for id in set(order.robots) - set(self._robots):
+        for id in set(order.robots) - set(self._venture.inputs):
             order.refuse(id, "no such robot here")
         if order.kind == RESUME:
             self._let_go(order)
@@ -260,12 +268,13 @@ class _EarlyOrders:
 
     def _rests(self, id: str) -> bool:
         """Return whether a vehicle is seen to have its motors off, known to be the robot's or not."""
-        robot = self._robots[id]
+        robot = self._robots.get(id)
         return isinstance(robot, Telling) and robot.told().get("armed") is False
 
     def _confirm(self, order: Order, id: str) -> None:
         order.confirm(id)
-        order.note(id, self._robots[id])
+        if id in self._robots:
+            order.note(id, self._robots[id])
 
     def _let_go(self, order: Order) -> None:
         for id in order.open:

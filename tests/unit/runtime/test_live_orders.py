@@ -7,9 +7,10 @@ import time
 from math import inf
 
 import pytest
-from live_runs import TWO, WALK, Script, do
+from live_runs import TWO, WALK, Script, Walker, do
 
 from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.runtime.conditions import standard_conditions
@@ -61,6 +62,31 @@ def test_orders_while_robots_of_other_processes_are_waited_for_end_nothing_else(
     met.set()
     assert run.end().faults == {"a": Fault("ORDERED", "order to return")}
     assert "b end walk" in run.shown()
+
+
+def test_a_robot_that_is_there_is_answered_while_others_are_connected(live):
+    script, given, answered = Script(), [], []
+
+    def connect(robot_input):
+        if robot_input.robot.id == "b":
+            given.append(run_of["it"].orders.give(RETURN, ["a"]))
+        elif robot_input.robot.id == "c":
+            answered.append(given[0].settled.wait(10.0))
+        walker = Walker(robot_input, script)
+        walker.armed = False
+        return walker
+
+    three = program(*(robot(id, [do("walk")]) for id in "abc"))
+    begun, run_of = threading.Event(), {}
+
+    def connect_later(robot_input):
+        assert begun.wait(10.0)
+        return connect(robot_input)
+
+    run_of["it"] = run = live(three, BackendFactory("walker", "a robot of the test", connect_later))
+    begun.set()
+    assert run.end().faults == {"a": Fault("ORDERED", "order to return")}
+    assert answered == [True]
 
 
 def test_nothing_begins_once_every_robot_was_told_to_stop(live):
