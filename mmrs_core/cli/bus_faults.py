@@ -30,7 +30,7 @@ def bus_faults(
     if "bus-" not in text:
         return lambda carrier: carrier
     from mmrs_core.flight.injection import Rehearsal, injections
-    from mmrs_core.mavlink.backend_connection import FollowingClock
+    from mmrs_core.mavlink.backend.connection import FollowingClock
 
     robots = [robot.id for robot in program.robots]
     try:

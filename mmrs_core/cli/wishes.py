@@ -102,7 +102,7 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
 
 def _refuse_options(given: Mapping[str, str]) -> None:
     from mmrs_core.errors import UnsupportedError
-    from mmrs_core.mavlink.backend_options import link_options
+    from mmrs_core.mavlink.backend.options import link_options
 
     try:
         link_options(given)

@@ -7,7 +7,7 @@ from flight_crew import manned, robot_of
 
 from mmrs_core.flight.faults import DEVICE_SILENT, Fault
 from mmrs_core.flight.program import Measure, Policy
-from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend.moves import Moves
 
 SAMPLE = Measure("gas", "sample", "CO2")
 

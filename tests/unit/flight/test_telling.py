@@ -15,7 +15,7 @@ from mmrs_core.flight.program import Report
 from mmrs_core.flight.services.telling import CHUNK, MOST_CHUNKS, pieces_of, words_of
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.texts import Texts
-from mmrs_core.mavlink.backend_moves import Moves
+from mmrs_core.mavlink.backend.moves import Moves
 
 ASCII = st.characters(min_codepoint=32, max_codepoint=126)
 

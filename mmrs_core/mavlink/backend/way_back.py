@@ -13,8 +13,8 @@ from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, 
 from mmrs_core.flight.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
 from mmrs_core.flight.vehicles.vehicle import Vehicle
-from mmrs_core.mavlink.backend_moves import IN_THE_AIR, Moves
-from mmrs_core.mavlink.backend_worker import Job
+from mmrs_core.mavlink.backend.moves import IN_THE_AIR, Moves
+from mmrs_core.mavlink.backend.worker import Job
 
 Point = tuple[str, Place]
 

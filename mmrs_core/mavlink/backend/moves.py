@@ -36,7 +36,7 @@ from mmrs_core.flight.steps.energy import FULL, RECHARGE_FACTOR
 from mmrs_core.flight.steps.responses import policy_for
 from mmrs_core.flight.vehicles.corners import goes_through
 from mmrs_core.flight.vehicles.vehicle import Vehicle
-from mmrs_core.mavlink.backend_worker import Job
+from mmrs_core.mavlink.backend.worker import Job
 
 IN_THE_AIR = 1.0
 """Metres above home from which on a vehicle climbs by going up, not by taking off."""

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.mavlink.backend_options import link_options
+from mmrs_core.mavlink.backend.options import link_options
 
 
 def _connect(given: BackendInput) -> Backend:
@@ -16,7 +16,7 @@ def _connect(given: BackendInput) -> Backend:
         raise UnsupportedError("backend 'mavlink': drives robots in real time; 'mmrs run' does that")
     if find_spec("pymavlink") is None:
         raise UnsupportedError("backend 'mavlink': needs pymavlink; pip install 'mmrs-core[mavlink]'")
-    from mmrs_core.mavlink.backend_connection import connect
+    from mmrs_core.mavlink.backend.connection import connect
 
     return connect(given, given.live)
 

@@ -11,10 +11,10 @@ from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.equipping import equip
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.recognition import recognise
-from mmrs_core.mavlink.backend_equipment import Equipment
-from mmrs_core.mavlink.backend_lost_link import LostLink
-from mmrs_core.mavlink.backend_options import LinkOptions
-from mmrs_core.mavlink.backend_recovery import WayBack
+from mmrs_core.mavlink.backend.equipment import Equipment
+from mmrs_core.mavlink.backend.lost_link import LostLink
+from mmrs_core.mavlink.backend.options import LinkOptions
+from mmrs_core.mavlink.backend.way_back import WayBack
 
 
 class Setup:

@@ -13,7 +13,7 @@ from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.program import Action as VehicleAction
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.mavlink.backend_ground import Ground
+from mmrs_core.mavlink.backend.whereabouts import Ground
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,8 @@ from patience import until
 
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.program import Geographic, Place, Policy
-from mmrs_core.mavlink.backend_moves import Moves
-from mmrs_core.mavlink.backend_response import Response
+from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_core.mavlink.backend.response import Response
 
 pytestmark = pytest.mark.xdist_group("parts of flights")
 NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))

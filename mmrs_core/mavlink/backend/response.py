@@ -12,8 +12,8 @@ from mmrs_core.flight.steps.responding import HINDRANCES, respond_or_less
 from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION, alone, policy_for
 from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
-from mmrs_core.mavlink.backend_moves import Moves
-from mmrs_core.mavlink.backend_worker import Interrupted, Job
+from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_core.mavlink.backend.worker import Interrupted, Job
 
 KEPT_UP = "hands off until its motors are off; it still hears heartbeats, so end this later"
 

@@ -26,15 +26,15 @@ from mmrs_core.flight.services.uploads import uploads_of
 from mmrs_core.flight.steps.obeying import astray, obeying
 from mmrs_core.flight.steps.responses import CONTINUE
 from mmrs_core.flight.steps.watch import Watch
-from mmrs_core.mavlink.backend_equipment import Equipment
-from mmrs_core.mavlink.backend_lost_link import LostLink
-from mmrs_core.mavlink.backend_moves import Moves
-from mmrs_core.mavlink.backend_options import LinkOptions
-from mmrs_core.mavlink.backend_reach import Reach
-from mmrs_core.mavlink.backend_recovery import WayBack
-from mmrs_core.mavlink.backend_response import Response
-from mmrs_core.mavlink.backend_setup import Setup
-from mmrs_core.mavlink.backend_worker import Interrupted, Job, Worker
+from mmrs_core.mavlink.backend.equipment import Equipment
+from mmrs_core.mavlink.backend.lost_link import LostLink
+from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_core.mavlink.backend.options import LinkOptions
+from mmrs_core.mavlink.backend.reach import Reach
+from mmrs_core.mavlink.backend.response import Response
+from mmrs_core.mavlink.backend.setup import Setup
+from mmrs_core.mavlink.backend.way_back import WayBack
+from mmrs_core.mavlink.backend.worker import Interrupted, Job, Worker
 
 FAREWELL_SECONDS = 5.0
 """Real seconds that a vehicle has to be told to stay where it is."""

@@ -12,8 +12,8 @@ from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
 from mmrs_core.flight.places import distance, offset
 from mmrs_core.flight.program import Policy
 from mmrs_core.flight.vehicles.dry import DryVehicle
-from mmrs_core.mavlink.backend_moves import Moves
-from mmrs_core.mavlink.backend_recovery import WayBack, sortie_of
+from mmrs_core.mavlink.backend.moves import Moves
+from mmrs_core.mavlink.backend.way_back import WayBack, sortie_of
 from mmrs_core.mavlink.built import robot_of
 from mmrs_core.testing.programs import (
     LAND,

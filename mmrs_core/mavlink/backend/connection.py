@@ -29,10 +29,10 @@ from mmrs_core.flight.records.recording import Recording
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.recognition import system_of
 from mmrs_core.mavlink.actions import action_of
-from mmrs_core.mavlink.backend_equipment import Equipment
-from mmrs_core.mavlink.backend_ground import Ground
-from mmrs_core.mavlink.backend_options import LinkOptions, link_options
-from mmrs_core.mavlink.backend_robot import MavlinkBackend
+from mmrs_core.mavlink.backend.equipment import Equipment
+from mmrs_core.mavlink.backend.options import LinkOptions, link_options
+from mmrs_core.mavlink.backend.robot import MavlinkBackend
+from mmrs_core.mavlink.backend.whereabouts import Ground
 from mmrs_core.mavlink.built import built, robot_of
 from mmrs_core.mavlink.context import context_of
 from mmrs_core.mavlink.controllers import refusals
