@@ -6,30 +6,27 @@ between them is in ``habits.py`` and ``px4.py``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import LINK_LOST, NO_PROGRESS, Fault, Refused
+from ..faults import LINK_LOST, Fault, Refused
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
 from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
 from ..services.commands import Unanswered, command, name_of
-from ..services.missions import Item, mark_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import modes, preparation, safeguards
-from .corridor import width_for
 from .enclosure import enclose
 from .evidence import LinkEvidence
-from .following import Following
 from .helm import MODE_SECONDS, Helm
 from .listening import check_listening
-from .runs import first_flown, keep_place, speed_before
+from .mission import Mission
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
 from .travel import set_up
@@ -38,8 +35,6 @@ from .vehicle import State
 FORCE_DISARM = 21_196
 IMAGE_SECONDS = 10.0
 IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
-BEFORE_MISSION_ID = 6
-"""Bytes of MISSION_CURRENT before the id of the mission."""
 
 
 class MavlinkVehicle:
@@ -77,11 +72,9 @@ class MavlinkVehicle:
         self._kind = kind
         self._home = home
         self._home_tolerance = home_tolerance
-        self._mission: Sequence[Item] = ()
-        self._mark = 0
+        self._mission = Mission(link, self._telemetry, self._helm)
         self._alone: frozenset[int] = frozenset()
         self._listens = False
-        self._width: float | None = None
 
     def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
@@ -102,12 +95,7 @@ class MavlinkVehicle:
             self._tell(line)
         for line in uploads.words:
             self._tell(line)
-        if geographic:
-            self._mission = uploads.mission
-            mission = self._helm.habits.mission(uploads.mission)
-            self._mark = preparation.replace_all(self._link, mission, uploads.fence, uploads.rally)
-            self._width = width_for(self._link, self._kind)
-        if self._mission and (changed := keep_place(self._link)):
+        if geographic and (changed := self._mission.upload(uploads, self._kind)):
             self._tell(changed)
         for line in safeguards.report(self._link, self._kind):
             self._tell(line)
@@ -203,16 +191,9 @@ class MavlinkVehicle:
             Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
         """
         self._helm.arm()
-        self._check_mission()
-        self._select(first)
-        with self._telemetry.trail() as trail:
-            following = Following(trail, self._places(first, last), self._item, first, self._width)
-            self._helm.enter(modes.AUTO)
-            if (speed := speed_before(self._mission, first)) is not None:
-                command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
-            self._follow(first, last, following, reached)
+        end = self._mission.fly(first, last, reached)
         self._helm.enter(modes.GUIDED)
-        self._steering.stay(self._place_of(last))
+        self._steering.stay(end)
 
     def rest(self, seconds: float) -> None:
         """Stay for so many seconds."""
@@ -354,70 +335,6 @@ class MavlinkVehicle:
         """Return what is known now."""
         mode, armed = self._helm.mode(), self._telemetry.armed()
         return replace(self._telemetry.state(), mode=mode, armed=armed)
-
-    def _select(self, seq: int) -> None:
-        """Have the mission go on at an item, or at the first after it that is flown to.
-
-        Raises:
-            Refused: the vehicle does not say that it will.
-        """
-        flown = first_flown(self._mission, seq)
-        self._helm.habits.select(self._helm.habits.number(seq))
-        patience = self._link.clock.patience(MODE_SECONDS)
-        if not self._link.wait(lambda: seq <= self._item() <= flown, patience, heard=True):
-            raise Refused(f"the vehicle does not go to item {seq} of its mission")
-
-    def _item(self) -> int:
-        """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
-        found = self._telemetry.item()
-        return found - self._helm.habits.number(0) if found >= 0 else -1
-
-    def _place_of(self, seq: int) -> Place | None:
-        """Return where an item of the mission is, or the last one before it that is anywhere."""
-        for item in reversed(self._mission[: seq + 1]):
-            if item.x or item.y:
-                return Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
-        return None
-
-    def _places(self, first: int, last: int) -> dict[int, Place]:
-        """Return where the items of a run are, by their number, as far as they are anywhere."""
-        return {
-            seq: Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
-            for seq, item in enumerate(self._mission[: last + 1])
-            if seq >= first and (item.x or item.y)
-        }
-
-    def _check_mission(self) -> None:
-        """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
-
-        Raises:
-            Refused: somebody has.
-        """
-        current = self._link.latest("MISSION_CURRENT")
-        found = mark_of(current, BEFORE_MISSION_ID) if current is not None else 0
-        if self._mark and found and found != self._mark:
-            raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
-
-    def _follow(self, first: int, last: int, following: Following, reached: Callable[[int], None]) -> None:
-        """Tell each item of a run that the vehicle reaches, up to the last."""
-        done = first - 1
-        while done < last:
-            now = self._await_item_after(done + 1, following)
-            for seq in range(done + 1, now):
-                reached(seq)
-            done = now - 1
-
-    def _await_item_after(self, seq: int, following: Following) -> int:
-        def behind() -> int | None:
-            self._check_mission()
-            now = following.look()
-            return now if now > seq else None
-
-        found = self._link.wait(behind, 10 * PATIENCE_SECONDS, heard=True)
-        self._helm.check()
-        if found is None:
-            raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
-        return found
 
 
 def _taken(message: Message) -> bool:

@@ -1,0 +1,129 @@
+"""The mission that a vehicle was given: flown run by run, as long as nobody has replaced it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import NO_PROGRESS, Fault, Refused
+from ..links.link import Link
+from ..program import Geographic, Place
+from ..services.commands import command
+from ..services.missions import Item, mark_of
+from ..services.uploads import Uploads
+from . import modes, preparation
+from .corridor import width_for
+from .following import Following
+from .helm import MODE_SECONDS, Helm
+from .runs import first_flown, keep_place, speed_before
+from .steering import PATIENCE_SECONDS
+from .telemetry import Telemetry
+
+BEFORE_ID = 6
+"""Bytes of MISSION_CURRENT before the id of the mission."""
+
+
+class Mission:
+    """The program's mission on a vehicle; there is none until it is uploaded."""
+
+    def __init__(self, link: Link, telemetry: Telemetry, helm: Helm) -> None:
+        """Take a vehicle that has none of the program's."""
+        self._link, self._telemetry, self._helm = link, telemetry, helm
+        self._items: Sequence[Item] = ()
+        self._id = 0
+        self._width: float | None = None
+
+    def upload(self, uploads: Uploads, kind: str) -> str:
+        """Replace mission, fence and rally points of a vehicle of a kind, and read them back.
+
+        Returns:
+            What was changed so that each run begins with its own first item; empty where nothing was.
+
+        Raises:
+            Refused: something is not accepted, or read back differently, or runs would begin elsewhere.
+        """
+        self._items = uploads.mission
+        items = self._helm.habits.mission(uploads.mission)
+        self._id = preparation.replace_all(self._link, items, uploads.fence, uploads.rally)
+        self._width = width_for(self._link, kind)
+        return keep_place(self._link) if self._items else ""
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> Place | None:
+        """Fly a run of items, and tell each that is behind; the vehicle then waits at the end of the run.
+
+        Returns:
+            Where that is; None where no item says.
+
+        Raises:
+            Refused: the vehicle has another mission by now, or does not begin with that item.
+            Fault: no item was reached for too long, or somebody else has set the mission ahead or back.
+        """
+        self._check()
+        self._select(first)
+        with self._telemetry.trail() as trail:
+            places = self._places(last)
+            run = {seq: place for seq, place in places.items() if seq >= first}
+            following = Following(trail, run, self._item, first, self._width)
+            self._helm.enter(modes.AUTO)
+            if (speed := speed_before(self._items, first)) is not None:
+                command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
+            self._follow(first, last, following, reached)
+        return places[max(places)] if places else None
+
+    def _check(self) -> None:
+        """Make sure that nobody has replaced the mission, where the vehicle has given it an id.
+
+        Raises:
+            Refused: somebody has.
+        """
+        current = self._link.latest("MISSION_CURRENT")
+        found = mark_of(current, BEFORE_ID) if current is not None else 0
+        if self._id and found and found != self._id:
+            raise Refused("the vehicle has another mission than was uploaded: somebody has replaced it")
+
+    def _select(self, seq: int) -> None:
+        """Have the mission go on at an item, or at the first after it that is flown to.
+
+        Raises:
+            Refused: the vehicle does not say that it will.
+        """
+        flown = first_flown(self._items, seq)
+        self._helm.habits.select(self._helm.habits.number(seq))
+        patience = self._link.clock.patience(MODE_SECONDS)
+        if not self._link.wait(lambda: seq <= self._item() <= flown, patience, heard=True):
+            raise Refused(f"the vehicle does not go to item {seq} of its mission")
+
+    def _item(self) -> int:
+        """Return the item of the program's mission that the vehicle is at; less than 0: not known."""
+        found = self._telemetry.item()
+        return found - self._helm.habits.number(0) if found >= 0 else -1
+
+    def _places(self, last: int) -> dict[int, Place]:
+        """Return where the items up to one are, by their number, as far as they are anywhere."""
+        return {
+            seq: Geographic(item.x * 1e-7, item.y * 1e-7, item.z)
+            for seq, item in enumerate(self._items[: last + 1])
+            if item.x or item.y
+        }
+
+    def _follow(self, first: int, last: int, following: Following, reached: Callable[[int], None]) -> None:
+        """Tell each item of a run that the vehicle reaches, up to the last."""
+        done = first - 1
+        while done < last:
+            now = self._await_item_after(done + 1, following)
+            for seq in range(done + 1, now):
+                reached(seq)
+            done = now - 1
+
+    def _await_item_after(self, seq: int, following: Following) -> int:
+        def behind() -> int | None:
+            self._check()
+            now = following.look()
+            return now if now > seq else None
+
+        found = self._link.wait(behind, 10 * PATIENCE_SECONDS, heard=True)
+        self._helm.check()
+        if found is None:
+            raise Fault(NO_PROGRESS, f"item {seq} of the mission was not reached")
+        return found
