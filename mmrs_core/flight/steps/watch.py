@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 
 from ..clock import Clock
 from ..faults import (
@@ -11,7 +12,6 @@ from ..faults import (
     GROUND_LOST,
     LINK_LOST,
     LOG_FAILED,
-    MOTORS_OFF,
     POSITION_LOST,
     STOPPED,
     TAKEN_OVER,
@@ -23,13 +23,13 @@ from ..faults import (
 from ..links.link import Link
 from ..policies import COMES_DOWN
 from ..program import Policy, Robot
-from ..vehicles import modes
 from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
 from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
-from .responses import CONTINUE, HOLD, LAND, policy_for
+from .motors import DOWN, Motors
+from .responses import CONTINUE, LAND, policy_for
 from .ways import Track
 
 SILENCE_SECONDS = 5.0
@@ -40,23 +40,26 @@ BEAT_SECONDS = 3.0
 LASTING = {POSITION_LOST: 2.0}
 """Seconds that something must last before it counts, where policies do not say; else none."""
 
-TOUCHING = 1.0
-"""Metres above home below which a vehicle that lands may stop its motors any moment."""
-
-COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
-"""Modes at whose end the motors stop."""
-
 ANYWHERE = frozenset({LAND, "SURFACE", "STOP_THRUST"})
 """Responses that need neither a position nor much energy."""
-
-DOWN = {"copter": LAND, "sub": "SURFACE", "rover": HOLD}
-"""What is done, by kind of vehicle, where nothing can be carried on: without a position, too."""
 
 GROUND_ONLY = f"carries on after {VEHICLE_RESTARTED} before it sets out only; on its way it does {{}} then"
 CRITICAL = ("critical", "emergency")
 """What vehicles say of batteries that are nearly empty; of others, policies know better what to do."""
 
 Decide = Callable[[str, str, str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class _Watched:
+    """What there is to look at once there is a vehicle."""
+
+    link: Link
+    vehicle: MavlinkVehicle
+    signs: Signs
+    departures: Departures
+    ground: Ground
+    motors: Motors
 
 
 class Watch:
@@ -86,30 +89,27 @@ class Watch:
         self._clock = clock
         self._stop = stop
         self._reserve = Reserve(robot)
-        self._link: Link | None = None
-        self._vehicle: MavlinkVehicle | None = None
-        self._signs: Signs | None = None
-        self._departures: Departures | None = None
-        self._ground: Ground | None = None
+        self._watched: _Watched | None = None
         self._heeded: frozenset[str] | None = None
         self._hands_off = self._alone = False
         self._response = ""
-        self._flown = self._anew = False
+        self._anew = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle, too."""
-        self._link, self._vehicle, self._signs = link, vehicle, Signs(vehicle.telemetry)
-        self._departures = Departures(self._robot, link, vehicle, self._signs, self._answers)
-        self._ground = Ground(link)
+        signs = Signs(vehicle.telemetry)
+        departures = Departures(self._robot, link, vehicle, signs, self._answers)
+        motors = Motors(vehicle, self._robot.vehicle)
+        self._watched = _Watched(link, vehicle, signs, departures, Ground(link), motors)
         vehicle.insist(self._insists)
 
     def forewarn(self) -> None:
         """Tell people before the robot moves what of its policies does not count, or not yet."""
         if policy_for(VEHICLE_RESTARTED, self._robot).response == CONTINUE:
             self.say(GROUND_ONLY.format(DOWN[self._robot.vehicle]))
-        if self._ground is not None and (missing := self._ground.missing(self._robot)):
+        if self._watched is not None and (missing := self._watched.ground.missing(self._robot)):
             self.say(missing)
 
     def relax(self, handled: Collection[str] | None = None, response: str = "") -> None:
@@ -143,14 +143,14 @@ class Watch:
         Raises:
             Fault: a pilot has it, as far as anybody can tell, or it does not tell its mode.
         """
-        link, vehicle, departures = self._link, self._vehicle, self._departures
         answers, self._hands_off = True, True
-        if link is not None and vehicle is not None and departures is not None:
+        if self._watched is not None:
+            link, vehicle = self._watched.link, self._watched.vehicle
             limit = self._clock.patience(BEAT_SECONDS, 1.0)
             if not link.wait(lambda: link.since("HEARTBEAT") < limit, limit):
                 raise Fault(LINK_LOST, "its heartbeat is not heard")
             if vehicle.telemetry.mode() not in vehicle.modes_alone and vehicle.telemetry.armed():
-                answers = departures.find(moving=self.moving) is not None
+                answers = self._watched.departures.find(moving=self.moving) is not None
             vehicle.accept_own_modes()
         self._hands_off, self._alone = False, True
         return answers
@@ -181,27 +181,27 @@ class Watch:
         """Forget what was: the vehicle is set up, or has another battery."""
         self._since.clear()
         self._borne.clear()
-        self._flown = self._anew = False
+        self._anew = False
         self._reserve.begin()
-        if self._signs is not None:
-            self._signs.renew()
-        if self._departures is not None:
-            self._departures.taken = False
+        if self._watched is not None:
+            self._watched.signs.renew()
+            self._watched.motors.renew()
+            self._watched.departures.taken = False
 
     @property
     def restarted(self) -> bool:
         """Return whether the vehicle has started anew since `renew`."""
-        return self._anew or (self._signs is not None and self._signs.restarted)
+        return self._anew or (self._watched is not None and self._watched.signs.restarted)
 
     @property
     def looking(self) -> bool:
         """Return whether it looks for the cause of a change of mode, while nothing may be sent."""
-        return self._departures is not None and self._departures.looking
+        return self._watched is not None and self._watched.departures.looking
 
     @property
     def taken(self) -> bool:
         """Return whether it has found that a pilot has taken over."""
-        return self._departures is not None and self._departures.taken
+        return self._watched is not None and self._watched.departures.taken
 
     def check(self) -> None:
         """Raise what should end a wait.
@@ -212,10 +212,10 @@ class Watch:
         if self.looking:
             return
         stops = self._stop.is_set() and self._heeds(STOPPED)
-        link, vehicle, signs, departures = self._link, self._vehicle, self._signs, self._departures
-        if link is not None and not stops:
-            self._check_link(link)
-        if self.strange or link is None or vehicle is None or signs is None or departures is None:
+        watched = self._watched
+        if watched is not None and not stops:
+            self._check_link(watched.link)
+        if self.strange or watched is None:
             if stops:
                 raise Stopped()
             self._weigh(LOG_FAILED, self.unkept())
@@ -223,17 +223,17 @@ class Watch:
         if self._hands_off:
             return
         # Whoever has the vehicle goes before all policies and stops, also where both are seen at once.
-        departure = departures.find(moving=self.moving)
+        departure = watched.departures.find(moving=self.moving)
         if stops:
             raise Stopped()
         if departure is not None:
-            self._answer(*departure, vehicle, departures)
-        self._check_motors(vehicle)
-        for event, why in (*signs.seen(moving=self.moving), (BATTERY_LOW, self._low())):
+            self._answer(*departure, watched)
+        watched.motors.check(moving=self.moving)
+        for event, why in watched.signs.seen(moving=self.moving):
             self._weigh(event, why)
+        self._weigh(BATTERY_LOW, self._low(watched.vehicle))
         self._weigh(LOG_FAILED, self.unkept())
-        if self._ground is not None:
-            self._check_ground(self._ground)
+        self._check_ground(watched.ground)
 
     def _check_ground(self, ground: Ground) -> None:
         for line in (news := ground.news()):
@@ -247,26 +247,11 @@ class Watch:
         elif GROUND_LOST not in self._borne and self._heeds(GROUND_LOST):
             self._judge(GROUND_LOST, why, policy)
 
-    def _check_motors(self, vehicle: MavlinkVehicle) -> None:
-        """Raise a fault where a vehicle that was in the air has stopped its motors elsewhere than to land.
-
-        It has crashed, or somebody has stopped it: whoever lies there must not be armed again.
-        """
-        tells = vehicle.telemetry
-        if self._robot.vehicle != "copter" or not self.moving or vehicle.state().mode in COMES_DOWN_IN:
-            low = tells.grounded() or vehicle.state().place.height < TOUCHING
-            self._flown = self._flown and self.moving and not low
-        elif tells.armed():
-            self._flown = self._flown or tells.airborne()
-        elif self._flown:
-            raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
-
-    def _low(self) -> str:
-        assert self._vehicle is not None
+    def _low(self, vehicle: MavlinkVehicle) -> str:
         response = policy_for(BATTERY_LOW, self._robot, self.current()).response
-        state = self._vehicle.state()
+        state = vehicle.state()
         low = self._reserve.low(state, response, self.track())
-        return low or (self._vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
+        return low or (vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
 
     def _weigh(self, event: str, why: str) -> None:
         """Raise a fault for what has lasted long enough and must not be borne."""
@@ -306,7 +291,7 @@ class Watch:
                 link.give_up(self._clock.patience(max(limit, SILENCE_SECONDS), LEAST_SILENCE) + silent)
             raise Fault(LINK_LOST, f"the vehicle has been silent for {silent:.0f} s{why}")
 
-    def _answer(self, event: str, said: str, vehicle: MavlinkVehicle, departures: Departures) -> None:
+    def _answer(self, event: str, said: str, watched: _Watched) -> None:
         """Answer what the vehicle has answered by leaving its mode, as policies say.
 
         Where the robot bears that, or does so already, the vehicle is taken back, if that makes sense; one
@@ -315,6 +300,7 @@ class Watch:
         Raises:
             Fault: what is to be answered, or Displaced.
         """
+        vehicle = watched.vehicle
         if self._alone:
             vehicle.accept_own_modes()
             return
@@ -325,50 +311,37 @@ class Watch:
                 vehicle.take_back()
                 return
         if self._answers(event):
-            departures.taken_back = self._clock.now()
+            watched.departures.taken_back = self._clock.now()
             raise Fault(event, why)
         if event == VEHICLE_RESTARTED:
-            self._check_stands(said, vehicle)
+            watched.motors.check_stands(said)
         elif hindrance := self._hindrance(event, said, vehicle):
             raise Fault(event, f"{why}; {hindrance}", LAND)
-        self._take_back(event, why)
+        self._take_back(event, why, watched.departures)
         raise Displaced(event, why)
-
-    def _check_stands(self, said: str, vehicle: MavlinkVehicle) -> None:
-        """Make sure that a vehicle that has started anew has yet to take off, and so can begin anew.
-
-        Raises:
-            Fault: it was on its way: it has forgotten what it was doing, and may not know where it is.
-        """
-        armed, kind = vehicle.telemetry.armed(), self._robot.vehicle
-        if armed or self._flown or kind != "copter":
-            motors = "on" if armed else "off"
-            why = f"{said} on its way, with its motors {motors}: nothing can be carried on"
-            raise Fault(VEHICLE_RESTARTED, why, DOWN[kind] if armed else HOLD)
 
     def _note_restart(self) -> None:
         """Take a restart for known, which explains no other mode after this; the vehicle is to be set up."""
         self._anew = True
-        if self._signs is not None:
-            self._signs.renew()
+        if self._watched is not None:
+            self._watched.signs.renew()
 
     def _insists(self, fault: Fault) -> bool:
         """Return whether a vehicle that goes elsewhere by itself, while it is told a mode, is told again."""
-        assert self._vehicle is not None
-        assert self._departures is not None
-        event, said = fault.event, self._vehicle.telemetry.announcements.of_this_mode
+        assert self._watched is not None
+        vehicle, departures = self._watched.vehicle, self._watched.departures
+        event, said = fault.event, vehicle.telemetry.announcements.of_this_mode
         if event == TAKEN_OVER or self._answers(event):
             return False
-        why = said(event, self._departures.taken_back)
-        if not why or self._hindrance(event, why, self._vehicle):
+        why = said(event, departures.taken_back)
+        if not why or self._hindrance(event, why, vehicle):
             return False
-        self._take_back(event, f"{why}; {fault}")
+        self._take_back(event, f"{why}; {fault}", departures)
         return True
 
-    def _take_back(self, event: str, why: str) -> None:
+    def _take_back(self, event: str, why: str, departures: Departures) -> None:
         goes_on = self._response or CONTINUE
-        if self._departures is not None:
-            self._departures.taken_back = self._clock.now()
+        departures.taken_back = self._clock.now()
         self.decide(event, why, goes_on)
         self.say(f"takes its vehicle back, {goes_on} goes on: {event}: {why}")
 
@@ -400,8 +373,8 @@ class Watch:
         """
         if event == LINK_LOST:
             self.answers_alone()
-        elif self._departures is not None:
-            self._departures.check(event, moving=self.moving)
+        elif self._watched is not None:
+            self._watched.departures.check(event, moving=self.moving)
 
     def _answers(self, event: str) -> bool:
         """Return whether the robot is to answer an event that happens now."""

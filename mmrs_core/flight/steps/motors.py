@@ -1,0 +1,66 @@
+"""Whether the motors of a vehicle may be off: not where it was in the air, and has not come down to land."""
+
+from __future__ import annotations
+
+from ..faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
+from ..vehicles import modes
+from ..vehicles.mavlink_vehicle import MavlinkVehicle
+from .responses import HOLD, LAND
+
+TOUCHING = 1.0
+"""Metres above home below which a vehicle that lands may stop its motors any moment."""
+
+COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
+"""Modes at whose end the motors stop."""
+
+DOWN = {"copter": LAND, "sub": "SURFACE", "rover": HOLD}
+"""What is done, by kind of vehicle, where nothing can be carried on: without a position, too."""
+
+
+class Motors:
+    """Keeps whether a vehicle is on its way through the air."""
+
+    def __init__(self, vehicle: MavlinkVehicle, kind: str) -> None:
+        """Look at a ``copter``, ``sub`` or ``rover``."""
+        self._vehicle, self._kind = vehicle, kind
+        self._flown = False
+
+    def renew(self) -> None:
+        """Forget what was: the vehicle is on the ground."""
+        self._flown = False
+
+    def check(self, *, moving: bool) -> None:
+        """Make sure that a vehicle that was in the air stops its motors only to land.
+
+        If it does so elsewhere, it has crashed, or somebody has stopped it: whoever lies there must not be
+        armed again.
+
+        Args:
+            moving: whether the robot is under way.
+
+        Raises:
+            Fault: it has stopped them elsewhere.
+        """
+        tells, state = self._vehicle.telemetry, self._vehicle.state()
+        if self._kind != "copter" or not moving or state.mode in COMES_DOWN_IN:
+            low = tells.grounded() or state.place.height < TOUCHING
+            self._flown = self._flown and moving and not low
+        elif tells.armed():
+            self._flown = self._flown or tells.airborne()
+        elif self._flown:
+            raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
+
+    def check_stands(self, said: str) -> None:
+        """Make sure that a vehicle that has started anew has yet to take off, and so can begin anew.
+
+        Args:
+            said: of its start.
+
+        Raises:
+            Fault: it was on its way: it has forgotten what it was doing, and may not know where it is.
+        """
+        armed = self._vehicle.telemetry.armed()
+        if armed or self._flown or self._kind != "copter":
+            motors = "on" if armed else "off"
+            why = f"{said} on its way, with its motors {motors}: nothing can be carried on"
+            raise Fault(VEHICLE_RESTARTED, why, DOWN[self._kind] if armed else HOLD)
