@@ -228,6 +228,7 @@ def back(in_the_air):
         made.simulated.mute()
         assert made.caught().event == "LINK_LOST"
         made.crew.watch.relax({"LINK_LOST"}, "LAND")
+        until(lambda: made.mode == "brake")
         made.simulated.faults.take_stick(mode)
         made.simulated.unmute()
         until(lambda: made.crew.link.since("HEARTBEAT") < SPEEDUP)
