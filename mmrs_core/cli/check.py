@@ -33,7 +33,7 @@ def check(
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.journey import Workshop, verdicts_of
     from mmrs_core.cli.sarif import as_faults, refusals_in, subject_of, write_sarif
-    from mmrs_core.cli.verdict_words import verdict_line, verdict_table
+    from mmrs_core.cli.verdict_words import hint_of, verdict_line, verdict_table
     from mmrs_core.pipeline import refusals
 
     workshop = Workshop(settings_of(call))
@@ -57,11 +57,13 @@ def check(
         for line in verdict_table(verdicts):
             say(line)
         say(f"{file}: {_in_all(verdicts, against)}")
-        hints = {each.name: each.hint for each in workshop.contributions.checks}
+        hinted: set[str] = set()
         for verdict in against:
             say(f"  - {verdict_line(verdict)}")
-            if hint := hints.pop(verdict.property, ""):  # once for each property
+            hint = hint_of(verdict, workshop.contributions.checks)
+            if hint and (verdict.property + hint) not in hinted:
                 say(f"    hint: {hint}")
+            hinted.add(verdict.property + hint)
     return 1 if against else 0
 
 

@@ -120,9 +120,9 @@ def as_faults(
         against: those that make the behaviour unsafe.
         checks: what says how to mend each.
     """
-    from mmrs_core.cli.verdict_words import verdict_line
+    from mmrs_core.cli.verdict_words import hint_of, verdict_line
 
-    hints = {check.name: check.hint for check in checks}
+    known = tuple(checks)
     told = (each for each in verdicts if each in against or each.status.value == "unknown")
     return tuple(
         Diagnostic(
@@ -130,7 +130,7 @@ def as_faults(
             Severity.ERROR if each in against else Severity.NOTE,
             verdict_line(each),
             each.place,
-            hints.get(each.property, ""),
+            hint_of(each, known),
         )
         for each in told
     )

@@ -5,9 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from mmrs_core.cli.figures import quantity
-from mmrs_core.contributions.checks import Status, Verdict
+from mmrs_core.contributions.checks import Check, Status, Verdict
 
 _RANK = {Status.VIOLATED: 0, Status.UNKNOWN: 1, Status.NOT_CHECKED: 2, Status.SAFE: 3}
+
+_FOR_UNKNOWN = "give what is missing, or name the property in the mission's acceptedUnknowns"
+
+
+def hint_of(verdict: Verdict, checks: Iterable[Check]) -> str:
+    """Return how to mend what was found, or what to say where it cannot be known."""
+    if verdict.status is Status.UNKNOWN:
+        return _FOR_UNKNOWN
+    return next((check.hint for check in checks if check.name == verdict.property), "")
 
 
 def verdict_line(verdict: Verdict) -> str:

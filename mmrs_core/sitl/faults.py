@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
-from math import isfinite
+from inspect import signature
+from math import isfinite, nan
 
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.body import wind_of
@@ -185,9 +186,25 @@ class Faults:
 
 
 def _finite(text: str) -> float:
-    if not isfinite(number := float(text)):
-        raise ValueError(f"{text} is no finite number")
+    try:
+        number = float(text)
+    except ValueError:
+        number = nan
+    if not isfinite(number):
+        raise ValueError(f"'{text}' is no finite number")
     return number
+
+
+def _command(text: str) -> int:
+    if not text.isdecimal():
+        raise ValueError(f"'{text}' is no number of a command")
+    return int(text)
+
+
+def _armed(how: str) -> bool:
+    if how not in ("", "armed"):
+        raise ValueError(f"'{how}' is not armed")
+    return how == "armed"
 
 
 def _refuse_below(unit: str, number: float) -> None:
@@ -199,14 +216,14 @@ Act = Callable[..., None]
 
 FAULTS: Mapping[str, Act] = {
     "gps-lost": Faults.lose_position,
-    "restart": lambda faults, how="": faults.restart(how == "armed"),
+    "restart": lambda faults, armed="": faults.restart(_armed(armed)),
     "stick": Faults.take_stick,
     "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(
         _finite(metres), _finite(bearing)
     ),
     "breach": Faults.breach_fence,
     "battery": lambda faults, level: faults.set_battery(_finite(level)),
-    "silent": lambda faults, *commands: faults.silence(*map(int, commands)),
+    "silent": lambda faults, *commands: faults.silence(*map(_command, commands)),
     "link-down": Faults.cut_link,
     "dumb": Faults.fall_dumb,
     "ground-down": Faults.cut_ground,
@@ -237,10 +254,22 @@ ENDS: Mapping[str, Act] = {
 def _do(acts: Mapping[str, Act], faults: Faults, name: str, values: tuple[str, ...]) -> None:
     if name not in acts:
         raise ValueError(_unknown(name))
+    act = acts[name]
     try:
-        acts[name](faults, *values)
-    except (TypeError, ValueError) as error:
+        signature(act).bind(faults, *values)
+    except TypeError:
+        raise ValueError(f"{' '.join((name, *values))}: {name} takes {_values(act)}") from None
+    try:
+        act(faults, *values)
+    except ValueError as error:
         raise ValueError(f"{' '.join((name, *values))}: {error}") from error
+
+
+def _values(act: Act) -> str:
+    """Return the values that a fault takes, for people."""
+    wanted = list(signature(act).parameters.values())[1:]
+    shown = [each.name if each.default is each.empty else f"{each.name} (may be left out)" for each in wanted]
+    return " and ".join(shown) or "no value"
 
 
 def _unknown(name: str) -> str:

@@ -134,14 +134,16 @@ def _fault(robot: str, word: str) -> Injection:
     stranger, colon, rest = word.rpartition(":")
     if colon:
         raise ValueError(f"{word}: there is no robot {stranger!r}")
-    found = _FAULT.fullmatch(rest)
-    if found is None or found[1] not in NAMES:
+    name = re.split("[=@]", rest)[0]
+    if name not in NAMES:
         raise ValueError(f"{word!r}: is not a fault; there are {', '.join(NAMES)} and seed")
-    name, amount, spread, begins, sign, last = found.groups()
-    if (name in TIMED) != (begins is not None):
-        raise ValueError(
-            f"{word}: say {name}@SECOND+SECONDS" if name in TIMED else f"{word}: say {name}=VALUE"
+    found = _FAULT.fullmatch(rest)
+    if found is None or (name in TIMED) != (found[4] is not None):
+        usage = (
+            f"{name}@SECOND+SECONDS" if name in TIMED else f"{name}={0.2 if name.endswith('delay') else 0.15}"
         )
+        raise ValueError(f"{word!r}: say {usage}")
+    _, amount, spread, begins, sign, last = found.groups()
     text = f"{robot}:{word}" if robot else word
     if name not in TIMED:
         return Injection(text, robot, name, float(amount), float(spread or 0.0))

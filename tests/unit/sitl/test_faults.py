@@ -139,8 +139,11 @@ def test_a_photo_is_told_unless_the_camera_is_dead(vehicle, ground):
     ("words", "complaint"),
     [
         (("gps-gone",), "there are gps-lost"),
-        (("battery",), "battery"),
-        (("battery", "half"), "half"),
+        (("battery",), "battery takes level"),
+        (("battery", "half"), "'half' is no finite number"),
+        (("gps-lost", "3"), "gps-lost takes no value"),
+        (("silent", "abc"), "'abc' is no number of a command"),
+        (("restart", "disarmed"), "'disarmed' is not armed"),
         (("stick", "acro"), "this vehicle has"),
     ],
 )
