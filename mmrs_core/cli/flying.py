@@ -164,7 +164,7 @@ def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
         if len(seen) > 1:
             raise KeyboardInterrupt
         tell("stopping; interrupt again to end without waiting for robots, and those that pilots have")
-        orders.give(STOP, robots)
+        orders.give(STOP, robots, interrupt=True)
 
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
     if hasattr(signal, "SIGHUP"):

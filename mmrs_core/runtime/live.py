@@ -15,10 +15,11 @@ from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInp
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition, Fault
 from mmrs_core.errors import LinkLostError, MmrsError
+from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
-from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, Order, Orders
+from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.standing import Standing
 from mmrs_core.runtime.terms import Ending, Terms
@@ -213,7 +214,7 @@ class _EarlyOrders:
         self._venture, self._robots = venture, robots
         self._open: list[Order] = []
         self._later: list[Order] = []
-        self._ended: set[str] = set()
+        self._ended: dict[str, Order] = {}
 
     def look(self, unready: Collection[str]) -> None:
         """Confirm to whom that is ready, and stays, that it does; once all are to end, nothing begins.
@@ -231,12 +232,26 @@ class _EarlyOrders:
                 if id not in unready or self._rests(id):
                     self._confirm(order, id)
         self._open = [order for order in self._open if order.open]
-        if self._ended >= set(self._venture.inputs):
+        if self._ended.keys() >= set(self._venture.inputs):
             self._venture.say("stopped before anything moved")
             for order in self._open:
                 for id in order.open:
                     self._confirm(order, id)
+            self._record_ends()
             raise KeyboardInterrupt
+
+    def _record_ends(self) -> None:
+        """Have the logs say that orders have ended the programs; of an interrupted run, nothing is left."""
+        venture = self._venture
+        for id, order in self._ended.items():
+            if id not in venture.inputs or order.interrupt or venture.observe is None:
+                continue
+            robot = venture.program.robot(id)
+            which = STOPPED if order.kind == STOP else ORDERED
+            time = round(venture.clock.now(), 6)
+            venture.observe(
+                StepRecord(venture.run, id, 0, 1, time, "fault", robot.moves[robot.start].id, which)
+            )
 
     def pass_on(self) -> None:
         """Have the interpreter obey what was ordered, and know the answers, before what was ordered since."""
@@ -261,7 +276,7 @@ class _EarlyOrders:
         else:
             self._later.append(order)
         if order.kind in ENDINGS:
-            self._ended.update(order.open)
+            self._ended.update(dict.fromkeys(order.open, order))
             self._take_back(order.open, "something else was ordered since")
         if order.kind != ANSWER:
             self._open.append(order)

@@ -24,6 +24,7 @@ class Order:
         kind: one of KINDS.
         robots: who has to obey.
         question, answer: of an answer.
+        interrupt: whether it is no order to the robots but an interrupt of the run.
         confirmed: by robot, real seconds until its vehicle had obeyed.
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
@@ -37,6 +38,7 @@ class Order:
     question: str = ""
     answer: bool = False
     told: Callable[[str, str | None], None] = lambda robot, why: None
+    interrupt: bool = False
     confirmed: dict[str, float] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
     settled: threading.Event = field(default_factory=threading.Event)
@@ -104,6 +106,7 @@ class Orders:
         question: str = "",
         answer: bool = False,
         told: Callable[[str, str | None], None] = lambda robot, why: None,
+        interrupt: bool = False,
     ) -> Order:
         """Have robots obey; return the order, which tells who has; from any thread or signal handler.
 
@@ -112,7 +115,7 @@ class Orders:
         """
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
-        order = Order(kind, tuple(dict.fromkeys(robots)), question, answer, told)
+        order = Order(kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt)
         self._waiting.append(order)
         if self._closed:
             self.close(self._closed)

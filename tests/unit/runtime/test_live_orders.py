@@ -100,6 +100,30 @@ def test_nothing_begins_once_every_robot_was_told_to_stop(live):
     assert "stopped before anything moved" in run.said
 
 
+def test_logs_tell_of_programs_that_were_ended_before_anything_moved(live):
+    observed = []
+    run = live(TWO, Script(ready=inf), observe=observed.append)
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.orders.give(RETURN, ["a"])
+    run.orders.give(STOP, ["b"])
+    run.end()
+    assert [(r.robot, r.seq, r.label, r.move, r.detail) for r in observed] == [
+        ("a", 0, "fault", "start", "ORDERED"),
+        ("b", 0, "fault", "start", "STOPPED"),
+    ]
+    assert replay(TWO, observed).outcome is Outcome.FAILED
+
+
+def test_nothing_is_left_of_a_run_that_was_interrupted_before_anything_moved(live):
+    observed = []
+    run = live(TWO, Script(ready=inf), observe=observed.append)
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.orders.give(STOP, ["a", "b"], interrupt=True)
+    run.end()
+    assert isinstance(run.error, KeyboardInterrupt)
+    assert observed == []
+
+
 def test_a_hold_is_confirmed_when_the_robot_is_ready_and_not_before(live):
     run = live(TWO, Script(ready=inf))
     run.wait_for(lambda: len(run.script.robots) == 2)
