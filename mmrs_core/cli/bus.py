@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.cli.bus_access import Holder
     from mmrs_core.flight.bus import Node, Recorded
-    from mmrs_core.flight.bus.gateway import Gateway
-    from mmrs_core.flight.bus.over_zenoh import Endpoints
+    from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
+    from mmrs_core.flight.bus.gateway.server import Gateway
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -130,7 +130,7 @@ def gateway(
     from mmrs_core.cli.journey import Workshop
 
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.over_zenoh import Endpoints
+        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
     program = load_program(Workshop(settings_of(call)), behaviour_file(behaviour))
     if robot not in {each.id for each in program.robots}:
         raise typer.BadParameter(f"--robot {robot}: not in the behaviour")
@@ -165,7 +165,7 @@ def state(
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
+        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, states_of
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
@@ -253,8 +253,8 @@ def _refuse_endpoints(listen: list[str] | None, connect: list[str] | None) -> No
 def _gateway(
     program: Program, robot: str, endpoints: Endpoints, run: str, folder: Path, port: int
 ) -> Gateway:
-    from mmrs_core.flight.bus.gateway import Gateway
-    from mmrs_core.flight.bus.over_zenoh import ZenohCarrier
+    from mmrs_core.flight.bus.carriers.over_zenoh import ZenohCarrier
+    from mmrs_core.flight.bus.gateway.server import Gateway
     from mmrs_core.runtime.slots import node_of
 
     names = [each.id for each in program.robots]

@@ -13,8 +13,8 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.output import tell
 from mmrs_core.errors import LinkLostError, UnreadableError, UnsupportedError
 from mmrs_core.flight.bus import Incomplete, Unwelcome, begin_together
-from mmrs_core.flight.bus.carrier import Carrier
-from mmrs_core.flight.bus.endpoints import first_fault
+from mmrs_core.flight.bus.carriers.carrier import Carrier
+from mmrs_core.flight.bus.carriers.endpoints import first_fault
 from mmrs_core.runtime.resuming import restore
 from mmrs_core.runtime.slots import InProcessBus, ProgramBus, members_of, shared_bus
 
@@ -72,7 +72,7 @@ def bus_for(
         restore(bus, program, resumed or ())
         return bus
     try:
-        from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
     except ModuleNotFoundError as error:
         raise UnsupportedError("--bus: needs Zenoh; pip install 'mmrs-core[bus]'") from error
     refuse_endpoints("--bus-listen", wishes.listen)

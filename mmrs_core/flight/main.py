@@ -98,7 +98,7 @@ def _slots(
     stack: ExitStack,
 ) -> BusSlots:
     if options.bus.used:
-        from .bus.over_zenoh import Endpoints, ZenohCarrier
+        from .bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
         fleet = {robot.id for robot in robots} | {*robots[0].fleet} | {*strangers_of(robots)}
         reached = Endpoints(options.bus.listen, options.bus.connect, options.bus.file)

@@ -349,7 +349,7 @@ def _main() -> int:
 
 
 def _zenoh_bus(made, given, folder, records):
-    from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+    from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
     names = [each.id for each in made.robots]
     carrier = ZenohCarrier(

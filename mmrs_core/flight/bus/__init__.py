@@ -1,20 +1,19 @@
 """The bus: slots of robots in one process or in many, and notifies that set them exactly once.
 
 A slot belongs to its robot. A notify is a command to the owner in two steps, so that the logs, merged
-by logical time, tell what happened: ``owner.py`` and ``errands.py`` say how, ``words.py`` with what
-messages, ``slot.py`` what a slot is to its owner, and ``remembered.py`` what survives. ``node.py`` is one
-process's end: what it has still to tell is in ``outbox.py``, what it answers in ``answering.py``.
-``carrier.py`` says what carries messages, and ``over_zenoh.py`` is one that reaches other processes and
-machines. ``gateway.py`` lets programs without Zenoh take part.
+by logical time, tell what happened: ``owners`` has what keeps slots, ``outgoing`` what commands other
+owners, and ``words.py`` says with what messages. ``node.py`` is one process's end. ``carriers`` has what
+carries messages, also one that reaches other processes and machines, and ``gateway`` lets programs without
+Zenoh take part.
 """
 
-from .carrier import Carrier
-from .delivery import Delivery
-from .journal import FileJournal, NoJournal
+from .carriers.carrier import Carrier
 from .meeting import PATIENCE, Beginning, Incomplete, begin_together
-from .members import Member, Recorded
 from .node import Node
-from .owner import Owned
+from .outgoing.delivery import Delivery
+from .owners.journal import FileJournal, NoJournal
+from .owners.members import Member, Recorded
+from .owners.owner import Owned
 from .watching import Unwelcome
 from .words import CommandId, SlotId, SlotState
 

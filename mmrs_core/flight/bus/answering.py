@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .outbox import Outbox
-from .owners import Owners
+from .outgoing.outbox import Outbox
+from .owners.owners import Owners
 from .reading import Unreadable, request_in
 from .roster import Roster
 from .troubles import Net

@@ -7,17 +7,17 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from .announcing import FAREWELL_SECONDS, Announcing
 from .answering import Answering
-from .carrier import Carrier, NoCarrier
-from .carrying import Courier
+from .carriers.carrier import Carrier, NoCarrier
+from .carriers.courier import Courier
 from .changes import Changes
-from .delivery import Delivery
-from .journal import Journal, NoJournal
-from .members import Member, Recorded
-from .notifying import Notifying
-from .outbox import Outbox
-from .owners import Owners
+from .outgoing.announcing import FAREWELL_SECONDS, Announcing
+from .outgoing.delivery import Delivery
+from .outgoing.notifying import Notifying
+from .outgoing.outbox import Outbox
+from .owners.journal import Journal, NoJournal
+from .owners.members import Member, Recorded
+from .owners.owners import Owners
 from .pacing import Pacing
 from .reading import written
 from .sending import Sending

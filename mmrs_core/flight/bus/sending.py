@@ -6,11 +6,11 @@ import threading
 from collections.abc import Callable, Sequence
 
 from .answering import Answering
-from .carrying import Courier
+from .carriers.courier import Courier
 from .changes import Changes
-from .errands import Errand, Message, Notice
-from .outbox import Outbox
-from .owners import Owners
+from .outgoing.errands import Errand, Message, Notice
+from .outgoing.outbox import Outbox
+from .owners.owners import Owners
 from .troubles import Net
 from .words import Answer, Begin, Commit, Prepare, Request, Withdraw
 

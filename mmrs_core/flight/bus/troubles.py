@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from .journal import Journal
+from .owners.journal import Journal
 
 PROBE_SECONDS = 1.0
 """How often it is tried whether something can be kept again."""

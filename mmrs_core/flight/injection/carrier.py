@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Sequence
 from random import Random
 
-from ..bus.carrier import Answered, Carrier, Station
+from ..bus.carriers.carrier import Answered, Carrier, Station
 from ..clock import Clock
 from .spec import Injection
 

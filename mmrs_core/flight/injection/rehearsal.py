@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Collection, Iterable, Mapping
 from math import inf
 
-from ..bus.carrier import Carrier
+from ..bus.carriers.carrier import Carrier
 from ..clock import Clock
 from ..links.link import Link
 from ..links.ports import Port

@@ -12,7 +12,7 @@ import pytest
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys
 from mmrs_core.flight.bus import CommandId, FileJournal, Member, Node, Owned
-from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
 NAMES = ("a", "b", "c")
 RUN = "run-0"

@@ -17,7 +17,7 @@ import pytest
 
 from mmrs_core import pipeline
 from mmrs_core.flight.bus import CommandId
-from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 from mmrs_core.languages.reading import read_model
 from mmrs_core.runtime.slots import node_of
 

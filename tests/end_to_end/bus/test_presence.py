@@ -13,7 +13,7 @@ import pytest
 from bus_walking import RUN, exchange
 
 from mmrs_core.flight.bus import Unwelcome
-from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 from mmrs_core.runtime.slots import shared_bus
 
 SCRIPT = Path(bus_walking.__file__)

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from mmrs_core.cli.running import run_command
-from mmrs_core.flight.bus.over_zenoh import Endpoints, ZenohCarrier
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
 LONG_ENOUGH = 1.5
 

@@ -8,7 +8,7 @@ import time
 import pytest
 import zenoh
 
-from mmrs_core.flight.bus.over_zenoh import Endpoints, states_of
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, states_of
 from mmrs_core.flight.bus.words import digest
 
 

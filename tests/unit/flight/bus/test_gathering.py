@@ -9,7 +9,7 @@ from collections.abc import Container
 import pytest
 
 from mmrs_core.flight.bus import Incomplete, Member, Node, Owned, begin_together
-from mmrs_core.flight.bus.carrier import NoCarrier
+from mmrs_core.flight.bus.carriers.carrier import NoCarrier
 from mmrs_core.flight.bus.reading import request_in, written
 from mmrs_core.flight.bus.roster import Roster
 from mmrs_core.flight.bus.words import Meet

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmrs_core.flight.bus.journal import FileJournal
-from mmrs_core.flight.bus.owner import KEPT_SECONDS, Owned, Owner
+from mmrs_core.flight.bus.owners.journal import FileJournal
+from mmrs_core.flight.bus.owners.owner import KEPT_SECONDS, Owned, Owner
 from mmrs_core.flight.bus.words import REACH, Begin, CommandId, Commit, Prepare, Withdraw
 
 OWNED = Owned("b", ("go", "stay"), {"go": ("a", "c"), "stay": ("a",)}, {"go": ("a", "c")})

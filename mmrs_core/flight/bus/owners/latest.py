@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .words import CommandId
+from ..words import CommandId
 
 
 class Latest:

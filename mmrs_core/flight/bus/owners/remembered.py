@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from .reading import Unreadable, flag_in, names_in, number_in, recorded_in, text_in
-from .words import Begin, CommandId, Commit, Prepare, Withdraw
+from ..reading import Unreadable, flag_in, names_in, number_in, recorded_in, text_in
+from ..words import Begin, CommandId, Commit, Prepare, Withdraw
 
 Line = Mapping[str, Any]
 

@@ -9,12 +9,12 @@ import time
 from collections.abc import Callable, Mapping
 from typing import IO, Any
 
-from .delivery import Delivery
-from .meeting import Incomplete, begin_together
-from .node import Node
-from .reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
-from .troubles import Net, tell_people
-from .words import LONGEST, MOST_SLOTS, REACH, CommandId
+from ..meeting import Incomplete, begin_together
+from ..node import Node
+from ..outgoing.delivery import Delivery
+from ..reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
+from ..troubles import Net, tell_people
+from ..words import LONGEST, MOST_SLOTS, REACH, CommandId
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ..words import SlotId
 from .owner import Owned
-from .words import SlotId
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,10 +21,10 @@ from typing import Any
 
 import zenoh
 
+from ..troubles import Net, Tell, tell_people
+from ..words import LONGEST, digest
 from .carrier import Answered, Station
 from .endpoints import first_fault
-from .troubles import Net, Tell, tell_people
-from .words import LONGEST, digest
 
 LEASE_MILLISECONDS = 1500
 """After so long without a sign a frozen peer counts as lost."""

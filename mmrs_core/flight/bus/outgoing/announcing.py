@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from ..owners.members import Member, Recorded
+from ..owners.owners import Owners
+from ..watching import Watching
+from ..words import Begin, CommandId, Ended, Leave, Request
 from .errands import Message, Notice
-from .members import Member, Recorded
 from .outbox import Outbox
-from .owners import Owners
-from .watching import Watching
-from .words import Begin, CommandId, Ended, Leave, Request
 
 FAREWELL_SECONDS = 2.0
 """How long a robot that ends tries to tell those who are there."""

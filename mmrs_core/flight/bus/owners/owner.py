@@ -17,9 +17,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ..reading import Unreadable
+from ..words import REACH, Answer, Begin, CommandId, Commit, Prepare, SlotState, Withdraw
 from .journal import Journal
 from .latest import Latest, Starts
-from .reading import Unreadable
 from .remembered import (
     Line,
     begun_in,
@@ -38,7 +39,6 @@ from .remembered import (
     used_line,
 )
 from .slot import Kept, Slot
-from .words import REACH, Answer, Begin, CommandId, Commit, Prepare, SlotState, Withdraw
 
 KEPT_SECONDS = 10.0
 """How long a slot is kept for a sender from which nothing is heard; senders repeat themselves sooner."""

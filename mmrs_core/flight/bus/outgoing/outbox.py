@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ..troubles import SORE_SECONDS, Net
 from .errands import Errand, Message, Notice
-from .troubles import SORE_SECONDS, Net
 
 
 class Outbox:

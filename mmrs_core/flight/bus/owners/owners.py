@@ -6,11 +6,11 @@ import json
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from ..watching import Watching
+from ..words import Answer, Begin, CommandId, Commit, Prepare, SlotId, SlotState, Withdraw
 from .journal import Journal
 from .members import Member, Recorded
 from .owner import Owner
-from .watching import Watching
-from .words import Answer, Begin, CommandId, Commit, Prepare, SlotId, SlotState, Withdraw
 
 
 class Owners:

@@ -8,12 +8,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from ..owners.owners import Owners
+from ..watching import Watching
+from ..words import LARGEST, REACH, CommandId, SlotId
 from .delivery import Delivery
 from .errands import Errand
 from .outbox import Outbox
-from .owners import Owners
-from .watching import Watching
-from .words import LARGEST, REACH, CommandId, SlotId
 
 
 class Notifying:

@@ -16,11 +16,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .members import Recorded
-from .node import Node
-from .reading import Unreadable, number_in, object_in, text_in
+from ..node import Node
+from ..owners.members import Recorded
+from ..reading import Unreadable, number_in, object_in, text_in
+from ..words import LARGEST
 from .session import Session, line_of
-from .words import LARGEST
 
 FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from ..reading import Unreadable, answer_in, written
+from ..troubles import Net
+from ..words import Answer, Request
 from .carrier import Carrier, Station
-from .reading import Unreadable, answer_in, written
-from .troubles import Net
-from .words import Answer, Request
 
 
 class Courier:

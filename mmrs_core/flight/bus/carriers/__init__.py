@@ -1,0 +1,1 @@
+"""What carries messages between processes, and what of it reaches other machines."""

@@ -1,0 +1,1 @@
+"""The bus for programs that have no Zenoh."""
