@@ -7,6 +7,7 @@
     ├── InfeasibleError      a valid mission that no plan can satisfy
     │   └── UnreachableError no route keeps the clearance
     ├── UnsupportedError     a target or backend that cannot express what a model holds
+    │   └── UsageError       a target, backend or option that there is not, or not for this
     ├── PluginError          a plug-in that is broken, missing or in conflict
     └── LinkLostError        a robot or the bus that no longer answers
 
@@ -112,6 +113,12 @@ class UnsupportedError(MmrsError):
     def __init__(self, message: str, elements: Sequence[str] = ()) -> None:
         super().__init__(message)
         self.elements = tuple(elements)
+
+
+class UsageError(UnsupportedError):
+    """A target, backend or option was asked for that nobody contributed, or that is for something else."""
+
+    exit_code = 2
 
 
 class PluginError(MmrsError):

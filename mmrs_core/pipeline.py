@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
-from mmrs_core.errors import InvalidModelError, UnreadableError, UnsupportedError
+from mmrs_core.errors import InvalidModelError, UnreadableError, UsageError
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
@@ -199,7 +199,8 @@ def render(
         templates: a folder of files that take the place of the targets' own.
 
     Raises:
-        UnsupportedError: if there is no such target, or it cannot express what the behaviour holds.
+        UsageError: if there is no such target.
+        UnsupportedError: if it cannot express what the behaviour holds.
         UnreadableError: if there is no such folder of templates.
         MmrsError: if that folder holds something unknown or broken.
     """
@@ -225,7 +226,7 @@ def capabilities(target: str | None, contributions: Contributions) -> dict[str, 
     """Return what a target can express, or each target where None is named, by name; found by trying.
 
     Raises:
-        UnsupportedError: if there is no such target.
+        UsageError: if there is no such target.
     """
     from mmrs_core.generation.capabilities.judging import capabilities_of, probes
     from mmrs_core.generation.capabilities.probes import PROBED
@@ -279,8 +280,8 @@ def simulate(
         observe: called with each step before it has an effect, to write a log.
 
     Raises:
-        UnsupportedError: if there is no such backend, it does not simulate or know an option, or the
-            behaviour holds what nobody contributed.
+        UsageError: if there is no such backend, or it does not simulate or know an option.
+        UnsupportedError: if the behaviour holds what nobody contributed.
     """
     from mmrs_core.runtime.run import simulate as simulated
     from mmrs_core.runtime.terms import Terms
@@ -355,7 +356,7 @@ def run_live(
     """Yield the steps of a run in real time; see `mmrs_core.runtime.live.run_live`.
 
     Raises:
-        UnsupportedError: if there is no such backend.
+        UsageError: if there is no such backend.
     """
     from mmrs_core.runtime.live import run_live as run
 
@@ -368,5 +369,5 @@ def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Cont
 
     if name not in contributed:
         known, guess = ", ".join(sorted(contributed)), nearest(name, contributed)
-        raise UnsupportedError(f"{sort} '{name}': not known; there are {known}{guess and '; ' + guess}")
+        raise UsageError(f"{sort} '{name}': not known; there are {known}{guess and '; ' + guess}")
     return contributed[name]

@@ -19,7 +19,7 @@ def print_capabilities(workshop: Workshop, target: str | None, json: bool) -> in
     """Print what a target can express, or every target where None is named; return the exit code.
 
     Raises:
-        UnsupportedError: there is no such target.
+        UsageError: there is no such target.
     """
     from mmrs_core.pipeline import capabilities
 

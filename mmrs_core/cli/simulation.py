@@ -70,8 +70,8 @@ def fly(
 
     Raises:
         typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
-        UnsupportedError: if there is no such backend, or it does not simulate, know its options or what
-            the behaviour holds.
+        UsageError: if there is no such backend, or it does not simulate or know its options.
+        UnsupportedError: if it does not know what the behaviour holds.
     """
     refuse_unasked(program, conditions)
     return workshop.stage(

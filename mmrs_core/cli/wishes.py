@@ -101,12 +101,12 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
 
 
 def _refuse_options(given: Mapping[str, str]) -> None:
-    from mmrs_core.errors import UnsupportedError
+    from mmrs_core.errors import UsageError
     from mmrs_core.mavlink.backend.options import link_options
 
     try:
         link_options(given)
-    except UnsupportedError as error:
+    except UsageError as error:
         raise typer.BadParameter(f"--backend-option {str(error).removeprefix('option ')}") from error
 
 

@@ -13,7 +13,7 @@ from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Condition, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind, RobotKind, robot_kind_of
 from mmrs_core.contributions.wiring import Wirings
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.slots import InProcessBus
@@ -66,11 +66,11 @@ def simulate(
 
     Raises:
         UnsupportedError: if a robot type is missing, or robots, moves, actions or conditions are of
-            kinds that nobody contributed; lists them. If the backend's time is not simulated, or it does
-            not know an option.
+            kinds that nobody contributed; lists them.
+        UsageError: if the backend's time is not simulated, or it does not know an option.
     """
     if not backend.simulated:
-        raise UnsupportedError(f"backend '{backend.name}': does not simulate, it drives robots")
+        raise UsageError(f"backend '{backend.name}': does not simulate, it drives robots")
     given = inputs_of(
         program,
         types=types,

@@ -18,7 +18,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UsageError
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
@@ -53,11 +53,12 @@ class SimulatedRobot:
 
         Raises:
             UnsupportedError: if nobody contributed what moves its robot, or one of its moves or
-                actions; lists them. If an option is given: there are none.
+                actions; lists them.
+            UsageError: if an option is given: there are none.
         """
         if given.options:
             option = sorted(given.options)[0]
-            raise UnsupportedError(f"option '{option}': the simulation has none of that name")
+            raise UsageError(f"option '{option}': the simulation has none of that name")
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         policies = in_precedence(given.robot.policies, given.policies)

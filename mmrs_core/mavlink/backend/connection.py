@@ -13,7 +13,7 @@ from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Clock as RunClock
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.injection import Rehearsal, injections
@@ -76,8 +76,8 @@ def connect(given: BackendInput, live: Live) -> MavlinkBackend:
     """Return a robot at the end of its link.
 
     Raises:
-        UnsupportedError: an option is unknown or makes no sense, or the robot's program holds what
-            vehicles cannot do; lists all of it.
+        UsageError: an option or a link is unknown or makes no sense.
+        UnsupportedError: the robot's program holds what vehicles cannot do; lists all of it.
         LinkLostError: the port cannot be opened.
     """
     options = link_options(given.options)
@@ -117,7 +117,7 @@ def _fleet(live: Live, options: LinkOptions, program: Program) -> Fleet:
     try:
         faults = injections([options.inject] if options.inject else [], urls)
     except ValueError as error:
-        raise UnsupportedError(f"option 'inject': {error}") from error
+        raise UsageError(f"option 'inject': {error}") from error
     rehearsal = Rehearsal(faults, clock, live.announce)
     retries = Retries(options.tries, options.answer_seconds, options.item_seconds)
     sharers: dict[str, list[str]] = {}
@@ -138,7 +138,7 @@ def _signer(path: Path | None) -> Signer | None:
     try:
         return signer_for(path)
     except (OSError, ValueError) as error:
-        raise UnsupportedError(f"option 'signing-key': {error}") from error
+        raise UsageError(f"option 'signing-key': {error}") from error
 
 
 def _urls(live: Live, program: Program) -> Mapping[str, str]:
@@ -158,7 +158,7 @@ def _split(text: str) -> tuple[str, int]:
         url, system = split_system(text)
         address_of(url)
     except ValueError as error:
-        raise UnsupportedError(f"link {error}") from error
+        raise UsageError(f"link {error}") from error
     return url, system
 
 

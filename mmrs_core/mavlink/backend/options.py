@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from math import inf
 from pathlib import Path
 
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UsageError
 
 _SWITCHES = {"yes": True, "no": False}
 
@@ -45,12 +45,12 @@ def link_options(given: Mapping[str, str]) -> LinkOptions:
     """Return the options by their keys, hyphens instead of underscores.
 
     Raises:
-        UnsupportedError: if there is no such option, or its value makes no sense.
+        UsageError: if there is no such option, or its value makes no sense.
     """
     known = {field.name.replace("_", "-"): field.name for field in fields(LinkOptions)}
     unknown = sorted(set(given) - set(known))
     if unknown:
-        raise UnsupportedError(
+        raise UsageError(
             f"option '{unknown[0]}': backend 'mavlink' has none of that name; it has {', '.join(known)}"
         )
     values = {known[key]: _value(key, text) for key, text in given.items()}
@@ -61,7 +61,7 @@ def _value(key: str, text: str) -> object:
     try:
         return _READ.get(key, _positive)(text)
     except ValueError as error:
-        raise UnsupportedError(f"option '{key}': {error}") from error
+        raise UsageError(f"option '{key}': {error}") from error
 
 
 def _positive(text: str) -> float:

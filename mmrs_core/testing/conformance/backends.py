@@ -11,7 +11,7 @@ import pytest
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UsageError
 from mmrs_core.testing.conformance.declared import Conformance
 from mmrs_core.testing.small_programs import go, hold, program, robot, robot_type
 
@@ -47,7 +47,7 @@ class BackendConformance(Conformance):
     def test_an_option_that_it_does_not_know_is_refused(self, backend: BackendFactory) -> None:
         """A misspelt option is never swallowed."""
         given = self._input(backend)
-        with pytest.raises(UnsupportedError, match=NO_OPTION):
+        with pytest.raises(UsageError, match=NO_OPTION):
             backend.connect(replace(given, options={**given.options, NO_OPTION: "1"}))
 
     def test_it_begins_at_home_without_moving(self, backend: BackendFactory) -> None:

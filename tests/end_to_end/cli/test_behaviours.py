@@ -3,6 +3,7 @@
 import json
 import re
 
+import pytest
 from lxml import etree
 
 CHOICE = "energy_above_100_kJ"
@@ -61,15 +62,16 @@ def test_a_simulation_by_name_is_the_same_as_without(mmrs, project):
     assert mmrs("simulate", project, "--backend", "simulation") == mmrs("simulate", project)
 
 
-def test_a_backend_that_nobody_contributed_is_named(mmrs, project):
-    code, _, err = mmrs("simulate", project, "--backend", "simulaton")
-    assert code == 1
+@pytest.mark.parametrize(("command", "option"), [("simulate", "-o"), ("run", "--log")])
+def test_a_backend_that_nobody_contributed_is_named(mmrs, project, command, option):
+    code, _, err = mmrs(command, project, "--backend", "simulaton", option, project / "logs")
+    assert code == 2
     assert "backend 'simulaton': not known; there are mavlink, simulation" in err
 
 
 def test_an_option_that_the_backend_does_not_know_is_named(mmrs, project):
     code, _, err = mmrs("simulate", project, "--backend-option", "rain=1")
-    assert code == 1
+    assert code == 2
     assert "option 'rain': the simulation has none of that name" in err
 
 
@@ -193,9 +195,10 @@ def test_generate_leaves_out_what_it_must_when_told_so(mmrs, project):
     assert list((project / "out").glob("*.plan"))
 
 
-def test_an_unknown_target_is_told_with_the_known_ones(mmrs, project):
-    code, _, err = mmrs("generate", project, "--target", "toaster", "-o", project / "out")
-    assert code == 1
+@pytest.mark.parametrize(("program", "command"), [("mmrs", ["generate"]), ("mmrs-gen", [])])
+def test_an_unknown_target_is_told_with_the_known_ones(mmrs, project, program, command):
+    code, _, err = mmrs(*command, project, "--target", "toaster", "-o", project / "out", program=program)
+    assert code == 2
     assert "qgc-plan" in err
 
 

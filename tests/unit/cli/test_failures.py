@@ -17,6 +17,7 @@ from mmrs_core.errors import (
     UnreachableError,
     UnreadableError,
     UnsupportedError,
+    UsageError,
 )
 
 FAULT = Diagnostic("MML001", Severity.ERROR, "mission has no team", Place("m.xmi", 3), "add one")
@@ -29,6 +30,7 @@ FAULT = Diagnostic("MML001", Severity.ERROR, "mission has no team", Place("m.xmi
         (UnsupportedError("target 'x': no"), 1),
         (PluginError("plug-in 'x': broken"), 1),
         (InternalError("a promise"), 1),
+        (UsageError("target 'x': not known"), 2),
         (typer.BadParameter("no"), 2),
         (UnreadableError("m.xmi: missing"), 3),
         (PermissionError(13, "Permission denied", "out.xmi"), 3),

@@ -9,7 +9,7 @@ import pytest
 from mmrs_core import pipeline
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.execution import RobotState
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UsageError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
 from mmrs_core.testing.conformance import BackendConformance
@@ -26,7 +26,7 @@ class Jumper:
     def __init__(self, given):
         unknown = sorted(set(given.options) - {"seconds"})
         if unknown:
-            raise UnsupportedError(f"option '{unknown[0]}': the jumper has none of that name")
+            raise UsageError(f"option '{unknown[0]}': the jumper has none of that name")
         self._seconds = float(given.options.get("seconds", SECONDS))
         self._at, self._to, self._end = given.robot.home, given.robot.home, 0.0
 
@@ -90,7 +90,7 @@ def test_its_options_reach_it():
 
 
 def test_an_option_that_it_does_not_know_is_refused_by_name():
-    with pytest.raises(UnsupportedError, match="option 'metres'"):
+    with pytest.raises(UsageError, match="option 'metres'"):
         simulated(Jumping(), backend="jumper", options={"metres": "3"})
 
 
@@ -106,12 +106,12 @@ def test_without_a_name_the_core_simulates():
 
 def test_a_name_that_nobody_contributed_is_refused_with_the_nearest():
     with pytest.raises(
-        UnsupportedError, match=r"'jumpr': not known; there are jumper, mavlink, simulation; .*jumper"
+        UsageError, match=r"'jumpr': not known; there are jumper, mavlink, simulation; .*jumper"
     ):
         simulated(Jumping(), backend="jumpr")
 
 
 def test_a_backend_that_drives_robots_is_not_taken_for_a_simulation():
     real = Jumping(replace(JUMPER, simulated=False))
-    with pytest.raises(UnsupportedError, match="'jumper': does not simulate"):
+    with pytest.raises(UsageError, match="'jumper': does not simulate"):
         simulated(real, backend="jumper")

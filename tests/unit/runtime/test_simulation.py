@@ -10,7 +10,7 @@ from mmrs_core.behaviour.program import Action, Heading, Move, Target
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.legs import CLIMBING
 from mmrs_core.runtime.simulation import SIMULATION, SimulatedRobot
 from mmrs_core.scene import Area, AreaUse, Policy
@@ -330,7 +330,7 @@ def test_the_policies_of_a_type_count_where_the_behaviour_says_nothing(fly):
 
 
 def test_an_option_that_the_simulation_does_not_have_is_refused(kinds):
-    with pytest.raises(UnsupportedError, match="option 'rain'"):
+    with pytest.raises(UsageError, match="option 'rain'"):
         SIMULATION.connect(given(program(robot("r", [])), kinds, options={"rain": "1"}))
 
 

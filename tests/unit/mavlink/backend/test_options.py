@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UsageError
 from mmrs_core.mavlink.backend.options import LinkOptions, link_options
 
 
@@ -28,5 +28,5 @@ def test_options_are_read_by_their_keys():
     ],
 )
 def test_what_makes_no_sense_is_refused_by_its_key(key, value):
-    with pytest.raises(UnsupportedError, match=f"option '{key}'"):
+    with pytest.raises(UsageError, match=f"option '{key}'"):
         link_options({key: value})
