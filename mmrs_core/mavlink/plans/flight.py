@@ -25,31 +25,31 @@ def sorties_of(context: RobotContext) -> tuple[tuple[Item, ...], ...]:
     """Return the items of each sortie: what a vehicle does between two stays on the ground.
 
     What missions cannot express is left out, but never so that a vehicle goes on where it should
-    wait: a wait becomes an unlimited loiter that the operator ends, and the mission ends at a choice
-    and at a move that comes round again. A wait on the ground needs no item: the operator begins each
-    sortie.
+    wait: a wait becomes an unlimited loiter that the operator ends, and so does the end of a mission at
+    a choice or at a move that comes round again. A wait on the ground needs no item: the operator begins
+    each sortie.
     """
-    return tuple(_flown(context).sorties)
+    return tuple(flown(context).sorties)
 
 
-def left_out_on_the_ground(context: RobotContext) -> tuple[str, ...]:
-    """Return what is in no sortie since a vehicle that flies heeds a mission from its take-off on only."""
-    return tuple(_flown(context).left)
-
-
-def _flown(context: RobotContext) -> Flight:
+def flown(context: RobotContext) -> Flight:
+    """Return the moves of a robot as missions, up to where they end."""
     flight = Flight(context)
     robot, index, seen = context.robot, context.robot.start, set[int]()
-    while index not in seen:
+    while True:
         seen.add(index)
         move, transition = robot.moves[index], robot.transitions.get(index)
         flight.perform(move, fluid=transition is not None and transition.fluid)
-        if transition is None or transition.condition is not None:
+        if transition is None:
             break
-        if transition.waits:
+        ends = transition.condition is not None or transition.to in seen
+        if transition.waits or ends:
             flight.wait(move)
+        if ends:
+            break
         index = transition.to
     flight.end_sortie()
+    flight.beyond = frozenset(range(len(robot.moves))) - seen - {robot.stop}
     return flight
 
 
@@ -58,13 +58,16 @@ class Flight:
 
     Attributes:
         sorties: the finished ones.
-        left: what could not be written down, with the robot and the move.
+        left: what could not be written down since a vehicle that flies heeds a mission from its take-off
+            on only, with the robot and the move.
+        beyond: indices of the moves that come after the end of the last mission, if ever; Stop is nothing.
     """
 
     def __init__(self, context: RobotContext) -> None:
         """Stand at home."""
         self.sorties: list[tuple[Item, ...]] = []
         self.left: list[str] = []
+        self.beyond = frozenset[int]()
         self._context = context
         self._position: Position = context.robot.home or ORIGIN
         self._speed: float | None = None

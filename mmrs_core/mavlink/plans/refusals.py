@@ -12,7 +12,7 @@ from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
 from mmrs_core.mavlink.earth import sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
-from mmrs_core.mavlink.plans.flight import left_out_on_the_ground
+from mmrs_core.mavlink.plans.flight import flown
 from mmrs_core.mavlink.plans.px4 import unknown_in
 from mmrs_core.mavlink.safety import explicit, policies_of
 from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
@@ -41,8 +41,12 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         yield f"robot '{robot.id}': {_described(policy)}"
     context = context_of(robot, input, geographic=False)
     yield from _coming_round(robot, context)
-    yield from left_out_on_the_ground(context)
+    flight = flown(context)
+    yield from flight.left
     for index, move in enumerate(robot.moves):
+        if index in flight.beyond:
+            yield f"{context.label(move)}: comes after the end of the plan, so it is in none"
+            continue
         yield from losses_of(move, context)
         for description in objects_of(move):
             yield f"{context.label(move)}: object '{description}', which a plan cannot have looked for"
@@ -54,7 +58,10 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             slots = ", ".join(transition.waits)
             yield f"{context.label(move)}: waits for {slots}, which only an operator can do in a plan"
         if transition is not None and transition.condition is not None:
-            yield f"{context.label(move)}: chooses by '{transition.condition}'"
+            yield (
+                f"{context.label(move)}: chooses by '{transition.condition}', so the plan ends here, and the"
+                " vehicle stays here until an operator takes over"
+            )
         for policy in transition.policies if transition is not None else ():
             yield f"{context.label(move)}: {_described(explicit(policy))}"
 
@@ -68,7 +75,7 @@ def _coming_round(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
         seen.add(index)
         if transition.to in seen:
             again = robot.moves[transition.to].id
-            yield f"{context.label(robot.moves[index])}: '{again}' comes round again, which no plan can"
+            yield f"{context.label(robot.moves[index])}: '{again}' comes round again, so the plan ends here"
         index = transition.to
 
 

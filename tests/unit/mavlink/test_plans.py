@@ -249,9 +249,12 @@ def test_going_and_landing_without_a_take_off_are_refused():
 def test_a_plan_ends_at_a_choice():
     choosing = {2: Transition(2, 3, condition="windy", otherwise=4)}
     moves = (take_off("up", 20.0), go_to("a", (0.0, 9.0, 20.0)), go_to("b", (9.0, 9.0, 20.0)), LAND)
-    assert refused(*moves, transitions=choosing) == ("robot 'alpha', move 'a': chooses by 'windy'",)
+    chooses, *beyond = refused(*moves, transitions=choosing)
+    assert chooses.startswith("robot 'alpha', move 'a': chooses by 'windy', so the plan ends here")
+    behind = "comes after the end of the plan, so it is in none"
+    assert beyond == [f"robot 'alpha', move '{move}': {behind}" for move in ("b", "down")]
     files = plans(*moves, transitions=choosing, allow_lossy=True)
-    assert [command for command, _ in items(files["alpha.plan"])] == [22, 178, 16]
+    assert [command for command, _ in items(files["alpha.plan"])] == [22, 178, 16, 17]
 
 
 def test_everything_that_a_plan_cannot_say_is_listed():
@@ -341,5 +344,6 @@ def test_a_mount_that_is_no_number_is_refused():
 
 def test_moves_that_come_round_again_are_refused():
     moves = (take_off("up", 20.0), go_to("a", (0.0, 9.0, 20.0)), LAND)
-    (fault,) = refused(*moves, transitions={2: Transition(2, 2)})
-    assert fault == "robot 'alpha', move 'a': 'a' comes round again, which no plan can"
+    fault, *beyond = refused(*moves, transitions={2: Transition(2, 2)})
+    assert len(beyond) == 1
+    assert fault == "robot 'alpha', move 'a': 'a' comes round again, so the plan ends here"
