@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mmrs_core.contributions.abilities import Noting
+from mmrs_core.flight.orders.orders import ordered
 
 HOLD, RESUME, RETURN, LAND, STOP, ANSWER = "hold", "resume", "return", "land", "stop", "answer"
 KINDS = (HOLD, RESUME, RETURN, LAND, STOP, ANSWER)
@@ -70,8 +71,8 @@ class Order:
         self.noted.add(robot)
         if isinstance(backend, Noting):
             seconds, why = self.confirmed.get(robot), self.refused.get(robot, "")
-            content = {"order": self.kind, "confirmed": not why, "seconds": seconds, "why": why}
-            backend.note("order", content)
+            content = ordered(self.kind, self.question, self.answer)
+            backend.note("order", content | {"confirmed": not why, "seconds": seconds, "why": why})
 
     def _settle(self, robot: str, why: str | None) -> None:
         self.told(robot, why)

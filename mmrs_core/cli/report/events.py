@@ -48,7 +48,7 @@ def _events(flown: Flown) -> Iterator[Event]:
         kind = "fault" if entry in flown.given_up and what not in logged else "decision"
         yield Event(flown.robot, entry.time, kind, what, _decided(entry))
     for entry in flown.of_kind("order"):
-        yield Event(flown.robot, entry.time, "order", _words(entry, "order"), _confirmed(entry))
+        yield Event(flown.robot, entry.time, "order", _ordered(entry), _confirmed(entry))
     for entry in flown.of_kind("injected"):
         state = f"on purpose: {_words(entry, 'state')}" if entry.content.get("state") else "on purpose"
         yield Event(flown.robot, entry.time, "injected", injected_by(entry), state)
@@ -70,6 +70,15 @@ def _decided(entry: Entry) -> str:
     if response == NOTHING:
         return why or "nothing is done"
     return f"{why}; response: {response}" if why else f"response: {response}"
+
+
+def _ordered(entry: Entry) -> str:
+    question = _words(entry, "question")
+    return (
+        f"{_words(entry, 'order')} '{question}': {_words(entry, 'says')}"
+        if question
+        else _words(entry, "order")
+    )
 
 
 def _confirmed(entry: Entry) -> str:

@@ -47,6 +47,12 @@ class Order:
     answer: bool = False
 
 
+def ordered(name: str, question: str, answer: bool) -> dict[str, object]:
+    """Return what was ordered, or answered to which question, as a black box has it."""
+    asked = {"question": question, "says": "yes" if answer else "no"} if name == ANSWER else {}
+    return {"order": name, **asked}
+
+
 class Receipt:
     """One order to one robot, until the robot has obeyed it.
 
@@ -74,6 +80,16 @@ class Receipt:
     def refuse(self, why: str) -> None:
         """Say why the robot does not obey; only the first answer counts."""
         self._answer(False, why)
+
+    @property
+    def told(self) -> dict[str, object]:
+        """Return what was ordered, whether the robot has obeyed, and when, as a black box has it."""
+        return {
+            **ordered(self.order.name, self.order.question, self.order.answer),
+            "confirmed": self.confirmed,
+            "seconds": round(self.seconds, 4),
+            "why": self.why,
+        }
 
     def _answer(self, confirmed: bool, why: str) -> None:
         with self._lock:

@@ -11,7 +11,7 @@ Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every li
 ``parameter`` name, value, was
 ``decision``  what, why, response
 ``failed``    error, trace: what has gone wrong in the program itself
-``order``     order, confirmed, seconds, why
+``order``     order, confirmed, seconds, why; of an answer, question and says, too
 ``injected``  fault, state: what was made to go wrong on purpose
 ``wait``      slots, seconds
 ``photo``     index, place

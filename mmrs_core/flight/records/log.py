@@ -69,10 +69,12 @@ class Log:
         self.steps.append(line)
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; one without steps is taken away, so that nobody takes it for a run's."""
         # Every line was written, or its fault raised, before: nothing new can fail here.
         with suppress(OSError):
             self._file.close()
+            if not self.steps and not self._path.stat().st_size:
+                self._path.unlink()
 
     def _append(self, data: bytes) -> None:
         try:

@@ -66,14 +66,7 @@ class Journal:
 
     def ordered(self, receipt: Receipt) -> None:
         """Keep in the black box what was ordered, whether the robot has obeyed, and when."""
-        order = receipt.order
-        self._desk.box.write(
-            "order",
-            order=f"{order.name} {order.question}".strip(),
-            confirmed=receipt.confirmed,
-            seconds=round(receipt.seconds, 4),
-            why=receipt.why,
-        )
+        self._desk.box.write("order", **receipt.told)
 
     def waited(self, slots: Sequence[str], seconds: float) -> None:
         """Keep in the black box for how long the robot has waited for own slots."""

@@ -233,4 +233,6 @@ def test_an_answer_decides_a_choice_that_waited_for_it(controllers):
         _, said = process.communicate(timeout=60)
     assert process.returncode == 0, said
     assert [step["detail"] for step in made.steps("alpha") if step["label"] == "choose"] == ["false"]
+    (answered,) = made.box("alpha", "order")
+    assert (answered["question"], answered["says"], answered["confirmed"]) == ("is it safe", "no", True)
     assert made.replayed().complaints == ()

@@ -55,4 +55,9 @@ def test_the_operator_is_told_what_is_asked_and_decides(asking):
     assert asking.process.end(PATIENCE) == 0, asking.process.said
     (decision,) = [line for line in asking.box("a") if line.get("what") == "CHOICE"]
     assert decision["response"] == "waits for an answer to 'go on?'"
+    answered = [line for line in asking.box("a") if line["kind"] == "order"]
+    assert [(line["question"], line["says"], line["confirmed"]) for line in answered] == [
+        ("go on", "yes", False),
+        (QUESTION, "yes", True),
+    ]
     assert asking.replayed().outcome is Outcome.SUCCESS

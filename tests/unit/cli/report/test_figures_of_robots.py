@@ -154,6 +154,7 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
         make.entry(2.0, "decision", what="LINK_LOST", why="nothing heard for 10 s", response="RETURN"),
         make.entry(4.0, "order", order="hold", confirmed=True, seconds=0.25),
         make.entry(5.0, "order", order="land", confirmed=False),
+        make.entry(6.0, "order", order="answer", question="again?", says="no", confirmed=True),
     )
     records = make.records("alpha", (3.0, "fault", "a2", "LINK_LOST"))
     told = [(e.kind, e.what, e.why) for e in events_of(make.flown("alpha", records, entries=entries))]
@@ -163,6 +164,7 @@ def test_faults_decisions_orders_and_warnings_are_told_by_time(make):
         ("fault", "LINK_LOST", "program ended at move a2"),
         ("order", "hold", "confirmed after 0.25 s"),
         ("order", "land", "not confirmed"),
+        ("order", "answer 'again?': no", "confirmed"),
     ]
 
 
