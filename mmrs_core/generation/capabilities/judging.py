@@ -80,7 +80,8 @@ class Trial:
         refused = self._refusals(probe.given)
         if reasons := refused - self._refusals(probe.without) or refused:
             verdict: Verdict = "refused" if self._impossible(probe.given) else "lossy"
-            return Capability(probe.group, probe.element, verdict, "; ".join(sorted({_short(each) for each in reasons})))
+            words = "; ".join(sorted({_short(each) for each in reasons}))
+            return Capability(probe.group, probe.element, verdict, words)
         how = self._how(probe.element)
         same = self._written(probe.given) == self._written(probe.without)
         return Capability(probe.group, probe.element, "no difference" if same else "expressed", how)
