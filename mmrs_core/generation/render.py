@@ -12,6 +12,7 @@ from mmrs_core.behaviour.program import Move, Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, GeneratedFile, Target, TargetInput
 from mmrs_core.diagnostics import Place
 from mmrs_core.errors import InternalError, UnsupportedError
+from mmrs_core.generation.blocks import check_blocks
 from mmrs_core.generation.environment import environment_of, rendered_with_lines
 from mmrs_core.generation.manifest import (
     Entry,
@@ -58,6 +59,7 @@ def render(
     _check_paths(target, specs)
     if overrides is not None:
         check_known(overrides, target, specs)
+        check_blocks(environment_of(target, overrides), overrides)
     press = Press(target, environment_of(target, overrides), overrides)
     facts = _facts_of(input.program)
     files: list[GeneratedFile] = []

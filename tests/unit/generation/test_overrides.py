@@ -56,6 +56,20 @@ def test_a_template_extends_the_one_whose_place_it_takes(target, mine):
     assert made(target, mine)["card.txt"] == 'head\nmine\n"alpha"\n'
 
 
+def test_a_block_that_fills_nothing_is_an_error(target, mine):
+    text = '{% extends "shipped/card.txt.jinja" %}\n{% block haed %}mine{% endblock %}'
+    (mine / "cards" / "card.txt.jinja").write_text(text, "utf-8")
+    with pytest.raises(MmrsError, match=r"card.txt.jinja, line 2: .* no block 'haed'; there are head"):
+        made(target, mine)
+
+
+def test_a_block_inside_one_that_is_filled_is_a_templates_own(target, mine):
+    inner = "{% block mine %}new\n{% endblock %}"
+    text = '{% extends "shipped/card.txt.jinja" %}{% block head %}' + inner + "{% endblock %}"
+    (mine / "cards" / "card.txt.jinja").write_text(text, "utf-8")
+    assert made(target, mine)["card.txt"] == 'new\n"alpha"\n'
+
+
 @pytest.mark.parametrize("path", ["copied.txt", "run/engine.py"])
 def test_a_copied_file_takes_the_place_of_the_targets_own(target, mine, path):
     (mine / "cards" / path).write_text("mine", "utf-8")
