@@ -21,6 +21,7 @@ from mmrs_core.flight.links.ports import NOTHING, Port, Received, open_port
 from mmrs_core.flight.links.radio import Radio
 from mmrs_core.flight.orders.obedience import Obedience
 from mmrs_core.flight.orders.orders import Inbox
+from mmrs_core.flight.places import distance
 from mmrs_core.flight.program import (
     Geographic,
     GoTo,
@@ -46,7 +47,7 @@ from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 HOME = Geographic(42.37, 13.35, 0.0)
-SPEEDUP = 20.0
+SPEEDUP = 30.0
 OVERHEAD = Geographic(42.37, 13.35, 10.0)
 NORTH = Geographic(42.3702, 13.35, 10.0)
 """22 metres north of home."""
@@ -76,6 +77,14 @@ def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
     )
     given = {"home": HOME, "start": "start", "reserve": 0.1, "vehicle": "copter"} | more
     return Robot(id, f"{id}.jsonl", steps=steps, policies=policies, fleet=(id,), **given)
+
+
+class NearClock(Clock):
+    """The clock of a run whose vehicle is in this process: what takes real time anywhere else takes less."""
+
+    def patience(self, seconds: float, least: float = 0.5) -> float:
+        """Return a time-out in seconds of the run, of half the usual real seconds at least."""
+        return super().patience(seconds, least / 2.0)
 
 
 class Ears:
@@ -160,6 +169,17 @@ class Manned:
         """Return the faults in its log."""
         return [str(line["detail"]) for line in read(self.log) if line["label"] == "fault"]
 
+    def away(self, place: Geographic) -> float:
+        """Return how far the vehicle is from a place, metres."""
+        return distance(self.crew.vehicle.state().place, place)
+
+    def land_for_the_battery(self) -> None:
+        """Have the vehicle land by itself since it finds its battery low."""
+        found = {"BATT_FS_LOW_ACT": 1.0, "BATT_LOW_TIMER": 0.0, "BATT_LOW_VOLT": 99.0}
+        with self.simulated.lock:
+            self.simulated.autopilot.parameters |= found
+        until(lambda: self.crew.vehicle.state().mode == "land")
+
     @property
     def mode(self) -> str:
         """Return the mode of the vehicle itself."""
@@ -172,10 +192,11 @@ def manned(
 ) -> Iterator[Manned]:
     """Give a robot whose vehicle stands at home, ready, and whose program has not begun."""
     robot = robot or robot_of()
-    clock, stop, said = Clock(SPEEDUP), threading.Event(), []
+    clock, stop, said = NearClock(SPEEDUP), threading.Event(), []
     with ExitStack() as stack:
         port = free_port()
         simulated = stack.enter_context(SimulatedVehicle(port, Settings(**settings), speedup=SPEEDUP))
+        simulated.autopilot.patience /= 2.0
         ears = Ears(open_port(f"udpin:127.0.0.1:{port}"))
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
