@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--update-golden", action="store_true", help="rewrite golden files from what is produced"
     )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have the many processes that tests start compile each module once, where no bytecode may be kept."""
+    if os.environ.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in os.environ:
+        bytecode = tempfile.TemporaryDirectory(prefix="bytecode-", ignore_cleanup_errors=True)
+        os.environ["PYTHONPYCACHEPREFIX"] = bytecode.name
+        config.add_cleanup(bytecode.cleanup)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
