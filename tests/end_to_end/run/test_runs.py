@@ -16,10 +16,14 @@ from fault_table.fleet import free_port, wait_for
 from fault_table.project import OUT, TOUR, Pad, home_of
 
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.cli import run
+from mmrs_core.flight.orders.ordering import give
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.sitl.commands import obey
 
 PATIENCE = 60.0
+UNHURRIED = 15.0
+"""Speed-up that leaves real time for orders on the way."""
 AT_HOME = 0.6
 """Metres from home at which a vehicle may land: the radius in which places count as reached, and a little."""
 FULL = Path("/dev/full")
@@ -30,12 +34,29 @@ HOLDING = 17
 SYNCHRONISED = (Pad("a", "wait"), Pad("b", "give", stay=8.0, gives="a"))
 
 
-def control(fleet, *words):
-    """Give an order by `mmrs control`; return its answer by robot."""
-    command = [sys.executable, "-m", "mmrs_core", "control", *words, "--log", str(fleet.logs), "--json"]
+def control(fleet, order):
+    """Give an order to all robots by `mmrs control`; return its answer by robot."""
+    command = [sys.executable, "-m", "mmrs_core", "control", order, "--log", str(fleet.logs), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert done.stdout, done.stderr
     return {reply["robot"]: reply for reply in json.loads(done.stdout)["robots"]}
+
+
+def ordered(fleet, order, robot="a", **options):
+    """Give an order to a robot as `mmrs control` does; return its answer."""
+    (reply,) = give(fleet.logs, order, [robot], **options)
+    return reply
+
+
+@pytest.fixture
+def told(capsys):
+    """Return a function that gives robots an `mmrs run` which refuses: its exit code, and its last words."""
+
+    def call(fleet, *arguments, robot=""):
+        code = run(fleet.command(*arguments, robot=robot)[2:])
+        return code, capsys.readouterr().err.splitlines()[-1]
+
+    return call
 
 
 def begun(fleet, robot, move):
@@ -130,14 +151,14 @@ def test_nothing_begins_where_robots_of_other_processes_do_not_come(fleet):
     assert flown.steps("a") == []
 
 
-def test_a_robot_whose_peers_run_elsewhere_needs_the_bus(fleet):
-    flown = fleet(*SYNCHRONISED)
-    assert flown.start(robot="a").end(PATIENCE) == 2
-    assert "say --bus" in flown.process.said[-1]
+def test_a_robot_whose_peers_run_elsewhere_needs_the_bus(fleet, told):
+    code, said = told(fleet(*SYNCHRONISED), robot="a")
+    assert code == 2
+    assert "say --bus" in said
 
 
 def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
-    flown = fleet(Pad("a"), Pad("b"), speedup=8.0)
+    flown = fleet(Pad("a", stay=60.0), Pad("b", stay=60.0), speedup=UNHURRIED)
     process = flown.start()
     vehicle, other = begun(flown, "a", "out"), begun(flown, "b", "out")
     held = control(flown, "hold")
@@ -148,13 +169,13 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
     place = vehicle.autopilot.body.position
     time.sleep(1.0)
     assert vehicle.autopilot.body.position == pytest.approx(place, abs=0.3)
-    assert control(flown, "resume", "a")["a"]["confirmed"]
+    assert ordered(flown, "resume")["confirmed"]
     begun(flown, "a", "stay")
-    landing = control(flown, "land", "b")["b"]
+    landing = ordered(flown, "land", "b")
     assert landing["confirmed"]
     assert landing["seconds"] < 1.0
     assert wait_for(lambda: not other.autopilot.armed, PATIENCE)
-    assert control(flown, "return", "a")["a"]["confirmed"]
+    assert ordered(flown, "return")["confirmed"]
     assert process.end(PATIENCE) == 130, process.said
     assert vehicle.autopilot.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
     assert {s["detail"] for r in "ab" for s in flown.steps(r) if s["label"] == "fault"} == {"ORDERED"}
@@ -162,11 +183,11 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
 
 
 def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
-    flown = fleet(Pad("a"), speedup=8.0)
+    flown = fleet(Pad("a"))
     process = flown.start()
     vehicle = begun(flown, "a", "out")
     vehicle.faults.cut_link()
-    assert not control(flown, "return", "--seconds", "1")["a"]["confirmed"]
+    assert not ordered(flown, "return", seconds=1.0)["confirmed"]
     assert process.end(PATIENCE) == 5, process.said
 
 
@@ -176,12 +197,12 @@ def test_a_robot_whose_link_comes_back_is_heard_again_and_lands_where_it_is_told
     vehicle = begun(flown, "a", "tour 1")
     vehicle.faults.cut_link()
     assert wait_for(lambda: any(s["detail"] == "LINK_LOST" for s in flown.steps("a")), PATIENCE)
-    assert control(flown, "land")["a"]["why"] == "its link is lost"
+    assert ordered(flown, "land")["why"] == "its link is lost"
     vehicle.faults.mend_link()
     assert wait_for(lambda: any("is heard again" in line for line in process.said), PATIENCE)
-    assert control(flown, "hold")["a"]["confirmed"]
+    assert ordered(flown, "hold")["confirmed"]
     assert vehicle.autopilot.mode == HOLDING
-    assert control(flown, "land")["a"]["confirmed"]
+    assert ordered(flown, "land")["confirmed"]
     assert process.end(PATIENCE) == 5, process.said
     assert landed(flown)
 
@@ -194,10 +215,10 @@ def test_a_robot_that_came_down_elsewhere_for_its_battery_is_not_resumed_before_
     assert wait_for(lambda: any("carry it home" in line for line in process.said), PATIENCE)
     vehicle.faults.set_battery(1.0)
     for order in ("resume", "return"):
-        assert control(flown, order)["a"]["why"].endswith("m from its home: carry it home")
+        assert ordered(flown, order)["why"].endswith("m from its home: carry it home")
     with vehicle.lock:
         vehicle.autopilot.body.position = (0.0, 0.0, 0.0)
-    assert wait_for(lambda: control(flown, "resume")["a"]["confirmed"], PATIENCE)
+    assert wait_for(lambda: ordered(flown, "resume")["confirmed"], PATIENCE)
     assert vehicle.autopilot.armed
     assert process.end(PATIENCE) == 0, process.said
     assert judged(flown) is Outcome.SUCCESS
@@ -215,24 +236,19 @@ def test_a_battery_that_was_not_changed_is_not_flown_with_by_a_new_process_eithe
     assert again.end(PATIENCE) == 1, again.said
     assert any("its battery is still at 1" in line for line in again.said), again.said
     assert sum(number == TAKE_OFF for _, number, _ in vehicle.autopilot.history) == take_offs
-    vehicle.faults.set_battery(1.0)
-    assert flown.start("--resume").end(PATIENCE) == 0, flown.process.said
-    assert any(line.startswith("'a': goes on with ") for line in flown.process.said)
-    assert any(line.get("what") == "resume" for line in flown.box("a"))
-    assert judged(flown) is Outcome.SUCCESS
 
 
 def test_a_hold_before_the_vehicles_speak_keeps_them_on_the_ground(fleet):
-    flown = fleet(Pad("a"), speedup=8.0)
+    flown = fleet(Pad("a"))
     flown.vehicles["a"].faults.cut_link()
     process = flown.start()
     assert wait_for(lambda: any("waits for a vehicle" in line for line in process.said), PATIENCE)
-    assert not control(flown, "hold", "--seconds", "0.5")["a"]["confirmed"]
+    assert not ordered(flown, "hold", seconds=0.5)["confirmed"]
     flown.vehicles["a"].faults.mend_link()
-    assert control(flown, "hold")["a"]["confirmed"]
+    assert ordered(flown, "hold")["confirmed"]
     time.sleep(1.0)
     assert not flown.vehicles["a"].autopilot.armed
-    assert control(flown, "land")["a"]["confirmed"]
+    assert ordered(flown, "land")["confirmed"]
     assert process.end(PATIENCE) == 130, process.said
     assert not any(number == 400 for _, number, _ in flown.vehicles["a"].autopilot.history)
 
@@ -277,22 +293,22 @@ def test_a_robot_in_the_air_waits_for_one_whose_battery_is_changed_and_then_goes
     assert not vehicle.autopilot.armed
     assert flown.vehicles["b"].autopilot.armed
     vehicle.faults.set_battery(1.0)
-    assert wait_for(lambda: control(flown, "resume", "a")["a"]["confirmed"], PATIENCE)
+    assert wait_for(lambda: ordered(flown, "resume")["confirmed"], PATIENCE)
     assert process.end(PATIENCE) == 0, process.said
     assert judged(flown) is Outcome.SUCCESS
 
 
 def test_a_return_that_is_held_is_watched_until_it_goes_on(fleet):
-    flown = fleet(Pad("a"), speedup=8.0)
+    flown = fleet(Pad("a"), speedup=UNHURRIED)
     process = flown.start()
     vehicle = begun(flown, "a", "tour 1").autopilot
-    assert control(flown, "return")["a"]["confirmed"]
-    assert control(flown, "hold")["a"]["confirmed"]
+    assert ordered(flown, "return")["confirmed"]
+    assert ordered(flown, "hold")["confirmed"]
     assert wait_for(lambda: "'a': has done HOLD" in process.said, PATIENCE)
     time.sleep(1.0)
     assert process.running()
     assert vehicle.mode == HOLDING
-    assert control(flown, "resume")["a"]["confirmed"]
+    assert ordered(flown, "resume")["confirmed"]
     assert process.end(PATIENCE) == 130, process.said
     assert vehicle.body.position == pytest.approx((0.0, 0.0, 0.0), abs=AT_HOME)
 
@@ -312,14 +328,14 @@ def broken_off(flown, **moves):
 
 
 def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(fleet):
-    flown = fleet(Pad("a", policies=(STAYS,)), Pad("b", stay=2.0), speedup=8.0)
+    flown = fleet(Pad("a", policies=(STAYS,)), Pad("b", stay=2.0), speedup=UNHURRIED)
     broken_off(flown, a="out", b="out")
     resumed = flown.start("--resume", "--backend-option", "patience=120")
     vehicle = flown.vehicles["a"].autopilot
     assert wait_for(lambda: any("waits for a vehicle" in line for line in resumed.said), PATIENCE)
-    assert control(flown, "hold", "a")["a"]["confirmed"], resumed.said
+    assert ordered(flown, "hold")["confirmed"], resumed.said
     assert wait_for(lambda: vehicle.mode == HOLDING, PATIENCE), resumed.said
-    landing = control(flown, "land", "a")["a"]
+    landing = ordered(flown, "land")
     assert landing["confirmed"]
     assert landing["seconds"] < 1.0
     assert wait_for(lambda: not vehicle.armed, PATIENCE)
@@ -347,7 +363,7 @@ def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_hear
 
 def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_in_the_resumed_run(fleet):
     low = (STAYS, ("BATTERY_LOW", "RETURN", None))
-    flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=8.0)
+    flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=UNHURRIED)
     killed = flown.start()
     vehicle = begun(flown, "a", "tour 3")
     vehicle.faults.set_battery(0.15)
@@ -377,6 +393,8 @@ def test_a_changed_battery_lets_a_run_go_on_where_it_stopped(fleet):
     before = len(vehicle.autopilot.track)
     second = flown.start("--resume")
     assert second.end(PATIENCE) == 0, second.said
+    assert any(line.startswith("'a': goes on with ") for line in second.said)
+    assert any(line.get("what") == "resume" for line in flown.box("a"))
     assert judged(flown) is Outcome.SUCCESS
     again = vehicle.autopilot.track[before:]
     assert min(dist((n, e), TOUR[0][:2]) for _, n, e, _ in again) < 2.0
@@ -426,21 +444,23 @@ def fly_by_hand(vehicle):
     vehicle.faults.take_stick("loiter")
 
 
-def test_a_folder_with_logs_is_not_flown_over(fleet):
+def test_a_folder_with_logs_is_not_flown_over(fleet, told):
     flown = fleet(Pad("a"))
     flown.logs.mkdir()
     (flown.logs / "a.jsonl").write_text("", "ascii")
-    assert flown.start().end(PATIENCE) == 2
-    assert "holds logs already" in flown.process.said[-1]
+    code, said = told(flown)
+    assert code == 2
+    assert "holds logs already" in said
 
 
 @pytest.mark.parametrize(
     "words", [("--inject", "foo=1"), ("--connect", "a=foo"), ("--connect", "b=udpin:127.0.0.1:1")]
 )
-def test_what_makes_no_sense_is_wrong_usage(fleet, words):
+def test_what_makes_no_sense_is_wrong_usage(fleet, told, words):
     flown = fleet(Pad("a"))
-    assert flown.start(*words).end(PATIENCE) == 2, flown.process.said
-    assert words[0] in flown.process.said[-1]
+    code, said = told(flown, *words)
+    assert code == 2, said
+    assert words[0] in said
     assert not flown.logs.exists()
 
 

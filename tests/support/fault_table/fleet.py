@@ -103,12 +103,16 @@ class Fleet:
 
         What it says goes to `into`; None: to `Process.said`.
         """
+        process = Process(self.command(*arguments, robot=robot), self.folder, into)
+        self._processes.append(process)
+        return process
+
+    def command(self, *arguments: str, robot: str = "") -> list[str]:
+        """Return what Python runs to fly all robots or one, with these arguments beside the usual."""
         chosen = [link for name, link in self._links.items() if robot in ("", name)]
         links = [word for link in chosen for word in ("--connect", link)]
         usual = ["--log", str(self.logs), "--speedup", str(self.speedup)]
-        process = Process([*self._program(robot), *links, *usual, *arguments], self.folder, into)
-        self._processes.append(process)
-        return process
+        return [*self._program(robot), *links, *usual, *arguments]
 
     def _program(self, robot: str) -> list[str]:
         if self.execution == "generated":
@@ -130,9 +134,6 @@ class Fleet:
         (behaviour,) = read_model(self.behaviour, contributions.languages).roots
         program = pipeline.program_of(behaviour, contributions)
         return replay(program, read_logs([self.logs], partial=True), partial=True)
-
-
-CONNECT = {"generated": "--connect", "interpreted": "--connect"}
 
 
 @cache
