@@ -215,10 +215,6 @@ def _complaint(record: StepRecord, message: str) -> Complaint:
     return Complaint(record.robot, record.seq, record.move, message)
 
 
-def _move_id(robot: _Robot) -> str:
-    return robot.program.moves[robot.point.move].id
-
-
 def _expected(run: _Replay, robot: _Robot) -> str:
     possible = steps(robot.program, robot.point, run.active)
     if possible:

@@ -49,7 +49,7 @@ def bus_for(
     folder: Path,
     wishes: BusWishes,
     resumed: tuple[StepRecord, ...] | None,
-    wrap: Callable[[Carrier], Carrier] = lambda carrier: carrier,
+    wrap: Callable[[Carrier], Carrier],
 ) -> ProgramBus:
     """Return the bus of this process.
 

@@ -25,9 +25,6 @@ from .troubles import Keeping, Net, Tell, tell_people
 from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
 from .words import Answer, Begin, CommandId, Commit, Meet, Request, SlotId, SlotState
 
-LEASE_SECONDS = 1.5
-"""How long a robot may be out of reach before slots are no longer kept for it."""
-
 
 class Node:
     """Keeps the slots of this process's robots and commands the owners of all others.
@@ -46,7 +43,6 @@ class Node:
         carrier: Carrier | None = None,
         journals: Callable[[str], Journal] = lambda robot: NoJournal(),
         recorded: Mapping[str, Recorded] | None = None,
-        lease: float = LEASE_SECONDS,
         now: Callable[[], float] = time.monotonic,
         threaded: bool = True,
         chance: random.Random | None = None,
@@ -62,7 +58,6 @@ class Node:
             carrier: to robots of other processes; None: there are none.
             journals: what survives this process, by robot.
             recorded: by robot, what the logs say of those that are started again.
-            lease: seconds for which a robot may be out of reach.
             now: seconds of a clock that never goes back.
             threaded: whether to repeat by itself what is not answered; else `pump` must be called.
             chance: for pauses between tries.
@@ -79,7 +74,7 @@ class Node:
         self.lock = threading.Condition(threading.RLock())
         self.now = now
         self._run, self._alone = f"{run} of plan {plan}" if plan else run, carrier is None
-        self._watching = Watching(lease)
+        self._watching = Watching()
         self._members = {member.owned.robot: member for member in members}
         given = recorded or {}
         self._net = Net(tell)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 
+LEASE_SECONDS = 1.5
+"""How long a robot may be out of reach before slots are no longer kept for it."""
+
 DOUBLE_SECONDS = 3.0
 """How long a robot may still look as if another process ran it, which was killed on a machine of its own."""
 
@@ -24,11 +27,10 @@ class Watching:
         left: the robots that have ended, by themselves, with the latest logical time of each.
     """
 
-    def __init__(self, lease: float) -> None:
-        """Know nobody; after `lease` seconds out of reach a robot is lost for long."""
+    def __init__(self) -> None:
+        """Know nobody."""
         self.left: dict[str, int] = {}
         self._said: dict[str, int] = {}
-        self._lease = lease
         self._here: set[str] = set()
         self._lost_at: dict[str, float] = {}
         self._odd: dict[str, float] = {}
@@ -120,7 +122,7 @@ class Watching:
     def long_lost_at(self, robot: str) -> float | None:
         """Return when a robot is lost for long unless it comes back; None: it is not lost."""
         lost_at = self._lost_at.get(robot)
-        return None if lost_at is None else lost_at + self._lease
+        return None if lost_at is None else lost_at + LEASE_SECONDS
 
     def lost_for_long(self, robot: str, now: float) -> bool:
         """Return whether a robot has been out of reach for longer than the lease."""

@@ -6,6 +6,7 @@ plan; PX4 takes neither before it was told that the transfer is over.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -13,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import Refused
 from ..links.link import Link, Message
-from .exchanges import asked, concerns, lacks_kinds, old_port
+from .exchanges import concerns, first, lacks_kinds, old_port
 from .items import MISSION, NAMES
 from .reading import count_of
 from .sending import cancellation
@@ -34,13 +35,10 @@ def clear(link: Link, kind: int, *, receiving: bool = False) -> int:
         *before, ask = _ending(link, kind) if receiving else (_clearing(link, kind),)
         for message in before:
             link.send(message)
-        try:
-            answer = asked(link, ask, inbox, lambda found: concerns(found, kind), link.retries.answer)
-        except Refused as refused:
-            unknown = "whether it keeps what it had is not known"
-            raise Refused(
-                f"{NAMES[kind]}: the vehicle answers nothing to being told to clear it; {unknown}"
-            ) from refused
+        answer = _answer(link, ask, inbox, kind)
+    if answer is None:
+        unknown = "whether it keeps what it had is not known"
+        raise Refused(f"{NAMES[kind]}: the vehicle answers nothing to being told to clear it; {unknown}")
     if lacks_kinds(answer, kind):
         raise old_port(kind)
     return int(answer.type)
@@ -61,6 +59,17 @@ def left_of(link: Link, kind: int) -> str:
             if count_of(link, kind) <= _least(link, kind):
                 return "it has none now"
     return "what it has now is not known"
+
+
+def _answer(link: Link, ask: Message, inbox: deque[Message], kind: int) -> Message | None:
+    """Ask until the vehicle answers; return None where it does not."""
+    seconds = link.clock.patience(link.retries.answer, link.retries.answer)
+    for _ in link.attempts():
+        link.send(ask)
+        answer = link.wait(lambda: first(inbox, lambda found: concerns(found, kind)), seconds)
+        if answer is not None:
+            return answer
+    return None
 
 
 def _ending(link: Link, kind: int) -> Iterator[Message]:

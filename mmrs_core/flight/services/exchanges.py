@@ -1,4 +1,4 @@
-"""What exchanges of the mission protocol have in common: whose an answer is, and asking until it comes."""
+"""What exchanges of the mission protocol have in common: whose an answer is, and what it says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import Refused
-from ..links.link import Link, Message
+from ..links.link import Message
 from .items import MISSION, NAMES
 
 HEADER = 10
@@ -48,29 +48,6 @@ def first(inbox: deque[Message], fits: Callable[[Message], bool]) -> Message | N
         if fits(message):
             return message
     return None
-
-
-def asked(
-    link: Link, ask: Message, inbox: deque[Message], fits: Callable[[Message], bool], seconds: float
-) -> Message:
-    """Ask until an answer fits.
-
-    Args:
-        link: to the vehicle.
-        ask: what is sent, again and again.
-        inbox: of the link, where answers come.
-        fits: whether a message is the answer.
-        seconds: of the run, and real ones, to wait each time.
-
-    Raises:
-        Refused: none comes.
-    """
-    for _ in link.attempts():
-        link.send(ask)
-        answer = link.wait(lambda: first(inbox, fits), link.clock.patience(seconds, seconds))
-        if answer is not None:
-            return answer
-    raise Refused(f"{ask.get_type()}: the vehicle does not answer")
 
 
 def mark_of(message: Message, before: int) -> int:

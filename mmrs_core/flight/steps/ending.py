@@ -26,8 +26,8 @@ from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
 from .obeying import obeying, undone
 from .pilot import Pilot
-from .responding import HINDRANCES, respond_or_less
-from .responses import HOLD, alone, policy_for, response_to
+from .responding import HINDRANCES, comes_down_alone, respond_or_less
+from .responses import HOLD, response_to
 from .watch import Watch
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
@@ -195,7 +195,8 @@ class Ending:
                 response, crew.robot, crew.vehicle, crew.pilot.track, repeat, self._do_less, low=low
             )
         except Fault as hindrance:
-            if hindrance.event not in HINDRANCES or fault.event == STOPPED or self._comes_down_alone():
+            down = comes_down_alone(crew.robot, crew.vehicle, crew.pilot.waits.policies)
+            if hindrance.event not in HINDRANCES or fault.event == STOPPED or down:
                 raise
             crew.obedience.overtake(hindrance)
             self._tell_undone(hindrance, response)
@@ -209,12 +210,6 @@ class Ending:
         crew.pilot.journal.decide(why.event, f"{response} cannot be carried out: {why}", less)
         crew.say(f"cannot carry out {response}: {why}; response: {less}")
         crew.watch.relax(self._handled, less)
-
-    def _comes_down_alone(self) -> bool:
-        """Return whether the vehicle comes down when it hears nobody any more, or is down."""
-        crew = self._crew
-        policy = alone(policy_for(LINK_LOST, crew.robot, crew.pilot.waits.policies), crew.robot)
-        return policy.response in COMES_DOWN or not crew.vehicle.state().armed
 
     def _response_to(self, fault: Fault) -> str:
         crew = self._crew

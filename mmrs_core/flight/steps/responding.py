@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ..faults import NO_PROGRESS, REFUSED, Fault
-from ..policies import NOTHING
-from ..program import Place, Robot
+from ..faults import LINK_LOST, NO_PROGRESS, REFUSED, Fault
+from ..policies import COMES_DOWN, NOTHING
+from ..program import Place, Policy, Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
-from .responses import ESCAPE, HOLD, LAND, RETURN
+from .responses import ESCAPE, HOLD, LAND, RETURN, alone, policy_for
 from .ways import Track, steps_back
 
 SURFACE = "SURFACE"
@@ -136,6 +136,18 @@ def respond_or_less(
                 raise
             tell(response, fault, less)
             response = less
+
+
+def comes_down_alone(robot: Robot, vehicle: Vehicle, policies: Sequence[Policy]) -> bool:
+    """Return whether a vehicle comes down when it hears nobody any more, or is down.
+
+    Args:
+        robot: whose policies count, after those of the wait.
+        vehicle: of the robot.
+        policies: of the wait that the robot is in.
+    """
+    policy = alone(policy_for(LINK_LOST, robot, policies), robot)
+    return policy.response in COMES_DOWN or not vehicle.state().armed
 
 
 def plainer(response: str, kind: str, *, low: bool) -> str:

@@ -362,7 +362,7 @@ class Watch:
         short = self._reserve.short(vehicle.state(), self._response, self.track())
         return f"it is not taken back: {short}" if short else ""
 
-    def check_hands(self, event: str = "") -> None:
+    def check_hands(self, event: str) -> None:
         """Make sure, right before the vehicle is told how to respond, that no pilot has just taken it.
 
         Args:

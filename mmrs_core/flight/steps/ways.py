@@ -19,22 +19,20 @@ Steps = list[tuple[int | None, Place]]
 _STAYS = (Hold, Turn, Skip)
 
 
-def way_back(robot: Robot, response: str, track: Track, here: Place | None = None) -> Iterator[Place]:
+def way_back(robot: Robot, response: str, track: Track, here: Place) -> Iterator[Place]:
     """Yield the places by which a robot goes back, the last one above where it comes down.
 
     Args:
         robot: its program.
         response: ``RETURN`` or ``EMERGENCY_AREA``; to any other there is no way.
         track: the places that it has passed in this sortie, with the moves that ended there.
-        here: where it is; None: where its track ends.
+        here: where it is.
     """
     for _, place in steps_back(robot, response, track, here):
         yield place
 
 
-def steps_back(
-    robot: Robot, response: str, track: Track, here: Place | None = None
-) -> Iterator[tuple[int | None, Place]]:
+def steps_back(robot: Robot, response: str, track: Track, here: Place) -> Iterator[tuple[int | None, Place]]:
     """Yield the places of the way back, each with its number in the track; None: it is not on it.
 
     The way is cut short wherever it comes back to a place that it has passed before, and leads straight
@@ -43,20 +41,18 @@ def steps_back(
     """
     if response not in ("RETURN", "EMERGENCY_AREA") or not track:
         return
-    start = track[-1][1] if here is None else here
     found = _to_area(robot, track, here) if response == "EMERGENCY_AREA" else _home(robot, track, here)
-    yield from _straight(start, found)
+    yield from _straight(here, found)
 
 
-def _home(robot: Robot, track: Track, here: Place | None) -> Steps:
-    start = track[-1][1] if here is None else here
-    if _above(start, track[0][1]):
+def _home(robot: Robot, track: Track, here: Place) -> Steps:
+    if _above(here, track[0][1]):
         return []
     back: Steps = [(index, track[index][1]) for index in _cut_short(track, here)]
     return _shorter(here, back, [(None, place) for place in _home_ahead(robot, track)])
 
 
-def _to_area(robot: Robot, track: Track, here: Place | None) -> Steps:
+def _to_area(robot: Robot, track: Track, here: Place) -> Steps:
     escapes, back = dict(robot.escapes), Steps()
     for index in _cut_short(track, here):
         move, place = track[index]
@@ -67,14 +63,14 @@ def _to_area(robot: Robot, track: Track, here: Place | None) -> Steps:
     return _shorter(here, back, _area_ahead(robot, track, here))
 
 
-def _shorter(here: Place | None, back: Steps, ahead: Steps) -> Steps:
-    if not ahead or here is None:
+def _shorter(here: Place, back: Steps, ahead: Steps) -> Steps:
+    if not ahead:
         return back
     ways = [_length(here, [place for _, place in way]) for way in (back, ahead)]
     return ahead if ways[1] < ways[0] else back
 
 
-def _area_ahead(robot: Robot, track: Track, here: Place | None) -> Steps:
+def _area_ahead(robot: Robot, track: Track, here: Place) -> Steps:
     """Return the rest of the leg that the robot is on, and the way to an emergency area from its end."""
     steps = {step.move: step for step in robot.steps}
     move, begun = track[-1]
@@ -82,7 +78,7 @@ def _area_ahead(robot: Robot, track: Track, here: Place | None) -> Steps:
     if step is not None and not (isinstance(step.movement, GoTo) and not _ends_at(step.movement, begun)):
         step = steps.get(step.then.move) if isinstance(step.then, Then) else None
     escape = dict(robot.escapes).get(step.move) if step is not None else None
-    if step is None or escape is None or here is None or not isinstance(step.movement, GoTo):
+    if step is None or escape is None or not isinstance(step.movement, GoTo):
         return []
     ends = _ends(begun, step.movement) or []
     legs = list(pairwise([begun, *ends]))
@@ -103,9 +99,9 @@ def _straight(start: Place, places: Steps) -> Iterator[tuple[int | None, Place]]
     yield from places[-1:]
 
 
-def _cut_short(track: Track, here: Place | None) -> Iterator[int]:
+def _cut_short(track: Track, here: Place) -> Iterator[int]:
     """Yield the numbers of the places of a track, from where the robot is back to the first one."""
-    index = len(track) - 1 if here is None else _joined(track, here)
+    index = _joined(track, here)
     while index >= 0:
         yield index
         same = (i for i in range(index + 1) if distance(track[i][1], track[index][1]) <= NEAR)

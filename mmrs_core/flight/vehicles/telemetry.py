@@ -99,18 +99,14 @@ class Telemetry:
         """Return how often the vehicle was seen to start anew."""
         return self._link.starts
 
-    def obstacle(self, within: float = OBSTACLE_METRES) -> str:
-        """Return what the vehicle reports to be in its way; empty if there is nothing.
-
-        Args:
-            within: metres from which on a distance that it measures counts.
-        """
+    def obstacle(self) -> str:
+        """Return what the vehicle reports to be in its way; empty if there is nothing."""
         collision, scan = self._recent("COLLISION"), self._recent("OBSTACLE_DISTANCE")
         if collision is not None and collision.threat_level == mavlink.MAV_COLLISION_THREAT_LEVEL_HIGH:
             return f"a collision threatens in {collision.time_to_minimum_delta:.0f} s"
         if scan is not None:
             known = [cm for cm in scan.distances if cm != NO_DISTANCE and cm <= scan.max_distance]
-            if known and min(known) <= within * 100.0:
+            if known and min(known) <= OBSTACLE_METRES * 100.0:
                 return f"something is {min(known) / 100.0:.1f} m away"
         return ""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault
@@ -67,7 +68,7 @@ class Moves:
         """Return what is to be done for a move; `through`: without a stop at its end."""
         movement = self._steps[move].movement
         if isinstance(movement, TakeOff):
-            return Job(_TakeOff(self, move, movement.height))
+            return Job(partial(self.climb, move, movement.height))
         if isinstance(movement, Land):
             return Job(self._vehicle.land)
         if isinstance(movement, GoTo):
@@ -242,16 +243,6 @@ class Moves:
                 self._told("text", "charging", {"text": f"charged for {seconds:.0f} s; nobody knows how far"})
 
         return Job(finish, self._rest(seconds), top_up)
-
-
-class _TakeOff:
-    """A take-off that goes on where it was interrupted."""
-
-    def __init__(self, moves: Moves, move: str, height: float) -> None:
-        self._moves, self._move, self._height = moves, move, height
-
-    def __call__(self) -> None:
-        self._moves.climb(self._move, self._height)
 
 
 class _Flight:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mmrs_core.flight.faults import BATTERY_LOW, FAILURES, LINK_LOST, POSITION_LOST, TAKEN_OVER, Fault
-from mmrs_core.flight.policies import COMES_DOWN, NOTHING
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.steps.obeying import obeying, undone
-from mmrs_core.flight.steps.responding import HINDRANCES, respond_or_less
-from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION, alone, policy_for
+from mmrs_core.flight.steps.responding import HINDRANCES, comes_down_alone, respond_or_less
+from mmrs_core.flight.steps.responses import HOLD, LAND, NEEDS_POSITION
 from mmrs_core.flight.steps.watch import Decide, Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.mavlink.backend.moves import Moves
@@ -113,7 +113,7 @@ class Response:
         except Interrupted:
             raise
         except Fault as fault:
-            if fault.event not in HINDRANCES or self._comes_down_alone():
+            if fault.event not in HINDRANCES or comes_down_alone(robot, vehicle, self._watch.current()):
                 raise
             self._instead = self._instead or f"{name} cannot be carried out: {fault}"
             self._say(f"cannot carry out {name}: {fault}; take over by hand")
@@ -130,8 +130,3 @@ class Response:
         self._decide(why.event, f"{name} cannot be carried out: {why}", less)
         self._say(f"cannot carry out {name}: {why}; response: {less}")
         self._watch.relax(self._handled, less)
-
-    def _comes_down_alone(self) -> bool:
-        """Return whether the vehicle comes down when it hears nobody any more, or is down."""
-        policy = alone(policy_for(LINK_LOST, self._robot, self._watch.current()), self._robot)
-        return policy.response in COMES_DOWN or not self._vehicle.state().armed

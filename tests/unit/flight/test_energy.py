@@ -38,7 +38,7 @@ def test_the_way_back_is_the_way_that_the_robot_came_with_its_corners_and_the_de
 
 def test_an_emergency_area_ends_the_way_back_where_it_is_left_for():
     given = robot(escapes=(("a", (Local(300.0, -50.0, 10.0),)),))
-    assert list(way_back(given, "EMERGENCY_AREA", TRACK))[-1] == Local(300.0, -50.0, 10.0)
+    assert list(way_back(given, "EMERGENCY_AREA", TRACK, TRACK[-1][1]))[-1] == Local(300.0, -50.0, 10.0)
     seconds = (100 + 50) / 5.0 + STOP + TURNING_SECONDS + 10.0
     assert seconds_back(given, state(0.5), "EMERGENCY_AREA", TRACK) == pytest.approx(seconds)
 

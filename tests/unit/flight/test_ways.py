@@ -93,12 +93,12 @@ def test_the_end_of_the_leg_that_a_robot_is_on_is_gone_to_where_the_area_is_near
 
 def test_places_on_one_line_are_gone_through_at_once():
     row = [Local(100.0, float(east), 10.0) for east in range(0, 81, 10)]
-    assert back(robot(*row), track(*row), None) == [row[0], UP]
+    assert back(robot(*row, FAR), track(*row), row[-1]) == [row[0], UP]
 
 
 def test_a_line_that_bends_little_by_little_is_no_straight_one():
     bend = [Local(100.0 - 0.001 * east**2, float(east), 10.0) for east in range(0, 81, 10)]
-    found = back(robot(*bend), track(*bend), None)
+    found = back(robot(*bend, FAR), track(*bend), bend[-1])
     assert 4 < len(found) < 9
     legs = list(pairwise([bend[-1], *found]))
     assert max(min(distance_to_leg(place, *leg) for leg in legs) for place in bend) <= 0.1

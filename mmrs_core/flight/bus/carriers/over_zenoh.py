@@ -21,7 +21,7 @@ from typing import Any
 
 import zenoh
 
-from ..troubles import Net, Tell, tell_people
+from ..troubles import Net, tell_people
 from ..words import LONGEST, digest
 from .carrier import Answered, Station
 from .endpoints import first_fault
@@ -68,7 +68,6 @@ class ZenohCarrier:
         run: str,
         robots: Sequence[str],
         endpoints: Endpoints,
-        tell: Tell = tell_people,
         plan: str = "",
     ) -> None:
         """Keep what is needed to begin.
@@ -78,10 +77,9 @@ class ZenohCarrier:
             run: identifier of the run.
             robots: all of the mission that this process may have to do with, its own included.
             endpoints: how peers are reached.
-            tell: tells people what goes wrong here, from any thread.
             plan: what tells this plan of the mission from others.
         """
-        self._net = Net(tell)
+        self._net = Net(tell_people)
         self._prefix = f"mmrs/{digest(mission)}/{digest(run)}"
         self._names = {digest(robot): robot for robot in robots}
         self._endpoints = endpoints

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from ..words import REACH, Answer, CommandId, Commit, Prepare, Request, Withdraw
+from ..words import Answer, CommandId, Commit, Prepare, Request, Withdraw
 
 ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
 """How long owners have to answer before all are asked anew, growing with each round: radios are slow."""
@@ -56,7 +56,7 @@ class Errand:
         active: bool,
         clock: Callable[[], int],
         chance: random.Random,
-        reach: int = REACH,
+        reach: int,
     ) -> None:
         """Ask nobody yet.
 

@@ -100,7 +100,7 @@ def test_nobody_else_ends_the_robots_of_a_process(ends):
 
 
 def test_what_others_say_is_passed_on():
-    watching = Watching(1.5)
+    watching = Watching()
     assert watching.hear_say("a", 3)
     watching.left["b"] = 4
     assert watching.ended() == {"a": 3, "b": 4}
