@@ -16,6 +16,7 @@ from urllib.parse import quote
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
+from mmrs_core.flight.records.lines import keep_whole_lines, whole_lines
 from mmrs_core.languages.codes import explained
 
 SCHEMA = Path(__file__).with_name("log.schema.json")
@@ -71,8 +72,8 @@ class LogWriter:
 
     def _opened(self, robot: str) -> TextIO:
         path = self._folder / log_name(robot)
-        if self._resumed:
-            _cut_last_line(path)
+        if self._resumed and path.exists():
+            keep_whole_lines(path)
         file = path.open("a" if self._resumed else "w", encoding="utf-8", newline="\n")
         self._files[robot] = file
         return file
@@ -86,35 +87,6 @@ class LogWriter:
     ) -> None:
         """Close all files."""
         self.close()
-
-
-def _cut_last_line(path: Path) -> None:
-    """Take away what was cut off while it was written, and what a disk has left in its place."""
-    if not path.exists():
-        return
-    data = path.read_bytes()
-    whole = sum(len(line) + 1 for line in _whole_lines(data))
-    if whole < len(data):
-        with path.open("r+b") as file:
-            file.truncate(whole)
-
-
-def _whole_lines(data: bytes) -> list[bytes]:
-    """Return the lines up to the last that was written whole: behind it nothing ends, or is text of JSON."""
-    lines = data.split(b"\n")[:-1]
-    while lines and _is_rubbish(lines[-1]):
-        lines.pop()
-    return lines
-
-
-def _is_rubbish(line: bytes) -> bool:
-    try:
-        json.loads(line)
-    except ValueError:
-        return True
-    except RecursionError:
-        return False
-    return False
 
 
 def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
@@ -133,7 +105,7 @@ def read_log(path: Path, *, partial: bool = False) -> tuple[StepRecord, ...]:
         data = path.read_bytes()
     except OSError as error:
         raise UnreadableError(f"{path}: cannot be read as a log: {error.strerror or error}") from error
-    lines = _whole_lines(data) if partial else data.removesuffix(b"\n").split(b"\n") if data else []
+    lines = whole_lines(data) if partial else data.removesuffix(b"\n").split(b"\n") if data else []
     return _records(
         [_text(line, f"{path}:{number}") for number, line in enumerate(lines, start=1)], str(path)
     )

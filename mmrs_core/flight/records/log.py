@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..faults import LOG_FAILED, Fault
+from .lines import keep_whole_lines, whole_lines
 
 FIELDS = frozenset({"run", "robot", "seq", "lamport", "time", "label", "move", "detail", "slot"})
 KEPT_AT_ONCE = frozenset({"ntf", "fault"})
@@ -34,7 +35,7 @@ class Log:
         with _writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             if resume and path.exists():
-                _keep_whole_lines(path)
+                keep_whole_lines(path)
             self._file: IO[bytes] = path.open("ab" if resume else "xb", buffering=0)
             self._end = path.stat().st_size
         self._path = path
@@ -97,33 +98,13 @@ def read(path: Path) -> tuple[dict[str, Any], ...]:
     """
     try:
         data = path.read_bytes() if path.exists() else b""
-        steps = tuple(json.loads(line) for line in _whole_lines(data))
-    except (OSError, ValueError) as error:
+        steps = tuple(json.loads(line) for line in whole_lines(data))
+    except (OSError, ValueError, RecursionError) as error:
         raise Fault(LOG_FAILED, f"{path}: cannot be read: {error}") from error
     for number, step in enumerate(steps):
         if not isinstance(step, dict) or not step.keys() >= FIELDS or step["seq"] != number:
             raise Fault(LOG_FAILED, f"{path}:{number + 1}: is not the next step of a log")
     return steps
-
-
-def _keep_whole_lines(path: Path) -> None:
-    os.truncate(path, sum(len(line) + 1 for line in _whole_lines(path.read_bytes())))
-
-
-def _whole_lines(data: bytes) -> list[bytes]:
-    """Return the lines up to the last whole one: after a loss of power, disks leave rubbish behind it."""
-    lines = data.split(b"\n")[:-1]
-    while lines and _is_rubbish(lines[-1]):
-        lines.pop()
-    return lines
-
-
-def _is_rubbish(line: bytes) -> bool:
-    try:
-        json.loads(line)
-    except ValueError:
-        return True
-    return False
 
 
 @contextmanager
