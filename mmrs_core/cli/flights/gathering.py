@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mmrs_core.behaviour.blackbox import Damage, Entry, number_of
@@ -12,6 +12,7 @@ from mmrs_core.behaviour.box_files import BlackBox, black_boxes, is_part
 from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.salvage import logs_in, salvage_log
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.cli.flights.clocks import Readings, Shift, shifts_of
 from mmrs_core.cli.flights.fixes import Fixes, Zero, zero_of
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.errors import InvalidModelError, UnreadableError
@@ -35,11 +36,13 @@ class _Contents:
     runs: dict[str, None] = field(default_factory=dict)
     dropped: int = 0
     wall: str = ""
+    clock: Readings = field(default_factory=Readings)
 
     def add(self, entry: Entry) -> None:
         """Take an entry."""
         self.runs[entry.run] = None
         self.wall = self.wall or entry.wall
+        self.clock.add(entry)
         if entry.kind == "start" or not self.counts:
             self.counts.append(Counter())
         if entry.kind == "fix":
@@ -119,13 +122,20 @@ def read_flight(paths: Sequence[Path], program: Program, types: Mapping[str, Rob
             damages.append(
                 f"{robot.id}: {strange} steps are of moves or actions that the behaviour does not have"
             )
+    shifts, notes = shifts_of({id: contents[id].clock for id in known & contents.keys()})
+    damages += notes
     robots = {
-        robot.id: _flown(
-            robot.id,
-            steps.get(robot.id, ()),
-            contents.get(robot.id, _Contents()),
-            zero_of(robot, program, types.get(robot.type_name), contents.get(robot.id, _Contents()).vehicle),
-            damages,
+        robot.id: _moved(
+            _flown(
+                robot.id,
+                steps.get(robot.id, ()),
+                contents.get(robot.id, _Contents()),
+                zero_of(
+                    robot, program, types.get(robot.type_name), contents.get(robot.id, _Contents()).vehicle
+                ),
+                damages,
+            ),
+            shifts.get(robot.id),
         )
         for robot in program.robots
     }
@@ -197,6 +207,18 @@ def _flown(
     counted: Counter[str] = sum(contents.counts, Counter())
     entries = tuple(contents.entries)
     return Flown(robot, tuple(records), track, entries, contents.messages, counted, contents.simulated)
+
+
+def _moved(flown: Flown, shift: Shift | None) -> Flown:
+    """Return what a robot did, by the clock of the others."""
+    if shift is None:
+        return flown
+    return replace(
+        flown,
+        records=tuple(replace(each, time=shift.time(each.time)) for each in flown.records),
+        track=replace(flown.track, times=shift.times(flown.track.times)),
+        entries=tuple(replace(each, time=shift.time(each.time)) for each in flown.entries),
+    )
 
 
 def _runs(steps: Mapping[str, Sequence[StepRecord]], contents: Mapping[str, _Contents]) -> Iterator[str]:

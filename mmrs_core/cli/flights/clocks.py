@@ -1,0 +1,113 @@
+"""Lays the times of robots that had processes of their own over each other, by the time of day.
+
+Each process counts the seconds of a run from its own start; a black box has the time of day beside them.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import numpy as np
+
+from mmrs_core.behaviour.blackbox import Entry
+from mmrs_core.geometry.frames import Floats
+
+SAME = 0.02
+"""Seconds by which the clocks of robots of one process differ at most, as they are written."""
+_LONG = 5.0
+
+
+@dataclass(slots=True)
+class Readings:
+    """The clock of one robot: the time of the run and the time of day, in each process that it had."""
+
+    _processes: list[array[float]] = field(default_factory=list)
+
+    def add(self, entry: Entry) -> None:
+        """Take both times of an entry; one without a time of day that can be read does not matter."""
+        if entry.kind == "start" or not self._processes:
+            self._processes.append(array("d"))
+        try:
+            of_day = datetime.fromisoformat(entry.wall).timestamp()
+        except (ValueError, OverflowError, OSError):
+            return
+        self._processes[-1].extend((entry.time, of_day))
+
+    @property
+    def processes(self) -> tuple[Floats, ...]:
+        """Return (n, 2) times of the run and of the day for each process."""
+        return tuple(np.frombuffer(each).reshape(-1, 2) for each in self._processes)
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """By how many seconds the times of a robot are to be moved.
+
+    Attributes:
+        since: from which times on, one for each process; by: seconds, as many.
+    """
+
+    since: tuple[float, ...] = (0.0,)
+    by: tuple[float, ...] = (0.0,)
+
+    def times(self, times: Floats) -> Floats:
+        """Return (n,) times moved; they never fall where they did not before."""
+        number = np.clip(np.searchsorted(self.since, times, side="right") - 1, 0, None)
+        moved = times + np.asarray(self.by)[number]
+        falls = np.diff(times, prepend=times[:1]) < 0.0
+        return moved if falls.any() else np.maximum.accumulate(moved)
+
+    def time(self, time: float) -> float:
+        """Return one time, moved."""
+        return float(self.times(np.array([time]))[0])
+
+
+def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[str, ...]]:
+    """Return by how much the times of robots are to be moved, and that, for people.
+
+    Times are those of the robot that began first. Robots without times of day, and those that were in
+    another number of processes than that one, stay as they are.
+
+    Args:
+        clocks: by robot.
+    """
+    processes = {robot: each.processes for robot, each in clocks.items()}
+    known = {robot: each for robot, each in processes.items() if each and all(len(part) for part in each)}
+    pace = _pace([part for each in known.values() for part in each])
+    zeros = {robot: [_zero(part, pace) for part in each] for robot, each in known.items()}
+    if not zeros:
+        return {}, ()
+    first = min(zeros, key=lambda robot: zeros[robot][0])
+    shifts: dict[str, Shift] = {}
+    notes = []
+    for robot, own in zeros.items():
+        later = own[0] - zeros[first][0]
+        if len(own) != len(zeros[first]):
+            notes.append(
+                f"{robot}: was started again otherwise than {first}: their times may not be the same"
+            )
+            continue
+        by = [pace * (mine - its) for mine, its in zip(own, zeros[first], strict=True)]
+        if max(map(abs, by)) <= SAME:
+            continue
+        shifts[robot] = Shift(tuple(float(part[0, 0]) for part in known[robot]), tuple(by))
+        notes.append(
+            f"{robot}: its process began {later:.1f} s after that of {first}, by the time of day;"
+            f" its times are counted as those of {first}"
+        )
+    return shifts, tuple(notes)
+
+
+def _pace(parts: Sequence[Floats]) -> float:
+    """Return how many seconds of the run pass in one of the day; 1 where no process was long enough."""
+    spans = [part[-1] - part[0] for part in parts]
+    paces = [run / day for run, day in spans if day >= _LONG and run > 0.0]
+    return float(np.median(paces)) if paces else 1.0
+
+
+def _zero(part: Floats, pace: float) -> float:
+    """Return the time of day at which a process counted 0."""
+    return float(np.median(part[:, 1] - part[:, 0] / pace))

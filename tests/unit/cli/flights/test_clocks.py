@@ -1,0 +1,70 @@
+"""Robots of separate processes are laid over each other by the time of day."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+
+from mmrs_core.cli.flights.gathering import read_flight
+
+NOON = datetime(2026, 6, 1, 12, 0, tzinfo=UTC)
+
+
+def begin(folder, robot, after, pace=1.0):
+    """Have a robot's black box say that its process began so many seconds of the run after noon."""
+    path = folder / f"{robot}.blackbox.ndjson"
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    for line in lines:
+        of_day = NOON + timedelta(seconds=(line["time"] + after) / pace)
+        line["wall"] = of_day.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines))
+
+
+@pytest.fixture
+def flight(folder, behaviour, types):
+    return lambda: read_flight((folder,), behaviour, types)
+
+
+def last(flown):
+    return float(flown.track.times[-1])
+
+
+@pytest.mark.parametrize("pace", [1.0, 5.0])
+def test_a_process_that_began_later_has_the_times_of_the_first(flight, folder, pace):
+    before = flight().robots
+    begin(folder, "alpha", 0.0, pace)
+    begin(folder, "beta", 7.3, pace)
+    read = flight()
+    assert last(read.robots["beta"]) == pytest.approx(last(before["beta"]) + 7.3, abs=0.02)
+    later = [each.time for each in before["beta"].records]
+    assert [each.time - 7.3 for each in read.robots["beta"].records] == pytest.approx(later, abs=0.02)
+    assert np.allclose(read.robots["alpha"].track.times, before["alpha"].track.times, atol=0.001)
+    (note,) = read.damages
+    assert note.startswith(f"beta: its process began {7.3 / pace:.1f} s after that of alpha")
+
+
+def test_robots_of_one_process_are_left_as_they_are(flight, folder):
+    for robot in ("alpha", "beta"):
+        begin(folder, robot, 0.0)
+    assert flight().damages == ()
+
+
+def test_times_of_day_that_cannot_be_read_move_nothing(flight, folder):
+    begin(folder, "alpha", 0.0)
+    box = folder / "alpha.blackbox.ndjson"
+    box.write_text(box.read_text().replace("2026-06-01T", "soon "))
+    begin(folder, "beta", 3.0)
+    assert flight().damages == ()
+
+
+def test_a_robot_whose_process_was_started_again_alone_is_left_and_that_is_told(flight, folder):
+    begin(folder, "alpha", 0.0)
+    begin(folder, "beta", 5.0)
+    box = folder / "beta.blackbox.ndjson"
+    lines = box.read_text().splitlines(keepends=True)
+    box.write_text("".join([*lines, lines[0], *lines[-3:]]))
+    (note,) = [each for each in flight().damages if "started again" in each]
+    assert note.startswith("beta: was started again otherwise than alpha")
