@@ -39,8 +39,9 @@ def test_a_log_that_cannot_be_written_any_more_ends_the_program(controllers):
     def fill_disk() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (400, 400))
 
+    # Bytecode (-B) would be cut off, too, for all processes that come after.
     found = subprocess.run(
-        [sys.executable, str(made.folder / "fleet.py"), "--dry-run"],
+        [sys.executable, "-B", str(made.folder / "fleet.py"), "--dry-run"],
         cwd=made.folder,
         capture_output=True,
         text=True,
