@@ -5,7 +5,7 @@ Stages print nothing, read no clock and no environment; only `write` and `save` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -16,7 +16,7 @@ from mmrs_core.errors import InvalidModelError, UnreadableError, UsageError
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
     from mmrs_core.behaviour.steps import StepRecord
-    from mmrs_core.contributions.backends import BackendInput
+    from mmrs_core.contributions.backends import BackendFactory, BackendInput
     from mmrs_core.contributions.checks import Verdict
     from mmrs_core.contributions.execution import Condition
     from mmrs_core.contributions.registry import Contributions
@@ -24,9 +24,7 @@ if TYPE_CHECKING:
     from mmrs_core.generation.capabilities.judging import Capability
     from mmrs_core.languages import behaviour as bl
     from mmrs_core.languages.modelset import ModelSet
-    from mmrs_core.runtime.live import Venture
     from mmrs_core.runtime.run import Run
-    from mmrs_core.runtime.terms import Ending
     from mmrs_core.scene import Area, Plan, RobotType, Scene
     from mmrs_core.transformation.engine import Trace
 
@@ -288,7 +286,7 @@ def simulate(
 
     return simulated(
         program,
-        backend=_named("backend", backend, contributions.backends),
+        backend=backend_named(backend, contributions),
         options=options,
         types=place.types,
         robot_kinds=contributions.robot_kinds,
@@ -350,17 +348,13 @@ def conditions_for(
     return {**standard, **contributions.conditions, **assumed(assume)}
 
 
-def run_live(
-    venture: Venture, backend: str, contributions: Contributions
-) -> Generator[StepRecord, None, Ending]:
-    """Yield the steps of a run in real time; see `mmrs_core.runtime.live.run_live`.
+def backend_named(name: str, contributions: Contributions) -> BackendFactory:
+    """Return the backend of that name.
 
     Raises:
-        UsageError: if there is no such backend.
+        UsageError: if there is none.
     """
-    from mmrs_core.runtime.live import run_live as run
-
-    return run(venture, _named("backend", backend, contributions.backends))
+    return _named("backend", name, contributions.backends)
 
 
 def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Contributed:

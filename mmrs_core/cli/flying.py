@@ -27,9 +27,9 @@ from mmrs_core.cli.output import say, tell, unfailing
 from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, robots_of, stop_response
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
-from mmrs_core.pipeline import conditions_for, inputs_of, run_live
+from mmrs_core.pipeline import backend_named, conditions_for, inputs_of
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.live import Venture
+from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import STOP, Orders
 from mmrs_core.runtime.terms import Ending
 
@@ -85,9 +85,11 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     Raises:
         typer.BadParameter: if an option makes no sense.
         LinkLostError: if a robot does not answer at first.
+        UsageError: if there is no such backend.
         UnsupportedError: if the backend cannot do what the behaviour holds.
     """
     program = loaded.program
+    backend = backend_named(wishes.backend, workshop.contributions)
     here = robots_of(program, wishes.robots)
     links = links_of(wishes.links, here)
     check_mavlink(wishes, links, here)
@@ -127,7 +129,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         stack.enter_context(_stopping(orders, here))
         stack.enter_context(unfailing())
         stack.callback(gallery.close)
-        ending = _collected(run_live(venture, wishes.backend, workshop.contributions), program)
+        ending = _collected(run_live(venture, backend), program)
     names = [wishes.folder / log_name(robot) for robot in here]
     return Result(ending, tuple(path for path in names if path.exists()))
 

@@ -67,6 +67,7 @@ def test_a_backend_that_nobody_contributed_is_named(mmrs, project, command, opti
     code, _, err = mmrs(command, project, "--backend", "simulaton", option, project / "logs")
     assert code == 2
     assert "backend 'simulaton': not known; there are mavlink, simulation" in err
+    assert not (project / "logs").exists()
 
 
 def test_an_option_that_the_backend_does_not_know_is_named(mmrs, project):
