@@ -58,7 +58,9 @@ class SimulatedRobot:
         """
         if given.options:
             option = sorted(given.options)[0]
-            raise UsageError(f"option '{option}': the simulation has none of that name")
+            raise UsageError(
+                f"option '{option}': the simulation has none of that name: it has no links, disk or clock"
+            )
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         policies = in_precedence(given.robot.policies, given.policies)

@@ -183,8 +183,10 @@ class SerialPort:
 
         try:
             self._file: Any = mavutil.mavserial(url.partition(",")[0], baud=_baud_of(url))
+        except ImportError as error:
+            raise OSError("serial devices need the package pyserial: pip install pyserial") from error
         except Exception as error:
-            raise OSError(f"{url}: cannot be opened: {error}") from error
+            raise OSError(f"cannot be opened: {error}") from error
 
     def read(self, seconds: float) -> Received:
         """Return what has come."""

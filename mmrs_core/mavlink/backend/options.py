@@ -65,15 +65,18 @@ def _value(key: str, text: str) -> object:
 
 
 def _positive(text: str) -> float:
-    number = float(text)
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
     if not 0.0 < number < inf:
-        raise ValueError(f"{text} is not a positive number")
+        raise ValueError(f"'{text}' is not a positive number")
     return number
 
 
 def _count(text: str) -> int:
-    if int(text) < 1:
-        raise ValueError(f"{text} is not a number from 1 on")
+    if not text.isdecimal() or int(text) < 1:
+        raise ValueError(f"'{text}' is not a number from 1 on")
     return int(text)
 
 
