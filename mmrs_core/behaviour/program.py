@@ -110,6 +110,11 @@ class Move:
         """Return the name of the most specific metaclass, for people."""
         return self.metaclasses[0][1]
 
+    def action(self, detail: str) -> Action:
+        """Return the action that a step names: ``pre:0`` is the first before the movement, or ``post:0``."""
+        side, _, index = detail.partition(":")
+        return (self.before if side == "pre" else self.after)[int(index)]
+
 
 @dataclass(frozen=True, slots=True)
 class Transition:
@@ -159,6 +164,10 @@ class RobotProgram:
     stop: int
     policies: tuple[Policy, ...] = ()
     place: Place = Place()
+
+    def move(self, id: str) -> Move:
+        """Return the move of that identifier."""
+        return next(move for move in self.moves if move.id == id)
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,10 @@ from errno import EEXIST
 from pathlib import Path
 from typing import Any
 
+from .orders.ordering import PATTERN
 from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
 
-FILE, FILES = "control.json", "control*.json"
+FILE = "control.json"
 ANSWER_SECONDS = 30.0
 """Longest time that a robot has for an answer; a client may ask for less with `seconds`."""
 
@@ -194,7 +195,7 @@ def _announce(folder: Path, text: str) -> Path:
     """Write the announcement where no process that is still there has put its own."""
     folder.mkdir(parents=True, exist_ok=True)
     usual = folder / FILE
-    for path in folder.glob(FILES):
+    for path in folder.glob(PATTERN):
         if _was_left(path):
             path.unlink(missing_ok=True)
     for path in (usual, folder / f"{usual.stem}-{os.getpid()}{usual.suffix}"):

@@ -233,6 +233,11 @@ class Step:
     task: str = ""
     rule: str = ""
 
+    def action(self, detail: str) -> Action:
+        """Return the action that a log names: ``pre:0`` is the first before the movement, or ``post:0``."""
+        side, _, index = detail.partition(":")
+        return (self.before if side == "pre" else self.after)[int(index)]
+
 
 @dataclass(frozen=True, slots=True)
 class Run:

@@ -234,7 +234,7 @@ def recorded_of(robot: Robot, lines: Iterable[Mapping[str, Any]]) -> Recorded:
     for line in lines:
         lamport = int(line["lamport"])
         if line["label"] == "ntf":
-            action = _action(robot, str(line["move"]), str(line["detail"]))
+            action = robot.step(str(line["move"])).action(str(line["detail"]))
             assert isinstance(action, Notify)
             notifies.update({slot: (action.active, lamport) for slot in action.slots})
     return Recorded(lamport, notifies)
@@ -242,9 +242,3 @@ def recorded_of(robot: Robot, lines: Iterable[Mapping[str, Any]]) -> Recorded:
 
 def _actions(robot: Robot) -> Iterable[Action]:
     return (action for step in robot.steps for action in (*step.before, *step.after))
-
-
-def _action(robot: Robot, move: str, detail: str) -> Action:
-    side, _, index = detail.partition(":")
-    step = robot.step(move)
-    return (step.before if side == "pre" else step.after)[int(index)]

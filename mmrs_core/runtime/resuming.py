@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from mmrs_core.behaviour.log import merge
-from mmrs_core.behaviour.program import Action, Program, RobotProgram
+from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.behaviour.semantics import Point, Step, entry, told_by
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.buses import CommandId
@@ -64,16 +64,10 @@ def restore(bus: InProcessBus, program: Program, records: Iterable[StepRecord]) 
     for record in merge(records):
         robot = robots[record.robot]
         if record.label == "ntf":
-            action = _action(robot, record)
+            action = robot.move(record.move).action(record.detail)
             id = CommandId(record.run, record.robot, RESTORED, record.seq)
             bus.apply(id, action.sets, action.active, record.lamport)
         elif record.label in ("take", "choose"):
             index = next(i for i, move in enumerate(robot.moves) if move.id == record.move)
             waits = [(robot.id, name) for name in robot.transitions[index].waits]
             bus.passed(waits, record.lamport)
-
-
-def _action(robot: RobotProgram, record: StepRecord) -> Action:
-    move = next(move for move in robot.moves if move.id == record.move)
-    side, _, index = record.detail.partition(":")
-    return (move.before if side == "pre" else move.after)[int(index)]

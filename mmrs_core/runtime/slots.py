@@ -180,8 +180,8 @@ def recorded_of(
         for record in (each for each in records if each.robot == robot):
             lamport = record.lamport
             if record.label == "ntf":
-                sets, active = _notify(program.robot(robot), record)
-                notifies.update({slot: (active, lamport) for slot in sets})
+                action = program.robot(robot).move(record.move).action(record.detail)
+                notifies.update({slot: (action.active, lamport) for slot in action.sets})
         found[robot] = Recorded(lamport, notifies)
     return found
 
@@ -191,10 +191,3 @@ def _set_by(robot: RobotProgram) -> Iterable[tuple[SlotId, bool]]:
         for action in (*move.before, *move.after):
             for slot in action.sets:
                 yield slot, action.active
-
-
-def _notify(robot: RobotProgram, record: StepRecord) -> tuple[tuple[SlotId, ...], bool]:
-    move = next(move for move in robot.moves if move.id == record.move)
-    side, _, index = record.detail.partition(":")
-    action = (move.before if side == "pre" else move.after)[int(index)]
-    return action.sets, action.active

@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.items import MISSION, Item, fault_of, kept
 from mmrs_core.sitl.settings import PX4
-from mmrs_core.sitl.stored import Address, Message, Say, Stored, item_of, nobody, sender_of
+from mmrs_core.sitl.stored import Address, Message, Say, Stored, item_of, sender_of
 
 ASK_AGAIN_SECONDS = 0.25
 GIVE_UP_SECONDS = 5.0
@@ -35,9 +35,7 @@ class Px4MissionProtocol:
         home: is not used, PX4 gives missions as they were uploaded.
     """
 
-    def __init__(
-        self, stores: dict[int, list[Item]], send: Callable[[Message], None], say: Say = nobody
-    ) -> None:
+    def __init__(self, stores: dict[int, list[Item]], send: Callable[[Message], None], say: Say) -> None:
         """Keep what is uploaded in `stores`, by mission type, answer by `send`, and complain by `say`."""
         self.busy = False
         self.finished: Callable[[int], None] = lambda kind: None

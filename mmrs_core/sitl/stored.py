@@ -17,10 +17,6 @@ Say = Callable[[int, str], None]
 """Tells the ground something, with a MAV_SEVERITY."""
 
 
-def nobody(severity: int, text: str) -> None:
-    """Tell nobody."""
-
-
 class Transfers(Protocol):
     """A firmware's side of the mission protocol.
 

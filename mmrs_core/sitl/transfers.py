@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.items import FENCE, MISSION, RALLY, Item, fault_of, kept
 from mmrs_core.sitl.settings import ARDUPILOT
-from mmrs_core.sitl.stored import Address, Message, Say, Stored, item_of, nobody, sender_of
+from mmrs_core.sitl.stored import Address, Message, Say, Stored, item_of, sender_of
 
 ASK_AGAIN_SECONDS = 1.0
 GIVE_UP_SECONDS = 8.0
@@ -44,7 +44,7 @@ class MissionProtocol:
         self,
         stores: dict[int, list[Item]],
         send: Callable[[Message], None],
-        say: Say = nobody,
+        say: Say,
         *,
         old: bool = False,
     ) -> None:

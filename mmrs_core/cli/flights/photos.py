@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from mmrs_core.behaviour.blackbox import number_of
@@ -95,12 +95,5 @@ def _orders(robot: RobotProgram, flown: Flown, robot_type: RobotType | None) -> 
     for record in flown.records:
         if record.label == "act":
             move = moves[record.move]
-            if takes_photo(action_of(move, record.detail), robot_type):
+            if takes_photo(move.action(record.detail), robot_type):
                 yield record.time, move
-
-
-def action_of(move: Move, detail: str) -> Action:
-    """Return the action that a step names, as ``pre:0`` or ``post:1``."""
-    side, _, index = detail.partition(":")
-    actions: Sequence[Action] = move.before if side == "pre" else move.after
-    return actions[int(index)]

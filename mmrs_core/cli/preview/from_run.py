@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import dist
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, Move, Program, RobotProgram
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.preview.picture import Bar, Handover, Leg, Picture, RobotPicture
@@ -178,7 +178,7 @@ def handovers_of(program: Program, by_robot: Mapping[str, Sequence[StepRecord]])
         for record in by_robot[robot.id]:
             if record.label != "ntf":
                 continue
-            action = _action(moves[record.move], record.detail)
+            action = moves[record.move].action(record.detail)
             for slot in action.sets if action.active else ():
                 yield from (
                     Handover(robot.id, record.time, owner, begin, time, moves[record.move].task)
@@ -197,11 +197,6 @@ def _waits(
             transition = robot.transitions.get(index[record.move])
             if record.label == "take" and transition is not None and record.time > before.time:
                 yield from ((robot.id, slot, before.time, record.time) for slot in transition.waits)
-
-
-def _action(move: Move, detail: str) -> Action:
-    side, _, index = detail.partition(":")
-    return (move.before if side == "pre" else move.after)[int(index)]
 
 
 class _Track:

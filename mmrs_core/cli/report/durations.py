@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.cli.flights.photos import action_of
 from mmrs_core.cli.flights.values import Flight
 from mmrs_core.cli.report.values import MoveReport, WaitReport
 from mmrs_core.cli.report.visits import Visit, visits_of
@@ -100,7 +99,7 @@ def _setters(program: Program, flight: Flight) -> dict[SlotId, list[tuple[float,
         moves = {move.id: move for move in robot.moves}
         for record in flight.robots[robot.id].records:
             if record.label == "ntf":
-                _note(found, record, action_of(moves[record.move], record.detail).sets)
+                _note(found, record, moves[record.move].action(record.detail).sets)
     return {slot: sorted(set_by) for slot, set_by in found.items()}
 
 
