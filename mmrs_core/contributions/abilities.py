@@ -50,6 +50,10 @@ class Recovering(Protocol):
         """Return why the robot could not be brought back now, as one that stands elsewhere; or nothing."""
         ...
 
+    def away(self, now: float) -> str:
+        """Return why the robot does not stand at home, as far as anybody knows, where it can go on or not."""
+        ...
+
     def moves(self, now: float) -> bool:
         """Return whether the robot was seen to be under way, or able to be at any moment."""
         ...

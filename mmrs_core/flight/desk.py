@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .bus import Beginning
 from .clock import Clock
 from .conditions import Condition
 from .objects import Locator
+from .program import Place
 from .questions import Questions
 from .records.blackbox import BlackBox
 from .records.log import Log
@@ -30,7 +31,7 @@ class Desk:
         questions: that the robot's choices ask people.
         meet: returns when all robots begin, or None where they do not wait for each other.
         recognise: makes sure that the vehicle is the robot's, before it is told anything; is given
-            whether its motors may run.
+            whether its motors may run, and where it may stand.
         abandon: set when not even heartbeats are to go on.
         dry: whether there is no vehicle.
     """
@@ -45,6 +46,6 @@ class Desk:
     say: Say
     questions: Questions = field(default_factory=Questions)
     meet: Meet | None = None
-    recognise: Callable[[bool], None] = lambda under_way: None
+    recognise: Callable[[bool, Sequence[Place]], None] = lambda under_way, starts: None
     abandon: threading.Event = field(default_factory=threading.Event)
     dry: bool = False

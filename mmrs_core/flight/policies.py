@@ -13,6 +13,9 @@ COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
 OVERTAKES = frozenset({POSITION_LOST, VEHICLE_RESTARTED, BATTERY_LOW, GROUND_LOST})
 """Events that are answered although the robot already responds to another."""
 
+CAME_DOWN_AWAY = "came down for its battery where its sortie began, away from home"
+"""What people are told of a robot that can go on from there, once its battery has been changed."""
+
 
 def still_low(charge: float | None, reserve: float) -> str:
     """Return why a battery is not to be flown with; empty where it is, or nobody knows.

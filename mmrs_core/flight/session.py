@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
@@ -23,7 +23,7 @@ from .links.radios import Radios
 from .options import Options
 from .orders.obedience import Obedience, Ordered
 from .orders.orders import RESUME, RETURN
-from .program import Geographic, Robot
+from .program import Geographic, Place, Robot
 from .records.blackbox import BlackBox, black_box_path
 from .records.log import Log
 from .records.recording import Recording
@@ -42,7 +42,7 @@ from .steps.ending import (
     Ending,
 )
 from .steps.guarding import guarding
-from .steps.obeying import astray
+from .steps.obeying import astray, away, came_down
 from .steps.pilot import Pilot
 from .steps.resuming import progress_of
 from .steps.watch import Watch
@@ -192,9 +192,8 @@ class Session:
         crew.watch.let_go()
         shared.crews.suspend(crew.robot.id)
         patience = time.monotonic() + shared.options.battery_patience
-        away = self._astray()
-        where = f"down for its battery, but {away}" if away else "home for its battery"
-        crew.say(f"came {where}; change it, then order resume, or start again with --resume")
+        came = came_down(crew.robot, crew.vehicle, crew.near_home)
+        crew.say(f"{came}; change it, then order resume, or start again with --resume")
         while shared.crews.others_work(crew.robot.id) or time.monotonic() < patience:
             try:
                 if (resumed := crew.obedience.awaits_resume(self._hindrance)) is not None:
@@ -221,12 +220,9 @@ class Session:
             HEARD_SECONDS, LEAST_HEARD_SECONDS
         ):
             return "its vehicle is not heard"
-        return self._astray() or (crew.pilot.lacks_energy() if order == RESUME else "")
-
-    def _astray(self) -> str:
-        """Return that the robot stands too far from home to go on, and what is to be done; else nothing."""
-        away = astray(self._crew.robot, self._crew.vehicle, self._crew.near_home)
-        return f"{away}: carry it home" if away else ""
+        if order == RETURN:
+            return away(crew.robot, crew.vehicle, crew.near_home)
+        return astray(crew.robot, crew.vehicle, crew.near_home) or crew.pilot.lacks_energy()
 
 
 def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
@@ -307,7 +303,7 @@ def _recognition(
     vehicle: Vehicle,
     obedience: Obedience,
     watch: Watch,
-) -> Callable[[bool], None]:
+) -> Callable[[bool, Sequence[Place]], None]:
     """Return what makes sure that the vehicle is the robot's, before anybody may tell it anything."""
     system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
 
@@ -315,12 +311,12 @@ def _recognition(
         heard = link is not None and link.latest("HEARTBEAT") is not None
         return heard and not vehicle.state().armed
 
-    def look(under_way: bool) -> None:
+    def look(under_way: bool, starts: Sequence[Place]) -> None:
         obedience.begin(None, rests)
         if link is not None and isinstance(vehicle, MavlinkVehicle):
             watch.strange = True
             near = inf if under_way and vehicle.state().armed else options.tolerances.home
-            recognise(link, vehicle, robot, near, under_way=under_way, system=system)
+            recognise(link, vehicle, robot, near, starts, under_way=under_way, system=system)
             watch.strange = False
         obedience.begin(vehicle)
 

@@ -166,7 +166,7 @@ class Obedience:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
         why = _taken(robot) if order.kind != STOP else ""
         if order.kind == RETURN:
-            why = why or robot.astray(self._clock.now())
+            why = why or robot.away(self._clock.now())
         if why:
             order.refuse(robot.id, why)
             return

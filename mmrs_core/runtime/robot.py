@@ -135,6 +135,10 @@ class RunningRobot:
             return ""
         return self.backend.hindrance(tuple(self._passed), self._underway, now)
 
+    def away(self, now: float) -> str:
+        """Return why it does not stand at home, as far as anybody knows; empty where it may."""
+        return self.backend.away(now) if isinstance(self.backend, Recovering) else ""
+
     def _still_low(self, now: float) -> str:
         if self.fault is None or self.fault.which != "BATTERY_LOW":
             return ""

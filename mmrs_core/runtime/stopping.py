@@ -8,7 +8,7 @@ from mmrs_core.contributions.abilities import Noting, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import LINK_LOST
-from mmrs_core.flight.policies import COMES_DOWN, NOTHING
+from mmrs_core.flight.policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -160,4 +160,6 @@ def _note(robot: RunningRobot, what: str, why: str, response: str) -> None:
 def _came_down(robot: RunningRobot, now: float) -> str:
     if why := robot.astray(now):
         return f"came down for its battery, but {why}"
+    if robot.away(now):
+        return CAME_DOWN_AWAY
     return f"came {'home' if isinstance(robot.backend, Recovering) else 'down'} for its battery"

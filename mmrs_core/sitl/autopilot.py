@@ -57,6 +57,7 @@ class Autopilot:
         failed: since when each thing is wrong that it watches, or that it has answered that.
         fence_due: when it looks at its fence again. told_out: whether somebody says that it is out of it.
         reboots: whether it is to be switched off and on.
+        home: latitude, longitude and metres above the sea. settled: whether somebody has told it its home.
         heard: when the ground station that it knows was last heard; None: never.
         steered: when the last set-points came, oldest first.
     """
@@ -102,7 +103,8 @@ class Autopilot:
         self.heard: float | None = None
         self.steered: list[float] = []
         self.grounded_since = self.time
-        self.home = (*self.degrees()[:2], self.settings.altitude + self.body.position[2])
+        self.home = (*self.degrees(), self.settings.altitude + self.body.position[2])
+        self.settled = False
         self.beats_now = False
         self.failed: dict[str, float] = {}
         self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
@@ -173,9 +175,13 @@ class Autopilot:
         north = (latitude - self.settings.latitude) * of_latitude
         return (north, remainder(longitude - self.settings.longitude, 360.0) * of_longitude, up)
 
+    def above_ground(self, height: float, *, above_sea: bool) -> float:
+        """Return a height that counts from the sea, or else from home, in metres above the ground."""
+        return height + (0.0 if above_sea else self.home[2]) - self.settings.altitude
+
     def place_of(self, item: Item) -> Vector:
         """Return where an item is; one without a place, or without coordinates, is here or above here."""
-        up = item.z - (self.settings.altitude if item.above_sea else 0.0)
+        up = self.above_ground(item.z, above_sea=item.above_sea)
         if not (item.x or item.y):
             return (*self.body.position[:2], up)
         return self.local(item.x * 1e-7, item.y * 1e-7, up)
@@ -214,11 +220,11 @@ class Autopilot:
         self.camera.obey(number, values, self.body)
 
     def arm(self) -> None:
-        """Start the motors; home is here from now on."""
+        """Start the motors; home is here from now on, unless somebody has told it another."""
         self.armed = True
         self.grounded_since = self.time
         self.crumbs = [self.body.position]
-        if not self.airborne:
+        if not (self.airborne or self.settled):
             self.home = (*self.degrees(), self.settings.altitude + self.body.position[2])
         self.say(mavlink.MAV_SEVERITY_INFO, "Arming motors")
 

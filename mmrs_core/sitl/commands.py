@@ -77,9 +77,9 @@ def _arm(pilot: Autopilot, params: Params) -> int:
 def _take_off(pilot: Autopilot, params: Params) -> int:
     if not pilot.armed or not pilot.flies or pilot.airborne:
         return FAILED
-    height = params[6]
-    if pilot.settings.firmware == PX4:
-        height -= pilot.settings.altitude
+    px4 = pilot.settings.firmware == PX4
+    height = pilot.above_ground(params[6], above_sea=px4)
+    if px4:
         pilot.enter("take_off")
     elif pilot.mode_name != "guided":
         return FAILED
@@ -190,6 +190,7 @@ def _battery(pilot: Autopilot, params: Params) -> int:
 def _home(pilot: Autopilot, params: Params) -> int:
     here = (*pilot.degrees(), pilot.settings.altitude + pilot.body.position[2])
     pilot.home = here if params[0] == 1.0 else (params[4], params[5], params[6])
+    pilot.settled = True
     return ACCEPTED
 
 

@@ -252,9 +252,7 @@ class SimulatedVehicle:
         obey(self.autopilot, int(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT), (message.seq, *[0.0] * 6))
 
     def _steer_globally(self, message: Message) -> None:
-        up = message.alt
-        if message.coordinate_frame in ABOVE_SEA:
-            up -= self.autopilot.settings.altitude
+        up = self.autopilot.above_ground(message.alt, above_sea=message.coordinate_frame in ABOVE_SEA)
         place = self.autopilot.local(message.lat_int * 1e-7, message.lon_int * 1e-7, up)
         steer(self.autopilot, place, _heading(message))
 

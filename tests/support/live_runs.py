@@ -27,6 +27,7 @@ class Walker:
         self.done, self.trouble, self.stops, self.begun = True, None, [], []
         self.halted = self.closed = self.watched_for = self.doubted = False
         self.recovered, self.astray, self.heard, self.armed = None, "", True, True
+        self.elsewhere = ""
         self.recognised = False
         script.robots[given.robot.id] = self
 
@@ -95,6 +96,9 @@ class Walker:
 
     def hindrance(self, passed, begun, now):
         return self.astray
+
+    def away(self, now):
+        return self.elsewhere
 
     def moves(self, now):
         return self.armed

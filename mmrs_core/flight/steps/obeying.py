@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot
 
-from ..places import offset
+from ..policies import CAME_DOWN_AWAY
 from ..program import Robot
+from ..vehicles.footing import aside, misplaced
 from ..vehicles.vehicle import Vehicle
 from .responding import OFF, course_of
 from .responses import RETURN
@@ -34,11 +34,23 @@ def undone(response: str, robot: Robot, vehicle: Vehicle, tolerance: float) -> s
 
     One whose motors are off further from home than `tolerance`, metres, does not return.
     """
-    away = astray(robot, vehicle, tolerance)
-    return away if response == RETURN and not vehicle.state().armed else ""
+    away = aside(robot.home, vehicle.state().place)
+    stays = response == RETURN and not vehicle.state().armed and away > tolerance
+    return f"it stands {away:.0f} m from its home" if stays else ""
+
+
+def away(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
+    """Return that a vehicle on the ground is further than so many metres from home; empty where it is not."""
+    return misplaced(robot.home, robot.home, vehicle.state().place, tolerance)
 
 
 def astray(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
-    """Return that a vehicle on the ground is further than so many metres from home; empty where it is not."""
-    away = hypot(*offset(robot.home, vehicle.state().place)[:2])
-    return f"it stands {away:.0f} m from its home" if away > tolerance else ""
+    """Return that a vehicle on the ground cannot take off where it is, and where to carry it; or nothing."""
+    return misplaced(robot.home, vehicle.start, vehicle.state().place, tolerance)
+
+
+def came_down(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
+    """Return where a vehicle came down for its battery, and where it is to be carried first, if anywhere."""
+    if carry := astray(robot, vehicle, tolerance):
+        return f"came down for its battery, but {carry}"
+    return CAME_DOWN_AWAY if away(robot, vehicle, tolerance) else "came home for its battery"

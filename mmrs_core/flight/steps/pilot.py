@@ -10,19 +10,20 @@ from ..desk import Desk, Meet
 from ..faults import BATTERY_LOW, NO_PROGRESS, REFUSED, Alone, Fault, Refused, Strange
 from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
-from ..places import at_height, distance, ends_of
+from ..places import at_height, ends_of
 from ..policies import still_low
 from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
 from ..records.recording import fix
 from ..services.uploads import Flight, uploads_of
 from ..vehicles.corners import goes_through
+from ..vehicles.footing import aside, footing
 from ..vehicles.vehicle import Vehicle
 from .doing import Doing
 from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
 from .journal import Journal
 from .rejoining import OFF_ITS_WAY, Rejoined, rejoined, way_ahead
-from .resuming import began_at, still_on, track_of
+from .resuming import began_at, starts_of, still_on, track_of
 from .waits import Waits
 from .watch import Watch
 
@@ -64,6 +65,7 @@ class Pilot:
         self._obedience = obedience
         self._uploads = uploads_of(robot, fenced=fence)
         self._steps = {step.move: step for step in robot.steps}
+        self._resumes = bool(desk.log.steps)
 
     def fly(self) -> None:
         """Carry out the program, from the beginning or from where its log ends.
@@ -106,28 +108,16 @@ class Pilot:
         """
         records = self._desk.log.steps
         try:
-            self._desk.recognise(bool(records))
+            starts = starts_of(self._robot, records) if self._resumes else (self._vehicle.start,)
+            self._desk.recognise(bool(records), starts)
+            self._resumes = False
             if not (records and self._vehicle.state().armed):
-                self._refuse_elsewhere()
                 return
             track = track_of(self._robot, records)
             self.track = track[: self._rejoined(track).behind]
         except Refused as error:
             raise Strange(str(error)) from error
         self._vehicle.carry_on()
-
-    def _refuse_elsewhere(self) -> None:
-        """Make sure that a robot on the ground at home began its sortie there, else no way is known.
-
-        Raises:
-            Refused: it did not.
-        """
-        began = began_at(self._robot, self._desk.log.steps)
-        away = distance(at_height(began, 0.0), at_height(self._robot.home, 0.0))
-        if away > OFF_ITS_WAY and not self._desk.dry:
-            raise Refused(
-                f"its program goes on where it landed, {away:.0f} m from its home: no way leads there"
-            )
 
     def _prepare(self) -> None:
         """Set the vehicle up; again where it has started anew meanwhile."""
@@ -191,8 +181,8 @@ class Pilot:
         """Return whether the robot stands where it was to land, below the last place, or is about to."""
         state = self._vehicle.state()
         low = not state.armed or state.place.height - self._robot.home.height < ON_THE_GROUND
-        near = distance(at_height(state.place, last.height), last) < OFF_ITS_WAY
-        return isinstance(step.movement, Land) and low and near
+        place = state.place if state.armed else self._vehicle.start
+        return isinstance(step.movement, Land) and low and aside(place, last) < OFF_ITS_WAY
 
     def _go_to_work(self, passed: Sequence[tuple[str, Place]]) -> None:
         """Fly to the last of the places that were passed; `track` has what is behind the robot meanwhile."""
@@ -249,6 +239,7 @@ class Pilot:
         elif isinstance(movement, Land):
             self._obedience.repeat(self._vehicle.land)
             self._watch.moving = False
+            self._vehicle.start = footing(self._robot.home, self._vehicle.state().place)
         elif isinstance(movement, GoTo):
             self._go_to(movement, step)
         elif isinstance(movement, Recharge):
@@ -266,7 +257,7 @@ class Pilot:
 
         self._begin_sortie()
         self._obedience.repeat(leave_ground)
-        self._passed(self._vehicle.state().place)
+        self._passed(at_height(self._vehicle.state().place, height))
 
     def _begin_sortie(self) -> None:
         """Leave the ground; a vehicle that has started anew there, as with a new battery, is set up again."""
@@ -283,7 +274,7 @@ class Pilot:
         if not self.track:
             self._begin_sortie()
             self._passed(self._vehicle.state().place)
-        here = self._vehicle.state().place
+        here = at_height(self._vehicle.state().place, self.track[-1][1].height)
         target = place_of(movement.at, self._desk.locators, self._vehicle.state())
         look = self._look(movement.look)
         ends = ends_of(here, target, movement.legs, movement.distance)

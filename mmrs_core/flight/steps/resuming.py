@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..faults import Refused
@@ -23,6 +23,7 @@ from ..program import (
     TakeOff,
     Then,
 )
+from ..vehicles.footing import footing
 
 Record = Mapping[str, object]
 
@@ -106,6 +107,26 @@ def began_at(robot: Robot, records: Iterable[Record]) -> Place:
     return _sortie(robot, records)[0]
 
 
+def starts_of(robot: Robot, records: Sequence[Record]) -> tuple[Place, ...]:
+    """Return where a robot may stand whose log ends with these steps, if it stands on the ground.
+
+    That is where its sortie began; or, where it was to land last, there.
+
+    Raises:
+        Refused: it went to an object, and nobody knows where that was.
+    """
+    began = footing(robot.home, began_at(robot, records))
+    if not records or not is_landing(robot, records[-1]):
+        return (began,)
+    landed = [*records, {**records[-1], "label": "end"}]
+    return began, footing(robot.home, began_at(robot, landed))
+
+
+def is_landing(robot: Robot, last: Record) -> bool:
+    """Return whether a robot was to land when its log ended with that step."""
+    return last["label"] == "begin" and isinstance(robot.step(str(last["move"])).movement, Land)
+
+
 def _sortie(robot: Robot, records: Iterable[Record]) -> tuple[Place, list[tuple[str, Place]]]:
     steps = {step.move: step.movement for step in robot.steps}
     began = here = robot.home
@@ -120,10 +141,8 @@ def _sortie(robot: Robot, records: Iterable[Record]) -> tuple[Place, list[tuple[
         if isinstance(movement, TakeOff):
             here = at_height(began, movement.height)
             track = [(move, here)]
-        elif isinstance(movement, Land):
+        elif isinstance(movement, Land | Recharge):
             began, track = at_height(here, robot.home.height), []
-        elif isinstance(movement, Recharge):
-            began, track = robot.home, []
         elif isinstance(movement, GoTo):
             here = track[-1][1] if track else began
             track += [] if track else [(move, here)]

@@ -18,10 +18,15 @@ CLIMB = 2.0
 
 
 class DryVehicle:
-    """Does everything at once that a real vehicle takes its time for, but takes the time, too."""
+    """Does everything at once that a real vehicle takes its time for, but takes the time, too.
+
+    Attributes:
+        start: where it is to stand before it takes off.
+    """
 
     def __init__(self, clock: Clock, home: Place, guard: Callable[[], None]) -> None:
         """Stand at home."""
+        self.start = home
         self._clock = clock
         self._here = home
         self._home = home

@@ -27,6 +27,7 @@ from .evidence import LinkEvidence
 from .helm import MODE_SECONDS, Helm
 from .listening import check_listening
 from .mission import Mission
+from .own_home import keep_home
 from .steering import PATIENCE_FACTOR, PATIENCE_SECONDS, STILL, Steering
 from .telemetry import Telemetry
 from .travel import set_up
@@ -38,7 +39,11 @@ IMAGES = ("CAMERA_IMAGE_CAPTURED", "CAMERA_FEEDBACK")
 
 
 class MavlinkVehicle:
-    """A vehicle, stepped in GUIDED and run in AUTO."""
+    """A vehicle, stepped in GUIDED and run in AUTO.
+
+    Attributes:
+        start: where it is to stand before it takes off: home, or where its program has landed it.
+    """
 
     def __init__(
         self,
@@ -59,9 +64,10 @@ class MavlinkVehicle:
             home: of the robot, as its program says.
             acceptance: metres from a place at which it counts as reached; None: as `travel` says.
             travel: how carefully it is to go.
-            home_tolerance: metres that the vehicle may be from home at the beginning.
+            home_tolerance: metres that the vehicle may be from where it is to stand.
             tell: is given what people should know, as what the vehicle does by itself.
         """
+        self.start = home
         self._tell = tell
         self._link = link
         self._telemetry = Telemetry(link, home)
@@ -79,17 +85,17 @@ class MavlinkVehicle:
     def prepare(self, uploads: Uploads) -> None:
         """Upload what there is to upload, and wait until the vehicle is ready to move.
 
-        A vehicle that is in the air already may be away from home.
+        A vehicle that is in the air already may be anywhere.
 
         Raises:
-            Refused: something is not accepted or read back differently, the vehicle is not where the
-                program begins, or it does not become ready.
+            Refused: something is not accepted or read back differently, the vehicle does not stand where
+                it is to, or it does not become ready.
         """
         geographic = isinstance(self._home, Geographic)
         preparation.ask_for_messages(self._link, geographic=geographic)
         preparation.await_position(self._link, self._telemetry)
         tolerance = inf if self._telemetry.airborne() else self._home_tolerance
-        preparation.check_identity(self._link, self._telemetry, self._kind, self._home, tolerance)
+        preparation.check_identity(self._link, self._telemetry, self._kind, tolerance, self._home, self.start)
         fenced = bool(uploads.fence)
         for line in enclose(self._link, self._home, uploads.places, uploads.rally, polygons=fenced):
             self._tell(line)
@@ -149,11 +155,14 @@ class MavlinkVehicle:
         """Climb to a height above home, or go there straight up or down from where it is in the air.
 
         Raises:
-            Refused: the vehicle does not arm or take off. Fault: it does not get there.
+            Refused: the vehicle does not arm or take off, or, away from home, does not keep that for its own.
+            Fault: it does not get there.
         """
         if self._telemetry.airborne():
             self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
             return
+        if self.start != self._home and isinstance(self._home, Geographic) and not self._telemetry.armed():
+            self._tell(keep_home(self._link, self._telemetry, self._home, self.start))
         self._helm.leave_ground(height)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
         self._helm.until(

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import Refused
 from ..links.link import Link
-from ..places import offset
 from ..program import Place
 from ..services import parameters
 from ..services.commands import command
 from ..services.missions import FENCE, MISSION, RALLY, Item, upload, verify
 from . import modes
+from .footing import LANDED, aside, there
 from .telemetry import Telemetry
 
 HEARING_SECONDS = 2.5
@@ -80,8 +79,26 @@ VEHICLES = {
 """Kinds of vehicles by MAV_TYPE."""
 
 
-def check_identity(link: Link, telemetry: Telemetry, kind: str, home: Place, tolerance: float) -> None:
-    """Make sure that the vehicle is the robot's: the only one with its id, of its kind, at its home.
+def check_identity(
+    link: Link,
+    telemetry: Telemetry,
+    kind: str,
+    tolerance: float,
+    home: Place,
+    start: Place,
+    *,
+    resumed: bool = False,
+) -> None:
+    """Make sure that the vehicle is the robot's: the only one with its id, of its kind, where it is to stand.
+
+    Args:
+        link: to the vehicle.
+        telemetry: of the vehicle.
+        kind: ``copter``, ``sub`` or ``rover``.
+        tolerance: metres that it may be from where it is to stand.
+        home: of its program.
+        start: where it is to stand.
+        resumed: whether a run is resumed, so that the vehicle may be known already, and be elsewhere.
 
     Raises:
         Refused: it is not.
@@ -93,9 +110,11 @@ def check_identity(link: Link, telemetry: Telemetry, kind: str, home: Place, tol
         raise Refused(f"the vehicle is a {shown}, and the program is for a {kind}")
     if link.doubt():
         raise Refused(link.doubt())
-    away = hypot(*offset(home, telemetry.here())[:2])
+    away = aside(start, telemetry.here())
     if away > tolerance:
-        raise Refused(f"the vehicle is {away:.0f} m from the home of its program")
+        place = "the home of its program" if start == home else LANDED
+        carry = f": carry it {there(start, home)}" if resumed or start != home else ""
+        raise Refused(f"the vehicle is {away:.0f} m from {place}{carry}")
 
 
 def hear_out(link: Link) -> None:

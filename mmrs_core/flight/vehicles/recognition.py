@@ -3,26 +3,34 @@
 from __future__ import annotations
 
 import json
-from math import hypot, inf
+from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 
 from ..faults import Refused
 from ..links.link import Link
-from ..places import offset
 from ..program import Geographic, Place, Robot
 from ..services import parameters
 from ..vehicles import modes, preparation
+from .footing import LANDED, aside
 from .mavlink_vehicle import MavlinkVehicle
 
 OURS = frozenset({modes.GUIDED, modes.AUTO, modes.HOLD, modes.LAND, modes.SURFACE})
 """Modes that programs use; a vehicle in the air in any other may have a pilot."""
 
-AT_HOME = 2.0
-"""Metres from its home within which a vehicle stands there, whatever else is near: no position is better."""
+THERE = 2.0
+"""Metres from its place within which a vehicle stands there, whatever else is near: no position is better."""
 
 
 def recognise(
-    link: Link, vehicle: MavlinkVehicle, robot: Robot, tolerance: float, *, under_way: bool, system: int
+    link: Link,
+    vehicle: MavlinkVehicle,
+    robot: Robot,
+    tolerance: float,
+    starts: Sequence[Place],
+    *,
+    under_way: bool,
+    system: int,
 ) -> None:
     """Make sure that a vehicle is the robot's, and that nobody flies it; it is told nothing, only asked.
 
@@ -30,7 +38,8 @@ def recognise(
         link: to the vehicle.
         vehicle: at its end.
         robot: its program.
-        tolerance: metres that it may be from home.
+        tolerance: metres that it may be from where it is to stand.
+        starts: where it may stand, the place where its sortie began first; the nearest counts.
         under_way: whether its motors may run, as where a run is resumed.
         system: that it had when the run began; 0: nobody knows.
 
@@ -43,9 +52,14 @@ def recognise(
     preparation.hear_out(link)
     if system and link.system != system:
         raise Refused(f"the vehicle is system {link.system}, and the robot's was system {system}")
-    preparation.check_identity(link, telemetry, robot.vehicle, robot.home, tolerance)
+    vehicle.start = starts[0]
+    if not telemetry.armed():
+        vehicle.start = min(starts, key=lambda start: aside(start, telemetry.here()))
+    preparation.check_identity(
+        link, telemetry, robot.vehicle, tolerance, robot.home, vehicle.start, resumed=under_way
+    )
     if tolerance < inf:
-        refuse_neighbours(robot, telemetry.here())
+        refuse_neighbours(robot, vehicle.start, telemetry.here())
     if not telemetry.armed():
         return
     if not under_way:
@@ -63,18 +77,24 @@ def _alone(link: Link, kind: str) -> frozenset[int]:
     return modes.alone(link, kind, parameters.read(link, modes.decides_alone(link, kind)))
 
 
-def refuse_neighbours(robot: Robot, here: Place) -> None:
+def refuse_neighbours(robot: Robot, start: Place, here: Place) -> None:
     """Make sure that a vehicle does not stand where that of another robot belongs.
 
+    Args:
+        robot: its program.
+        start: where it is to stand.
+        here: where it stands.
+
     Raises:
-        Refused: another robot's home is nearer than the robot's own.
+        Refused: another robot's home is nearer than that.
     """
-    away = _away(robot.home, here)
-    other, name = min(((_away(home, here), name) for name, home in robot.neighbours), default=(inf, ""))
-    if away > AT_HOME and other < away:
+    away = aside(start, here)
+    other, name = min(((aside(home, here), name) for name, home in robot.neighbours), default=(inf, ""))
+    if away > THERE and other < away:
+        own = "that of its program" if start == robot.home else LANDED
         raise Refused(
-            f"the vehicle is {other:.0f} m from the home of {name!r} and {away:.0f} m from that of its "
-            "program: are system ids or links swapped?"
+            f"the vehicle is {other:.0f} m from the home of {name!r} and {away:.0f} m from {own}: "
+            "are system ids or links swapped?"
         )
 
 
@@ -85,10 +105,6 @@ def system_of(box: Path) -> int:
             if '"start"' in line and (found := _system(line)):
                 return found
     return 0
-
-
-def _away(home: Place, here: Place) -> float:
-    return hypot(*offset(home, here)[:2])
 
 
 def _system(line: str) -> int:

@@ -60,7 +60,13 @@ class Evidence(Protocol):
 
 
 class Vehicle(Protocol):
-    """What a robot's program needs of a vehicle."""
+    """What a robot's program needs of a vehicle.
+
+    Attributes:
+        start: where it is to stand before it takes off: home, or where its program has landed it.
+    """
+
+    start: Place
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""

@@ -23,9 +23,10 @@ from mmrs_core.flight.faults import Fault as VehicleFault
 from mmrs_core.flight.policies import NOTHING
 from mmrs_core.flight.program import GoTo, Land, Recharge, Robot, TakeOff
 from mmrs_core.flight.services.uploads import uploads_of
-from mmrs_core.flight.steps.obeying import astray, obeying
+from mmrs_core.flight.steps.obeying import astray, away, obeying
 from mmrs_core.flight.steps.responses import CONTINUE
 from mmrs_core.flight.steps.watch import Watch
+from mmrs_core.flight.vehicles.footing import footing
 from mmrs_core.mavlink.backend.equipment import Equipment
 from mmrs_core.mavlink.backend.lost_link import LostLink
 from mmrs_core.mavlink.backend.moves import Moves
@@ -208,13 +209,19 @@ class MavlinkBackend:
         vehicle = self._with.vehicle
         if not self._reach.is_heard:
             return "its vehicle is not heard"
-        if not vehicle.state().armed and (away := astray(self._robot, vehicle, self._tolerance)):
-            return f"{away}: carry it home"
+        if not vehicle.state().armed and (why := astray(self._robot, vehicle, self._tolerance)):
+            return why
         try:
             self._way.check(passed, begun)
         except VehicleFault as fault:
             return str(fault)
         return ""
+
+    def away(self, now: float) -> str:
+        """Return that the vehicle stands elsewhere than at home, or is not heard; empty where it is there."""
+        if not self._reach.is_heard:
+            return "its vehicle is not heard"
+        return away(self._robot, self._with.vehicle, self._tolerance)
 
     def moves(self, now: float) -> bool:
         """Return whether the motors run."""
@@ -348,6 +355,8 @@ class MavlinkBackend:
 
     def _landed(self) -> None:
         self._watch.moving = False
+        vehicle = self._with.vehicle
+        vehicle.start = footing(self._robot.home, vehicle.state().place)
 
     def _pass(self, move: str) -> None:
         self._passed.add(move)

@@ -92,14 +92,16 @@ class Setup:
     def _recognise(self) -> None:
         """Refuse a vehicle that is not the robot's, or that somebody else flies, before it is touched."""
         resumed, vehicle = self._with.resumed, self._with.vehicle
+        first = resumed and not self.is_done
         recognise(
             self._with.link,
             vehicle,
             self._robot,
             inf if resumed and vehicle.state().armed else self._options.home_tolerance,
+            self._way.starts(self._with.passed, self._with.begun) if first else (vehicle.start,),
             under_way=resumed,
             system=self._with.system,
         )
-        if resumed and not self.is_done:
+        if first:
             self._way.know(self._with.passed, self._with.begun)
         self.is_known = True

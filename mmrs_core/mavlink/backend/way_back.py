@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from math import hypot
 
 from mmrs_core.flight.faults import BATTERY_LOW, Fault, Refused
-from mmrs_core.flight.places import at_height, distance_to_leg, ends_of, offset
+from mmrs_core.flight.places import at_height, distance_to_leg, ends_of
 from mmrs_core.flight.policies import still_low
 from mmrs_core.flight.program import GoTo, Land, Place, Recharge, Robot, Start, TakeOff
 from mmrs_core.flight.steps.rejoining import ALIKE, OFF_ITS_WAY, way_ahead
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
+from mmrs_core.flight.vehicles.footing import aside, footing, misplaced, there
 from mmrs_core.flight.vehicles.vehicle import Vehicle
 from mmrs_core.mavlink.backend.moves import IN_THE_AIR, Moves
 from mmrs_core.mavlink.backend.worker import Job
@@ -23,17 +23,17 @@ class WayBack:
     """Finds the way from wherever a vehicle is to where a leg of its program begins."""
 
     def __init__(self, robot: Robot, moves: Moves, vehicle: Vehicle, home_tolerance: float) -> None:
-        """Find ways for that vehicle; on the ground it may be that far from home, metres."""
+        """Find ways for that vehicle; on the ground it may be that far from where it is to stand, metres."""
         self._robot, self._moves, self._vehicle = robot, moves, vehicle
-        self._home_tolerance = home_tolerance
+        self._tolerance = home_tolerance
         self._steps = {step.move: step for step in robot.steps}
 
     def job(self, passed: Sequence[str], begun: str) -> Job:
         """Return what brings the vehicle to where it was when it ended the last of these moves.
 
-        A vehicle on the ground at home takes off and flies the way that it came. One that is in the air,
-        on its way or ahead on the leg or run that it had begun, goes along that way. One that is anywhere
-        else is refused, since nobody has checked a way from there.
+        A vehicle on the ground where its sortie began takes off and flies the way that it came. One that is
+        in the air, on its way or ahead on the leg or run that it had begun, goes along that way. One that is
+        anywhere else is refused, since nobody has checked a way from there.
 
         Where the motors are off, the battery must not be low, unless a policy says to carry on with it.
 
@@ -70,22 +70,38 @@ class WayBack:
         """
         self._parts(passed, begun)
 
+    def starts(self, passed: Sequence[str], begun: str) -> tuple[Place, ...]:
+        """Return where the vehicle may stand: where its sortie began, or where it was to land last."""
+        ends = [passed[: len(passed) - len(sortie_of(self._robot, passed))]]
+        if self._lands(begun):
+            ends.append([*passed, begun])
+        return tuple(footing(self._robot.home, self._start(moves)) for moves in ends)
+
+    def _lands(self, move: str) -> bool:
+        return bool(move) and self._moves.kind(move) is Land
+
+    def _is_down(self, passed: Sequence[str], begun: str) -> bool:
+        """Return whether the vehicle stands where it was to land, or is about to."""
+        state = self._vehicle.state()
+        if not self._lands(begun) or state.place.height > IN_THE_AIR:
+            return False
+        place = state.place if state.armed else self._vehicle.start
+        return aside(place, self._start([*passed, begun])) <= OFF_ITS_WAY
+
     def _parts(self, passed: Sequence[str], begun: str) -> list[Callable[[], None]]:
+        if self._is_down(passed, begun):
+            return []
         sortie = sortie_of(self._robot, passed)
         start = self._start(passed[: len(passed) - len(sortie)])
         here = self._vehicle.state().place
         low = here.height <= IN_THE_AIR
-        if low and bool(begun) and self._moves.kind(begun) is Land:
-            return []
-        if low:
-            self._refuse_elsewhere(start)
         came = list(self._places(start, sortie))
         if not came:
-            self._refuse_far(hypot(*offset(start, here)[:2]), self._home_tolerance)
+            self._refuse_astray(start, here)
             return []
         first = self._steps[sortie[0]].movement
         if isinstance(first, TakeOff) and low:
-            self._refuse_far(hypot(*offset(self._robot.home, here)[:2]), self._home_tolerance)
+            self._refuse_astray(start, here)
             height = first.height
             return [lambda: self._moves.climb(sortie[0], height), *self._legs(came[1:])]
         last = came[-1][1]
@@ -104,7 +120,7 @@ class WayBack:
         here = self._robot.home
         for move in before:
             movement = self._steps[move].movement
-            if isinstance(movement, Start | Recharge):
+            if isinstance(movement, Start):
                 here = self._robot.home
             elif isinstance(movement, Land):
                 here = at_height(here, self._robot.home.height)
@@ -112,19 +128,14 @@ class WayBack:
                 here = next((place for _, place in reversed(list(self._places(here, [move])))), here)
         return here
 
-    def _refuse_elsewhere(self, start: Place) -> None:
-        away = hypot(*offset(self._robot.home, start)[:2])
-        if away > self._home_tolerance:
-            raise Refused(
-                f"it is to go on from where it landed, {away:.0f} m from its home: nobody has checked a way"
-                " there from its home"
-            )
-
     def _leg(self, here: Place, way: Sequence[Place]) -> int:
         """Return on which leg of its way a vehicle is; of two, the later one is meant."""
         gaps = [distance_to_leg(here, *leg) for leg in pairwise(way)]
         nearest = max(range(len(gaps)), key=lambda leg: (-round(gaps[leg] / ALIKE), leg))
-        self._refuse_far(gaps[nearest], OFF_ITS_WAY)
+        if gaps[nearest] > OFF_ITS_WAY:
+            home = self._robot.home
+            back = there(footing(home, way[0]), home)
+            raise Refused(f"it is {gaps[nearest]:.0f} m off its way: bring it {back} before it goes on")
         return nearest
 
     def _legs_back(self, came: list[Point], flown: list[Point]) -> list[Callable[[], None]]:
@@ -169,11 +180,9 @@ class WayBack:
         if why and policy_for(BATTERY_LOW, self._robot).response != CONTINUE:
             raise Fault(BATTERY_LOW, why)
 
-    def _refuse_far(self, away: float, limit: float) -> None:
-        if away > limit:
-            raise Refused(
-                f"the vehicle is {away:.0f} m from its home, or off its way: bring it home before it goes on"
-            )
+    def _refuse_astray(self, start: Place, here: Place) -> None:
+        if why := misplaced(self._robot.home, footing(self._robot.home, start), here, self._tolerance):
+            raise Refused(why)
 
 
 def sortie_of(robot: Robot, passed: Sequence[str]) -> tuple[str, ...]:

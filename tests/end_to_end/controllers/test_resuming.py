@@ -225,7 +225,7 @@ def test_a_robot_that_was_carried_home_does_not_go_on_where_nobody_has_checked_a
     before = len(alpha.autopilot.history)
     code, said = made.run("fleet.py", *links, "--resume")
     assert code == 1, said
-    assert "its program goes on where it landed, 40 m from its home: no way leads there" in said
+    assert "the vehicle is 40 m from where its program has landed it: carry it to 42.370360, 13.35" in said
     assert TAKE_OFF not in [command for _, command, _ in alpha.autopilot.history[before:]]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,7 +24,7 @@ from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.options import options_of, parser_for
 from mmrs_core.flight.orders.obedience import Obedience
 from mmrs_core.flight.orders.orders import HOLD, LAND, RESUME, RETURN, STOP, Inbox, Order
-from mmrs_core.flight.program import Policy
+from mmrs_core.flight.program import Place, Policy
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.records.log import Log, read
 from mmrs_core.flight.session import Session, Shared
@@ -171,7 +172,7 @@ def fly(world: World, folder: Path) -> int:
 
         vehicle = world.vehicle = Doubted(clock, ROBOT.home, guard)
 
-        def recognise(under_way: bool) -> None:
+        def recognise(under_way: bool, starts: Sequence[Place]) -> None:
             obedience.begin(None, lambda: vehicle.shows)
             for _ in range(3):
                 guard()

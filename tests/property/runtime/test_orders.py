@@ -133,6 +133,9 @@ class Vehicle:
     def hindrance(self, passed, begun, now):
         return ""
 
+    def away(self, now):
+        return ""
+
     def moves(self, now):
         return self.armed
 

@@ -37,7 +37,7 @@ class Pad:
     """A robot, its program and its policies.
 
     Attributes:
-        program: ``tour``, ``wait``, ``give`` or ``charge``, see `steps_of`.
+        program: ``tour``, ``wait``, ``give``, ``charge`` or ``perch``, see `steps_of`.
         gives: the robot whose wait a ``give`` ends.
         of_wait: policies of the wait only.
     """
@@ -91,6 +91,17 @@ def steps_of(pad: Pad, pads: Sequence[Pad]) -> list[Step]:
             charge,
             Step("multicopter:TakeOff", "up again", 'altitude="10.0"'),
             Step("multicopter:Land", "down again"),
+        ]
+    if pad.program == "perch":
+        return [
+            up,
+            Step("multicopter:GoTo", "out", 'speed="5.0"', OUT),
+            Step("multicopter:Land", "perch"),
+            stay,
+            Step("multicopter:TakeOff", "up again", 'altitude="12.0"'),
+            Step("multicopter:GoTo", "on", 'speed="5.0"', TOUR[1]),
+            *_home(),
+            down,
         ]
     tour = [
         Step("multicopter:GoTo", f"tour {n}", 'speed="4.0"', place, fluid=n < len(TOUR) - 1)

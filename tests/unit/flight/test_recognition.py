@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from math import inf
 
 import pytest
-from flight_crew import HOME, robot_of
+from flight_crew import HOME, manned, robot_of
 from patience import until
 
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.program import Geographic
+from mmrs_core.flight.vehicles.footing import aside
 from mmrs_core.flight.vehicles.recognition import recognise, refuse_neighbours
 
 
@@ -25,21 +27,29 @@ def beside(metres: float):
 
 def test_a_vehicle_at_the_home_of_another_robot_is_that_ones():
     with pytest.raises(Refused, match="0 m from the home of 'Brezza' and 8 m from that of its program: are"):
-        refuse_neighbours(beside(8.0), north(8.0))
+        refuse_neighbours(beside(8.0), HOME, north(8.0))
 
 
 def test_a_vehicle_that_is_nearer_to_another_home_than_to_its_own_is_refused():
     with pytest.raises(Refused, match="'Cirro'"):
-        refuse_neighbours(beside(8.0), north(-4.3))
+        refuse_neighbours(beside(8.0), HOME, north(-4.3))
 
 
 @pytest.mark.parametrize(("apart", "away"), [(8.0, 3.7), (8.0, -3.7), (3.0, 1.8), (1.0, 1.0), (60.0, 19.0)])
 def test_a_vehicle_near_its_own_home_is_the_robots(apart, away):
-    refuse_neighbours(beside(apart), north(away))
+    refuse_neighbours(beside(apart), HOME, north(away))
+
+
+def test_a_vehicle_that_its_program_has_landed_elsewhere_belongs_there_and_not_at_home():
+    robot = beside(60.0)
+    refuse_neighbours(robot, north(55.0), north(53.0))
+    words = r"4 m from the home of 'Brezza' and 9 m from where its program has landed it: are"
+    with pytest.raises(Refused, match=words):
+        refuse_neighbours(robot, north(55.0), north(64.0))
 
 
 def test_a_robot_alone_has_nobody_to_be_taken_for():
-    refuse_neighbours(robot_of(), north(19.0))
+    refuse_neighbours(robot_of(), HOME, north(19.0))
 
 
 @pytest.fixture
@@ -60,7 +70,7 @@ def found(in_the_air):
 
 def recognised(made) -> None:
     crew = made.crew
-    recognise(crew.link, crew.vehicle, crew.robot, inf, under_way=True, system=0)
+    recognise(crew.link, crew.vehicle, crew.robot, inf, (HOME,), under_way=True, system=0)
 
 
 @pytest.mark.parametrize(("mode", "answer"), [("return", 1.0), ("smart_return", 3.0), ("guided", 0.0)])
@@ -82,3 +92,33 @@ def test_a_vehicle_that_does_not_tell_what_it_does_about_a_lost_link_may_have_a_
         del made.simulated.autopilot.parameters["FS_GCS_ENABLE"]
     with pytest.raises(Refused, match="a pilot may have it"):
         recognised(made)
+
+
+PERCH = north(72.0)
+
+
+@pytest.mark.parametrize(
+    ("starts", "away", "words"),
+    [
+        ((HOME,), 72.0, "72 m from the home of its program: carry it home"),
+        ((PERCH,), 0.0, "72 m from where its program has landed it: carry it to 42.370648, 13.350000"),
+        ((HOME, PERCH), 100.0, "28 m from where its program has landed it: carry it to 42.370648, 13.350000"),
+        ((HOME, PERCH), 30.0, "30 m from the home of its program: carry it home"),
+        ((HOME, PERCH), 70.0, ""),
+        ((HOME, PERCH), 3.0, ""),
+    ],
+)
+def test_a_vehicle_whose_run_is_resumed_stands_where_its_log_leaves_it_or_is_to_be_carried_there(
+    tmp_path, starts, away, words
+):
+    with manned(tmp_path) as made:
+        crew = made.crew
+        with made.simulated.lock:
+            made.simulated.autopilot.body.position = (away, 0.0, 0.0)
+        until(lambda: aside(crew.vehicle.state().place, north(away)) < 0.5)
+        with pytest.raises(Refused) if words else nullcontext() as refused:
+            recognise(crew.link, crew.vehicle, crew.robot, 20.0, starts, under_way=True, system=0)
+        if words:
+            assert str(refused.value) == f"the vehicle is {words}"
+        else:
+            assert crew.vehicle.start == (PERCH if away > 50.0 else HOME)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -15,6 +16,7 @@ from mmrs_core.flight.program import (
     Local,
     Notify,
     Operate,
+    Recharge,
     Robot,
     Start,
     Step,
@@ -23,7 +25,15 @@ from mmrs_core.flight.program import (
     Then,
 )
 from mmrs_core.flight.records.log import Log, read
-from mmrs_core.flight.steps.resuming import Progress, began_at, progress_of, slots_of, still_on, track_of
+from mmrs_core.flight.steps.resuming import (
+    Progress,
+    began_at,
+    progress_of,
+    slots_of,
+    starts_of,
+    still_on,
+    track_of,
+)
 
 FAR, NEAR = Local(100.0, 0.0, 10.0), Local(0.0, 50.0, 10.0)
 TRIGGER = Operate("camera", "every metre", 206, (1.0,))
@@ -132,6 +142,34 @@ def test_a_sortie_begins_where_the_program_has_landed():
     assert began_at(robot, log[:4]) == robot.home
     assert began_at(robot, log[:6]) == Geographic(42.3705, 13.35, 0.0)
     assert track_of(robot, log[:8]) == [("again", Geographic(42.3705, 13.35, 20.0))]
+
+
+@pytest.mark.parametrize(
+    ("begun", "north"),
+    [
+        ("up", [0.0]),
+        ("on", [0.0]),
+        ("down", [0.0, 70.0]),
+        ("charge", [70.0]),
+        ("again", [70.0]),
+        ("back", [70.0]),
+        ("end", [70.0, 0.0]),
+    ],
+)
+def test_a_robot_on_the_ground_stands_where_it_began_its_sortie_or_was_to_land(begun, north):
+    moves = {
+        "up": TakeOff(10.0),
+        "on": GoTo(Local(70.0, 0.0, 10.0)),
+        "down": Land(),
+        "charge": Recharge(5.0),
+        "again": TakeOff(20.0),
+        "back": GoTo(Local(3.0, 0.0, 20.0)),
+        "end": Land(),
+    }
+    robot = replace(ROBOT, steps=tuple(Step(name, movement) for name, movement in moves.items()))
+    log = [{"label": label, "move": name, "detail": ""} for name in moves for label in ("begin", "end")]
+    until = 2 * list(moves).index(begun) + 1
+    assert starts_of(robot, log[:until]) == tuple(Local(each, 0.0, 0.0) for each in north)
 
 
 def test_what_a_camera_did_by_itself_is_told_again():

@@ -68,6 +68,15 @@ def test_where_a_robot_came_down_for_its_battery_is_told_by_what_happened(live):
     assert f"'a': {words}; change it, then order resume, or start again with --resume" in run.said
 
 
+def test_a_robot_whose_sortie_began_away_from_home_came_down_there(live):
+    run = live(ALONE, Script(two=inf))
+    run.wait_for_step("a begin two")
+    run.script.robots["a"].elsewhere = "it stands 30 m from its home: carry it home"
+    run.script.robots["a"].fail("BATTERY_LOW")
+    words = "came down for its battery where its sortie began, away from home"
+    assert run.end().came_down == {"a": words}
+
+
 def test_a_robot_that_is_not_known_to_have_come_down_is_not_told_to_have(live):
     run = live(ALONE, Script(two=inf, stop_RETURN=inf))
     run.wait_for_step("a begin two")

@@ -133,6 +133,20 @@ def test_home_is_where_it_is_armed():
     assert bench.pilot.home[:2] == bench.pilot.degrees()
 
 
+def test_a_home_that_it_was_told_stays_until_it_starts_anew_and_heights_count_from_there():
+    bench = Bench()
+    bench.pilot.body.position = (72.0, 0.0, 0.0)
+    assert bench.command(179, 0, 0, 0, 0, 42.37, 13.35, 714.0) == 0
+    bench.mode("guided")
+    bench.command(400, 1)
+    assert bench.command(22, 0, 0, 0, 0, 0, 0, 10.0) == 0
+    bench.wait(20.0)
+    assert bench.pilot.home == (42.37, 13.35, 714.0)
+    assert bench.pilot.body.position[2] == pytest.approx(4.0, abs=0.1)
+    bench.pilot.restart()
+    assert bench.pilot.home[:2] == bench.pilot.degrees()
+
+
 def test_a_rover_neither_takes_off_nor_lands():
     bench = Bench(kind="rover")
     bench.mode("guided")

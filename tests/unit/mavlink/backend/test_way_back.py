@@ -154,7 +154,7 @@ def test_in_the_air_elsewhere_it_is_refused():
 
 
 def test_on_the_ground_elsewhere_it_is_refused():
-    with pytest.raises(Refused, match="bring it home"):
+    with pytest.raises(Refused, match="it stands 30 m from its home: carry it home"):
         recovered("s1", "s2", Vehicle(30.0, 0.0, 0.0))
 
 
@@ -169,7 +169,7 @@ def test_a_way_back_is_looked_for_before_the_vehicle_hears_a_word():
 
 def test_a_vehicle_that_has_not_begun_must_be_at_home():
     moves = Moves(ROBOT, Vehicle(500.0), Clock(1e6), {}, lambda kind, name, content: None)
-    with pytest.raises(Refused, match="bring it home"):
+    with pytest.raises(Refused, match=r"it stands 50\d m from its home: carry it home"):
         WayBack(ROBOT, moves, Vehicle(500.0), 20.0).check(["start"], "up")
 
 
@@ -242,8 +242,43 @@ def test_a_sortie_begins_where_the_robot_landed_by_its_program():
 
 @pytest.mark.parametrize(("passed", "begun"), [("wait", "wait on"), ("down", "wait"), ("again", "c")])
 def test_a_robot_at_home_is_refused_whose_program_goes_on_elsewhere(passed, begun):
-    with pytest.raises(Refused, match="70 m from its home: nobody has checked a way there"):
+    words = r"it stands 70 m from where its program has landed it: carry it to 42\.370000, 13\.35085\d"
+    with pytest.raises(Refused, match=words):
         delivered(passed, begun, Vehicle())
+    assert delivered(passed, begun, Vehicle(70.0)) == []
+
+
+def test_a_robot_takes_off_again_where_its_program_has_landed_it():
+    vehicle = Vehicle(72.0, 3.0)
+    moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    order = [step.move for step in PARCEL.steps]
+    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("c") + 1], "d").run()
+    assert vehicle.went == [("up", 15.0), (70, 60, 15)]
+
+
+@pytest.mark.parametrize(
+    ("passed", "begun", "starts"),
+    [
+        ("start", "up", [(0, 0)]),
+        ("up", "b", [(0, 0)]),
+        ("b", "down", [(0, 0), (0, 70)]),
+        ("down", "wait", [(0, 70)]),
+        ("again", "c", [(0, 70)]),
+        ("d", "end", [(0, 70), (60, 0)]),
+    ],
+)
+def test_a_vehicle_may_stand_where_its_sortie_began_or_where_it_was_to_land(passed, begun, starts):
+    order = [step.move for step in PARCEL.steps]
+    moves = Moves(PARCEL, Vehicle(), Clock(1e6), {}, lambda kind, name, content: None)
+    found = WayBack(PARCEL, moves, Vehicle(), 20.0).starts(order[: order.index(passed) + 1], begun)
+    assert [tuple(map(round, offset(PARCEL.home, start)[:2])) for start in found] == starts
+
+
+def test_a_robot_that_came_home_instead_of_landing_flies_there_again():
+    vehicle, order = Vehicle(), [step.move for step in PARCEL.steps]
+    moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("b") + 1], "down").run()
+    assert vehicle.went == [("up", 20.0), (70, 0, 20)]
 
 
 def test_a_robot_that_has_waited_and_been_nowhere_goes_on_at_home():

@@ -1,0 +1,101 @@
+"""A vehicle's own home: its heights count from there, and by itself it returns there.
+
+Autopilots take for home where they arm, unless they were told a home since they were switched on.
+"""
+
+from __future__ import annotations
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..faults import Refused
+from ..links.link import Link, Message
+from ..places import distance
+from ..program import Geographic, Place
+from ..services.commands import ask, command_at
+from .footing import ELSEWHERE, aside
+from .telemetry import Telemetry
+
+SAME = 1.0
+"""Metres within which two homes are one."""
+
+
+def keep_home(link: Link, telemetry: Telemetry, home: Geographic, start: Place) -> str:
+    """Have a vehicle that takes off elsewhere keep the home of its program for its own.
+
+    One whose own home is still there keeps that; one that was switched on since is told it again, at the
+    height from which the ground where it stands is as high as before.
+
+    Args:
+        link: to the vehicle, which stands on the ground.
+        telemetry: of the vehicle.
+        home: of its program.
+        start: where it stands, with the height of the ground above home.
+
+    Returns:
+        What people should know.
+
+    Raises:
+        Refused: the vehicle does not take it, or does not say that it has.
+    """
+    takes_off = f"takes off {aside(home, start):.0f} m from its home"
+    try:
+        kept = _own_home(link)
+        if kept is None or aside(home, kept) > ELSEWHERE:
+            kept = _level_with(telemetry, home, start)
+        command_at(link, mavlink.MAV_CMD_DO_SET_HOME, kept, mavlink.MAV_FRAME_GLOBAL)
+        _await(link, telemetry, kept)
+    except Refused as error:
+        raise Refused(
+            f"it {takes_off}, and the vehicle does not keep that for its own ({error}), so that by itself it"
+            " would return elsewhere: bring it home, and begin anew"
+        ) from error
+    return f"{takes_off}, which the vehicle keeps for its own: {kept.latitude:.6f}, {kept.longitude:.6f}"
+
+
+def _own_home(link: Link, wanted: Geographic | None = None) -> Geographic | None:
+    """Return the vehicle's own home, its height above the sea; None where it does not tell it.
+
+    Args:
+        link: to the vehicle.
+        wanted: the home that it is to tell; None: any.
+    """
+    with link.inbox("HOME_POSITION") as inbox:
+
+        def told() -> Geographic | None:
+            homes = map(_place_of, tuple(inbox))
+            return next((each for each in homes if wanted is None or distance(each, wanted) <= SAME), None)
+
+        for _ in link.attempts():
+            ask(link, mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
+            if (found := link.wait(told, link.patience)) is not None:
+                return found
+    return None
+
+
+def _place_of(message: Message) -> Geographic:
+    return Geographic(message.latitude * 1e-7, message.longitude * 1e-7, message.altitude * 1e-3)
+
+
+def _level_with(telemetry: Telemetry, home: Geographic, start: Place) -> Geographic:
+    """Return home with that height above the sea from which on the ground here is as high as before."""
+    level = telemetry.sea_level()
+    if level is None:
+        raise Refused("the vehicle has not told how high above the sea it is")
+    return Geographic(home.latitude, home.longitude, level + telemetry.here().height - start.height)
+
+
+def _await(link: Link, telemetry: Telemetry, home: Geographic) -> None:
+    """Wait until the vehicle says that a place is its home, and counts its heights from there.
+
+    Raises:
+        Refused: it does not.
+    """
+    if _own_home(link, home) is None:
+        raise Refused("the vehicle does not confirm it")
+
+    def counts() -> bool:
+        level = telemetry.sea_level()
+        return level is not None and abs(level - home.height) <= SAME
+
+    if not link.wait(counts, link.patience):
+        raise Refused("the heights that the vehicle tells count from elsewhere")
