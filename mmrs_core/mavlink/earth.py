@@ -54,8 +54,19 @@ def sea_level_of(position: Position, frame: Frame) -> float | None:
 
 
 @lru_cache(maxsize=16)
+def from_wgs84(crs: str) -> Transformer:
+    """Return what turns longitudes and latitudes of WGS 84 into those of a frame."""
+    from pyproj import Transformer
+
+    return Transformer.from_crs(WGS84, _known(crs), always_xy=True)
+
+
+@lru_cache(maxsize=16)
 def _to_wgs84(crs: str) -> Transformer:
     from pyproj import Transformer
 
-    known = WGS84 if crs.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else crs
-    return Transformer.from_crs(known, WGS84, always_xy=True)
+    return Transformer.from_crs(_known(crs), WGS84, always_xy=True)
+
+
+def _known(crs: str) -> str:
+    return WGS84 if crs.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else crs

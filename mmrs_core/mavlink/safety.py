@@ -1,4 +1,4 @@
-"""What protects a vehicle beside its program: fence, places for emergencies, policies."""
+"""What a robot keeps from, how far, and what it does when something goes wrong."""
 
 from __future__ import annotations
 
@@ -9,11 +9,7 @@ from mmrs_core.behaviour.policies import AFTER, in_precedence
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.rules import robot_kind_of
 from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.scene import (
-    Area,
-    Policy,
-    RobotType,
-)
+from mmrs_core.scene import Area, Policy, RobotType
 
 
 def areas_of(robot: RobotProgram, input: TargetInput) -> tuple[Area, ...]:

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from mmrs_core.flight.program import Geographic, Place
 from mmrs_core.geometry.frames import LocalFrame
-from mmrs_core.mavlink.earth import WGS84
+from mmrs_core.mavlink.earth import from_wgs84
 from mmrs_core.scene import Frame, Position
-
-if TYPE_CHECKING:
-    from pyproj import Transformer
 
 
 class Ground:
@@ -31,7 +27,7 @@ class Ground:
         """Return a place as metres east, north and up of the origin."""
         if not isinstance(place, Geographic):
             return (self._home[0] + place.east, self._home[1] + place.north, self._zero + place.height)
-        longitude, latitude = self._from_wgs84.transform(place.longitude, place.latitude)
+        longitude, latitude = from_wgs84(self._frame.crs).transform(place.longitude, place.latitude)
         east, north = self._plane.to_local([latitude], [longitude])[0]
         return (float(east), float(north), self._zero + place.height)
 
@@ -40,11 +36,3 @@ class Ground:
         assert self._frame.latitude is not None
         assert self._frame.longitude is not None
         return LocalFrame(self._frame.crs, self._frame.latitude, self._frame.longitude)
-
-    @cached_property
-    def _from_wgs84(self) -> Transformer:
-        from pyproj import Transformer
-
-        own = self._frame.crs
-        known = WGS84 if own.strip().lower() in ("wgs84", "wgs 84", "wgs-84") else own
-        return Transformer.from_crs(WGS84, known, always_xy=True)
