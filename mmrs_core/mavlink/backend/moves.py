@@ -120,9 +120,9 @@ class Moves:
 
     def climb(self, move: str, height: float) -> None:
         """Take off, or climb on where the vehicle is in the air already."""
-        here = self._vehicle.state().place
-        if here.height > IN_THE_AIR:
-            self._vehicle.go_to(at_height(here, height), None, None, False)
+        state = self._vehicle.state()
+        if state.armed and state.place.height > IN_THE_AIR:
+            self._vehicle.go_to(at_height(state.place, height), None, None, False)
         else:
             self.track = []
             self._vehicle.take_off(height)

@@ -83,7 +83,7 @@ class WayBack:
     def _is_down(self, passed: Sequence[str], begun: str) -> bool:
         """Return whether the vehicle stands where it was to land, or is about to."""
         state = self._vehicle.state()
-        if not self._lands(begun) or state.place.height > IN_THE_AIR:
+        if not self._lands(begun) or (state.armed and state.place.height > IN_THE_AIR):
             return False
         place = state.place if state.armed else self._vehicle.start
         return aside(place, self._start([*passed, begun])) <= OFF_ITS_WAY
@@ -93,8 +93,8 @@ class WayBack:
             return []
         sortie = sortie_of(self._robot, passed)
         start = self._start(passed[: len(passed) - len(sortie)])
-        here = self._vehicle.state().place
-        low = here.height <= IN_THE_AIR
+        state = self._vehicle.state()
+        here, low = state.place, not state.armed or state.place.height <= IN_THE_AIR
         came = list(self._places(start, sortie))
         if not came:
             self._refuse_astray(start, here)

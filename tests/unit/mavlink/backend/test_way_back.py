@@ -52,10 +52,11 @@ MOVES = [step.move for step in ROBOT.steps]
 
 
 class Vehicle(DryVehicle):
-    """Remembers where it was told to go: metres east and north of home, and up."""
+    """Remembers where it was told to go: metres east and north of home, and up; it stands on some ground."""
 
-    def __init__(self, east=0.0, north=0.0, up=0.0):
+    def __init__(self, east=0.0, north=0.0, up=0.0, ground=0.0):
         super().__init__(Clock(1e6), ROBOT.home, lambda: None)
+        self._armed = up > ground
         self._here = replace(
             ROBOT.home,
             latitude=ROBOT.home.latitude + north / 111_319.49,
@@ -254,6 +255,23 @@ def test_a_robot_takes_off_again_where_its_program_has_landed_it():
     order = [step.move for step in PARCEL.steps]
     WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("c") + 1], "d").run()
     assert vehicle.went == [("up", 15.0), (70, 60, 15)]
+
+
+def test_a_robot_takes_off_on_whatever_ground_it_stands():
+    vehicle = Vehicle(70.0, 0.0, 6.0, ground=6.0)
+    moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    order = [step.move for step in PARCEL.steps]
+    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("again") + 1], "c").run()
+    assert vehicle.went == [("up", 15.0)]
+
+
+def test_a_robot_that_stands_where_it_was_to_land_stays_there_on_whatever_ground():
+    vehicle = Vehicle(70.0, 0.0, 6.0, ground=6.0)
+    vehicle.start = vehicle.state().place
+    moves = Moves(PARCEL, vehicle, Clock(1e6), {}, lambda kind, name, content: None)
+    order = [step.move for step in PARCEL.steps]
+    WayBack(PARCEL, moves, vehicle, 20.0).job(order[: order.index("b") + 1], "down").run()
+    assert vehicle.went == []
 
 
 @pytest.mark.parametrize(
