@@ -99,10 +99,6 @@ def _run(robot: Robot, shared: Shared, stack: ExitStack) -> tuple[int, bool]:
     try:
         session = _open(robot, shared, stack)
     except Ordered as order:
-        if shared.options.resume:
-            order.receipt.refuse("its vehicle was not heard, and was told nothing")
-        else:
-            order.receipt.confirm("there was no vehicle yet")
         say(f"{robot.id!r}: {order}")
         return CODES[order.event], True
     return session.run() if session is not None else (OK, True)
@@ -243,9 +239,30 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
     box = _box(robot, options, stack)
     shared.rehearsal.record(robot.id, lambda fault, content: box.write("injected", fault=fault, **content))
     stack.callback(shared.rehearsal.forget, robot.id)
-    crew = _crew(robot, shared, log, box, stack)
+    try:
+        crew = _crew(robot, shared, log, box, stack)
+    except Ordered as order:
+        _end_unmanned(robot, shared, log, box, order)
+        raise
     shared.crews.man(robot.id, crew.vehicle.state, crew.pilot.journal)
     return Session(crew, shared)
+
+
+def _end_unmanned(robot: Robot, shared: Shared, log: Log, box: BlackBox, order: Ordered) -> None:
+    """Answer an order that ends a program before there is a vehicle, and write down that it does.
+
+    Raises:
+        Fault: it cannot be written.
+    """
+    options, receipt = shared.options, order.receipt
+    box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), None))
+    if options.resume:
+        receipt.refuse("its vehicle was not heard, and was told nothing")
+    else:
+        now = options.clock.now()
+        log.write("fault", robot.start, lamport=shared.slots.tick(), time=now, detail=order.event)
+        receipt.confirm("there was no vehicle yet")
+    box.write("order", **receipt.told)
 
 
 def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStack) -> Crew:

@@ -126,7 +126,7 @@ class Moves:
         else:
             self.track = []
             self._vehicle.take_off(height)
-        self.track.append((move, self._vehicle.state().place))
+        self.track.append((move, at_height(self._vehicle.state().place, height)))
 
     def step(self, move: str) -> None:
         """Go where a move of a run leads to, and stop there."""
@@ -159,10 +159,11 @@ class Moves:
             state = self._vehicle.state()
             if not self.track:
                 self.track.append((move, state.place))
+            here = at_height(state.place, self.track[-1][1].height)
             target = self.target_of(movement)
             look = look_at(movement.look, self._locators, state)
-            ends = ends_of(state.place, target, movement.legs, movement.distance)
-            on = through and goes_through(self._steps[move], self._following(move), state.place)
+            ends = ends_of(here, target, movement.legs, movement.distance)
+            on = through and goes_through(self._steps[move], self._following(move), here)
             job.then(*(self._leg(move, end, movement, look, on and end == ends[-1]) for end in ends))
 
         job.append(look_up)

@@ -20,10 +20,11 @@ from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.options import options_of, parser_for
 from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
-from mmrs_core.flight.program import Geographic, Hold, Policy
+from mmrs_core.flight.program import Geographic, GoTo, Hold, Policy
 from mmrs_core.flight.records.log import read
 from mmrs_core.flight.session import Shared, run_robot
 from mmrs_core.flight.slots import LocalSlots
+from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 OTHER = robot_of(id="beta")
@@ -91,6 +92,23 @@ def test_a_robot_flies_and_tells_where_it_is_and_what_it_does(process, vehicle, 
     assert code.result(30.0) == 0
     assert not simulated.autopilot.armed
     assert "fault" not in labels(tmp_path)
+
+
+def test_a_level_leg_is_as_high_as_the_climb_before_it_was_to_be(process, vehicle, monkeypatch):
+    _, port = vehicle
+    told, go_to = [], MavlinkVehicle.go_to
+
+    def noted(self, place, *more):
+        told.append(place)
+        go_to(self, place, *more)
+
+    monkeypatch.setattr(MavlinkVehicle, "go_to", noted)
+    aside = replace(robot_of().home, latitude=robot_of().home.latitude + 1e-4, height=14.0)
+    way = GoTo(aside, legs="level first")
+    steps = (replace(step, movement=way) if step.move == "out" else step for step in STEPS)
+    robot = replace(robot_of(), steps=tuple(steps))
+    assert run_robot(robot, process(robot, port=port)) == 0
+    assert [place.height for place in told[:2]] == [10.0, 14.0]
 
 
 def test_an_order_before_there_is_a_vehicle_ends_the_program_and_is_confirmed(process):
