@@ -11,7 +11,8 @@ import pytest
 
 HERE = Path(__file__).parent
 IN_REAL_TIME = {
-    "whole flights": ("conformance/bus", "end_to_end/bus", "end_to_end/controllers", "end_to_end/run"),
+    "controllers": ("end_to_end/controllers",),
+    "runs and buses": ("conformance/bus", "end_to_end/bus", "end_to_end/run"),
     "parts of flights": (
         "end_to_end/faults",
         "end_to_end/vehicles",

@@ -100,7 +100,7 @@ def _open_hangar():
     """Give a function that switches on a vehicle at each robot's home, and returns the links to them."""
     vehicles: list[SimulatedVehicle] = []
 
-    def switch_on(program, speedup: float = 20.0, loss: float = 0.0, types=MappingProxyType({}), **settings):
+    def switch_on(program, speedup: float = 30.0, loss: float = 0.0, types=MappingProxyType({}), **settings):
         links, found = ["--speedup", str(speedup)], {}
         settings.setdefault("recharge", 60.0)
         for robot in program.robots:

@@ -30,6 +30,12 @@ AT_HOME = 0.6
 thorough = partial(pytest.param, marks=pytest.mark.thorough)
 """Values of a test that runs in the full counts only."""
 
+also_in_the_fault_table = pytest.mark.thorough
+"""Marks what rows of the fault table, and tests of endings, test in the fast profile, too."""
+
+SOON = ("--tries", "2")
+"""Has a vehicle asked twice only, so that it is sooner known not to answer."""
+
 
 def one_drone(*policies: Policy, hold: float = 60.0, **robot):
     moves = [
@@ -66,6 +72,7 @@ def test_an_interrupted_robot_holds_and_says_so_when_it_does(controllers, hangar
     assert made.replayed(partial=True).faults == {"alpha": "STOPPED"}
 
 
+@also_in_the_fault_table
 def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(controllers, hangar):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
@@ -78,6 +85,7 @@ def test_an_interrupted_robot_returns_by_the_way_it_came_if_it_is_asked_to(contr
     assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
 
 
+@also_in_the_fault_table
 def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "LAND", 3.0)))
     vehicles, links = hangar(made.program)
@@ -90,6 +98,7 @@ def test_a_lost_link_ends_the_program_and_the_vehicle_answers_by_itself(controll
     assert made.replayed(partial=True).faults == {"alpha": "LINK_LOST"}
 
 
+@also_in_the_fault_table
 def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     made = controllers(one_drone(Policy("LINK_LOST", "RETURN", 60.0), hold=20.0))
     vehicles, links = hangar(made.program)
@@ -102,6 +111,7 @@ def test_a_short_silence_of_the_link_changes_nothing(controllers, hangar):
     assert process.returncode == 0, said
 
 
+@also_in_the_fault_table
 def test_a_low_battery_brings_the_robot_home(controllers, hangar):
     made = controllers(one_drone(Policy("BATTERY_LOW", "RETURN"), hold=600.0))
     vehicles, links = hangar(made.program, energy=100.0)
@@ -112,6 +122,7 @@ def test_a_low_battery_brings_the_robot_home(controllers, hangar):
     assert max(map(abs, vehicles["alpha"].autopilot.body.position)) < AT_HOME
 
 
+@also_in_the_fault_table
 def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     made = controllers(one_drone())
     vehicles, links = hangar(made.program)
@@ -129,6 +140,7 @@ def test_a_pilot_who_takes_over_is_left_alone(controllers, hangar):
     assert made.replayed(partial=True).faults == {"alpha": "TAKEN_OVER"}
 
 
+@also_in_the_fault_table
 def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "LAND"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -141,7 +153,7 @@ def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
     _, links = hangar(made.program, silent=frozenset({2000}))
-    code, said = made.run("fleet.py", *links)
+    code, said = made.run("fleet.py", *links, *SOON)
     assert code == 0, said
     assert "carries on" in said
     assert made.replayed().complaints == ()
@@ -150,7 +162,7 @@ def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
 def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
-    with made.start("fleet.py", *links) as process:
+    with made.start("fleet.py", *links, *SOON) as process:
         until(lambda: vehicles["alpha"].autopilot.mode == BRAKE)
         vehicles["alpha"].mute()
         _, said = process.communicate(timeout=60)
@@ -161,7 +173,7 @@ def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hanga
 def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
-    with made.start("fleet.py", *links) as process:
+    with made.start("fleet.py", *links, *SOON) as process:
         assert any("holds; interrupt to end" in line for line in process.stderr)
         vehicles["alpha"].faults.take_stick("loiter")
         assert any("hands off" in line for line in process.stderr)
@@ -172,6 +184,7 @@ def test_a_robot_that_holds_is_left_to_whoever_takes_over(controllers, hangar):
     assert vehicles["alpha"].autopilot.mode == LOITER
 
 
+@also_in_the_fault_table
 def test_an_emergency_area_is_gone_to_and_landed_in(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "EMERGENCY_AREA"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))
@@ -228,6 +241,7 @@ def test_a_robot_whose_peer_fails_responds_to_it(controllers, hangar):
     assert made.replayed(partial=True).faults["beta"] == "PEER_LOST"
 
 
+@also_in_the_fault_table
 def test_a_wait_that_is_too_long_is_a_fault(controllers, hangar):
     made = controllers(waiting_pair(Policy("WAIT_TOO_LONG", "LAND", 2.0)))
     vehicles, links = hangar(made.program)

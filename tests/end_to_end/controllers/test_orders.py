@@ -114,6 +114,7 @@ def test_a_robot_comes_home_or_down_when_it_is_told_to(controllers, hangar, stat
     assert made.replayed(partial=True).faults == {"alpha": "ORDERED"}
 
 
+@pytest.mark.thorough
 def test_a_stop_is_confirmed_when_the_vehicle_halts_and_ends_the_program(controllers, hangar):
     made = controllers(survey())
     vehicles, links = hangar(made.program, speedup=SPEEDUP)
@@ -173,7 +174,7 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
     made = controllers(survey(leg=20.0))
     vehicles, links = hangar(made.program, speedup=SPEEDUP, silent=frozenset({2000}))
-    with made.start("fleet.py", *links) as process:
+    with made.start("fleet.py", *links, "--tries", "2") as process:
         assert any("holds; interrupt to end" in line for line in process.stderr)
         refused = order(made, "resume")
         assert (refused["confirmed"], refused["why"]) == (False, "its program has ended")

@@ -84,7 +84,7 @@ def killed_at(made, links, move: str) -> None:
 @pytest.mark.parametrize("fluid", [pytest.param(False, marks=pytest.mark.thorough), True])
 def test_a_coverage_is_complete_after_a_change_of_batteries(controllers, hangar, fluid):
     made = controllers(coverage(fluid=fluid))
-    vehicles, links = hangar(made.program, speedup=20.0)
+    vehicles, links = hangar(made.program)
     alpha = vehicles["alpha"]
     empty(made, alpha, links, "t3")
     assert not alpha.autopilot.armed
@@ -108,7 +108,7 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
         home=(0.0, -50.0, 0.0),
     )
     made = controllers(program(*coverage().robots, other))
-    vehicles, links = hangar(made.program, speedup=20.0)
+    vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         made.await_step("t2")
         time.sleep(0.15)
@@ -124,7 +124,7 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
 
 def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, hangar):
     made = controllers(coverage())
-    vehicles, links = hangar(made.program, speedup=20.0)
+    vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links, "--battery-patience", "60") as process:
         made.await_step("t1")
         vehicles["alpha"].faults.set_battery(0.19)
@@ -152,7 +152,7 @@ def test_the_point_of_no_return_is_noticed_before_the_reserve_is_touched(control
 
 def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, hangar):
     made = controllers(coverage(Policy("LINK_LOST", "HOLD", 60.0)))
-    vehicles, links = hangar(made.program, speedup=20.0)
+    vehicles, links = hangar(made.program)
     with made.start("fleet.py", *links) as process:
         made.await_step("t2")
         process.send_signal(signal.SIGKILL)
@@ -168,7 +168,7 @@ def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(cont
     down = go_to("down to work", (0.0, 60.0, 15.0), trajectory="HORIZONTAL_FIRST")
     alpha = robot_program("alpha", [take_off("up", 40.0), down, LAND])
     made = controllers(program(replace(alpha, policies=(Policy("LINK_LOST", "HOLD", 60.0),))))
-    vehicles, links = hangar(made.program, speedup=5.0)
+    vehicles, links = hangar(made.program, speedup=10.0)
     body = vehicles["alpha"].autopilot.body
     with made.start("fleet.py", *links) as process:
         while body.position[0] < 40.0:
@@ -186,7 +186,7 @@ def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(cont
 def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(controllers, hangar, stays):
     ways = [take_off("up", 6.0), go_to("out", (0.0, 30.0, 6.0)), go_to("home", (0.0, 0.0, 6.0)), LAND]
     made = controllers(program(robot_program("alpha", [*ways, move("stay", stays, duration=30.0)])))
-    vehicles, links = hangar(made.program, speedup=10.0, recharge=20.0)
+    vehicles, links = hangar(made.program, speedup=20.0, recharge=20.0)
     alpha = vehicles["alpha"].autopilot
     killed_at(made, links, "stay")
     code, said = made.run("fleet.py", *links, "--resume")
@@ -206,7 +206,7 @@ def delivery():
 
 def test_a_killed_process_goes_on_in_the_air_after_it_has_landed_elsewhere(controllers, hangar):
     made = controllers(delivery())
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=20.0)
     killed_at(made, links, "on")
     code, said = made.run("fleet.py", *links, "--resume")
     assert code == 0, said
@@ -216,7 +216,7 @@ def test_a_killed_process_goes_on_in_the_air_after_it_has_landed_elsewhere(contr
 
 def test_a_robot_that_was_carried_home_does_not_go_on_where_nobody_has_checked_a_way(controllers, hangar):
     made = controllers(delivery())
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=20.0)
     alpha = vehicles["alpha"]
     killed_at(made, links, "again")
     with alpha.lock:
@@ -234,7 +234,7 @@ def test_a_process_that_is_killed_as_its_robot_comes_home_for_its_battery_brings
     controllers, hangar, move
 ):
     made = controllers(coverage(Policy("BATTERY_LOW", "RETURN"), Policy("LINK_LOST", "HOLD", 60.0)))
-    vehicles, links = hangar(made.program, speedup=10.0)
+    vehicles, links = hangar(made.program, speedup=20.0)
     alpha = vehicles["alpha"]
     with made.start("fleet.py", *links) as process:
         made.await_step(move)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.fleet import GENERATED, INTERPRETED, Fleet, mainly, wait_for
 from fault_table.project import Pad
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -29,7 +29,7 @@ def refusals(monkeypatch):
     return results
 
 
-@pytest.mark.parametrize("execution", EXECUTIONS)
+@mainly(GENERATED)
 def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, execution, refusals):
     with Fleet(tmp_path, [Pad("a")], execution, speedup=10.0, delay=SLOW) as fleet:
         fleet.start()
@@ -40,7 +40,7 @@ def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, exe
         assert mavlink.MAV_MISSION_INVALID_SEQUENCE in refusals
 
 
-@pytest.mark.parametrize("execution", EXECUTIONS)
+@mainly(INTERPRETED)
 def test_a_port_that_stays_at_mavlink_1_is_named_at_once(tmp_path, execution):
     settings = {"a": {"mavlink": 1}}
     with Fleet(tmp_path, [Pad("a")], execution, speedup=10.0, settings=settings) as fleet:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fault_table.fleet import EXECUTIONS, Fleet, wait_for
+from fault_table.fleet import EXECUTIONS, GENERATED, INTERPRETED, Fleet, wait_for
 from fault_table.links import SILENCE
 from fault_table.orders import RESUMED_AFTER, to_all
 from fault_table.process import Process
@@ -39,6 +39,7 @@ class Drill:
         until: when, after all robots are at their places; None: at once.
         arguments: of the process, by execution.
         speedup: seconds of the run in a second.
+        fast: the execution by which it is always tested; empty: none.
         watched: whether somebody looks on by a ground station of their own.
     """
 
@@ -47,7 +48,7 @@ class Drill:
     blow: Blow
     until: Blow | None = None
     arguments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    fast: bool = False
+    fast: str = ""
     speedup: float = 10.0
     watched: bool = False
 
@@ -96,8 +97,8 @@ def _injected(fleet: Fleet, process: Process) -> None:
     wait_for(lambda: any("begins" in line for line in process.said) or not process.running(), 20.0)
 
 
-def _injection(name: str, rows: tuple[Row, ...], faults: str, *, fast: bool = False) -> Drill:
-    return Drill(name, rows, _nothing, _injected, _both("--inject", faults), fast)
+def _injection(name: str, rows: tuple[Row, ...], faults: str) -> Drill:
+    return Drill(name, rows, _nothing, _injected, _both("--inject", faults))
 
 
 def _link_lost(
@@ -241,7 +242,7 @@ DRILLS: tuple[Drill, ...] = (
         "ground station killed",
         _link_lost("ground station killed", BY_ITSELF, 5.0, within=10.0),
         _kill,
-        fast=True,
+        fast=GENERATED,
     ),
     Drill(
         "ground station frozen",
@@ -253,7 +254,7 @@ DRILLS: tuple[Drill, ...] = (
         _ground_lost("ground station of the operators killed", WATCHED, 10.0, 15.0),
         _kill_station,
         watched=True,
-        fast=True,
+        fast=INTERPRETED,
     ),
     Drill(
         "ground station of the operators not heard",

@@ -14,6 +14,8 @@ from pathlib import Path
 from random import randrange
 from typing import IO
 
+import pytest
+
 from fault_table.process import Process
 from fault_table.project import Pad, home_of, write_project
 from mmrs_core import pipeline
@@ -23,8 +25,16 @@ from mmrs_core.languages.reading import read_model
 from mmrs_core.plugins import load_plugins
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
-EXECUTIONS = ("generated", "interpreted")
+EXECUTIONS = GENERATED, INTERPRETED = ("generated", "interpreted")
 GROUND_STATION = Path(__file__).parents[2] / "peers" / "ground_station.py"
+
+
+def mainly(usual: str) -> pytest.MarkDecorator:
+    """Fly by both executions what they share; in the fast profile by the usual one only."""
+    return pytest.mark.parametrize(
+        "execution",
+        [usual, *(pytest.param(each, marks=pytest.mark.thorough) for each in EXECUTIONS if each != usual)],
+    )
 
 
 class Fleet:

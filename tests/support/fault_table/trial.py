@@ -13,8 +13,8 @@ from fault_table.row import Outcome, Row
 from fault_table.watch import Watch
 from mmrs_core.errors import MmrsError
 
-GOODBYE_SECONDS = 8.0
-"""Real seconds after which a process is interrupted again that stays for vehicles which pilots have."""
+GOODBYE_SECONDS, LEAST_GOODBYE_SECONDS = 8.0, 3.0
+"""After how long a process that stays with vehicles of pilots is interrupted again, of the run and real."""
 
 REAL_SECONDS, RUN_SECONDS = 50.0, 240.0
 """How long everything may take, at least: real seconds, and those of the run."""
@@ -86,7 +86,7 @@ def _over(process: Process, blow: Blow | None) -> bool:
 def _end(fleet: Fleet, process: Process) -> list[str]:
     if process.running():
         process.signal(signal.SIGINT)
-        if process.end(GOODBYE_SECONDS) is None:
+        if process.end(max(GOODBYE_SECONDS / fleet.speedup, LEAST_GOODBYE_SECONDS)) is None:
             process.signal(signal.SIGINT)
     problems = [] if process.end(30.0) is not None else ["the process does not end when it is interrupted"]
     try:
