@@ -227,7 +227,9 @@ def _holder(text: str) -> Holder:
     from mmrs_core.cli.bus_access import Holder
 
     name, separator, robots = text.partition("=")
-    if not _HOLDER.fullmatch(name) or name in ("observer", "authority"):
+    if name in ("observer", "authority"):
+        raise typer.BadParameter(f"--robot {text}: there is a folder of that name anyway; say NAME=ROBOT")
+    if not _HOLDER.fullmatch(name):
         raise typer.BadParameter(
             f"--robot {text}: a folder is named so: letters, digits, . _ - only; say NAME=ROBOT for others"
         )

@@ -16,13 +16,14 @@ class Holder:
     robots: tuple[str, ...]
 
 
-def configuration(holders: Sequence[Holder]) -> Mapping[str, object]:
-    """Return Zenoh's configuration of every holder; it stands beside the holder's keys.
+def configuration(own: Holder, holders: Sequence[Holder]) -> Mapping[str, object]:
+    """Return Zenoh's configuration of a holder, one of all; it stands beside the holder's keys.
 
     Peers show each other their certificates; what comes in is let through only where it speaks for a
     robot of the certificate's holder.
     """
     return {
+        "metadata": {"name": own.name, "robots": list(own.robots)},
         "mode": "peer",
         "listen": {"endpoints": ["tls/0.0.0.0:0"]},
         "scouting": {"multicast": {"enabled": False}},

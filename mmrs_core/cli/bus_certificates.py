@@ -56,9 +56,20 @@ def make_keys(
 
     Raises:
         OSError: if something cannot be written.
-        ValueError: if the authority in the folder cannot be used.
+        ValueError: if the authority in the folder cannot be used, or somebody has a certificate of it who
+            is not named: nobody would let them in any more.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    left_out = sorted(
+        path.parent.name
+        for path in folder.glob("*/certificate.pem")
+        if path.parent.name not in {OBSERVER, *(holder.name for holder in holders)}
+    )
+    if left_out:
+        raise ValueError(
+            f"{folder}: {', '.join(map(repr, left_out))} would not be let in any more: name all who are to be"
+            " on the bus, or delete the folders of those who are not"
+        )
     signer = _authority(folder, now, days)
     everybody = (*holders, Holder(OBSERVER, ()))
     made = []
@@ -68,7 +79,7 @@ def make_keys(
         if not (own / "certificate.pem").exists():
             _certify(own, holder.name, hosts, signer, now, days)
         _write(own / "authority.pem", (folder / f"{AUTHORITY}.pem").read_bytes())
-        _write(own / "bus.json5", json.dumps(configuration(everybody), indent=2).encode() + b"\n")
+        _write(own / "bus.json5", json.dumps(configuration(holder, everybody), indent=2).encode() + b"\n")
         made.append(own)
     return tuple(made)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import socket
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime
+from pathlib import Path
 
 import pytest
 
@@ -52,6 +54,12 @@ class Ends:
     ) -> Node:
         """Open an end for a robot, with its own certificate if there are any and no other is given."""
         endpoints = self.endpoints(robot, certificate, listens)
+        return self.open_at(robot, endpoints, run=run, settle=settle, plan=plan)
+
+    def open_at(
+        self, robot: str, endpoints: Endpoints, *, run: str = RUN, settle: float = 0.0, plan: str = ""
+    ) -> Node:
+        """Open an end for a robot that reaches the others so."""
         others = tuple(other for other in NAMES if other != robot)
         member = Member(Owned(robot, ("go",), {"go": others}, {"go": others}), frozenset(others))
         folder = self.folder / f"{robot} {len(self.nodes)}"
@@ -73,9 +81,20 @@ class Ends:
     def endpoints(self, robot: str, certificate: str | None = None, listens: bool = True) -> Endpoints:
         way = "tls" if self.keys is not None else "tcp"
         file = self.keys / (certificate or robot) / "bus.json5" if self.keys is not None else None
+        if file is not None and certificate not in (None, robot):
+            file = _without_name(file)
         others = tuple(f"{way}/127.0.0.1:{port}" for other, port in self.ports.items() if other != robot)
         listen = (f"{way}/127.0.0.1:{self.ports[robot]}",) if listens else (f"{way}/127.0.0.1:0",)
         return Endpoints(listen, others, file)
+
+
+def _without_name(file: Path) -> Path:
+    """Return a configuration that does not say for whom its certificate speaks, as a forger has it."""
+    forged = file.with_name("forged.json5")
+    told = json.loads(file.read_text())
+    del told["metadata"]
+    forged.write_text(json.dumps(told))
+    return forged
 
 
 def _until(holds: Callable[[], object], seconds: float = PATIENCE) -> float:

@@ -55,6 +55,21 @@ def test_a_peer_without_certificate_is_neither_heard_nor_seen(secured, notify):
         bare.close()
 
 
+def test_keys_of_another_robot_are_refused_before_anything_moves(ends):
+    ends.certify()
+    endpoints = Endpoints((), (), ends.keys / "b" / "bus.json5")
+    with pytest.raises(OSError, match=r"bus\.json5: its certificate speaks for 'b', not for 'a'"):
+        ends.open_at("a", endpoints)
+
+
+def test_what_zenoh_refuses_is_told_without_the_lines_of_its_sources(ends):
+    ends.certify()
+    endpoints = Endpoints(("tcp/127.0.0.1:0",), (), ends.keys / "a" / "bus.json5")
+    with pytest.raises(OSError, match=r"bus: cannot be opened: .*tcp") as raised:
+        ends.open_at("a", endpoints)
+    assert ".rs" not in str(raised.value)
+
+
 def test_a_certificate_does_not_speak_for_another_robot(secured, until, notify):
     ends, a, b = secured
     b.close()
@@ -108,6 +123,15 @@ def test_keys_are_readable_by_their_owner_only_and_kept_when_a_robot_is_added(tm
     known = json.loads((folder / "a" / "bus.json5").read_text())["access_control"]["subjects"]
     names = [name for subject in known for name in subject["cert_common_names"]]
     assert names == ["a", "ground", "d", "observer"]
+
+
+def test_whoever_has_a_certificate_and_is_not_named_is_not_shut_out_silently(tmp_path, capsys):
+    folder = tmp_path / "keys"
+    assert run_command(["bus", "keys", str(folder), "--robot", "a", "--robot", "b"], "mmrs") == 0
+    before = (folder / "observer" / "bus.json5").read_bytes()
+    assert run_command(["bus", "keys", str(folder), "--robot", "c"], "mmrs") == 3
+    assert "'a', 'b' would not be let in any more" in capsys.readouterr().err
+    assert (folder / "observer" / "bus.json5").read_bytes() == before
 
 
 @pytest.mark.parametrize("name", ["../x", "a/b", "observer", ""])

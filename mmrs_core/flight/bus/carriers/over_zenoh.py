@@ -9,6 +9,7 @@ the certificate of whoever speaks.
 from __future__ import annotations
 
 import json
+import re
 import threading
 import time
 import uuid
@@ -41,6 +42,7 @@ _FILES = (
     "connect_private_key",
     "connect_certificate",
 )
+_SOURCES = re.compile(r" at \S+\.rs:\d+\.?")
 RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
 
 
@@ -86,6 +88,7 @@ class ZenohCarrier:
         self._plan = digest(plan)
         self._start = f"{uuid.uuid4().hex[:12]}-{self._plan}"
         self._station: Station | None = None
+        self._speaks_for: frozenset[str] | None = None
         self._own: set[str] = set()
         self._session: Any = None
         self._declared: list[Any] = []
@@ -103,6 +106,7 @@ class ZenohCarrier:
         """
         self._station = station
         self._session = _opened(self._endpoints)
+        self._speaks_for = _speaks_for(self._endpoints.file)
         self._worker.start()
         watched = self._session.liveliness().declare_subscriber(
             f"{self._prefix}/*/here/*", self._later(self._see), history=True
@@ -130,7 +134,14 @@ class ZenohCarrier:
                 )
 
     def appear(self, robot: str) -> None:
-        """Answer for a robot, and tell that it is there; also again after `vanish`."""
+        """Answer for a robot, and tell that it is there; also again after `vanish`.
+
+        Raises:
+            OSError: the certificate of this process speaks for other robots.
+        """
+        if self._speaks_for is not None and robot not in self._speaks_for:
+            whose = ", ".join(map(repr, sorted(self._speaks_for))) or "no robot"
+            raise OSError(f"{self._endpoints.file}: its certificate speaks for {whose}, not for {robot!r}")
         here = f"{self._key(robot, 'here')}/{self._start}"
         with self._closing:
             if self._session is None or robot in self._tokens:
@@ -264,7 +275,7 @@ def _from_file(path: Path) -> Any:
     try:
         config = zenoh.Config.from_file(str(path))
     except zenoh.ZError as error:
-        raise OSError(f"{path}: cannot be read as a configuration of Zenoh: {error}") from error
+        raise OSError(f"{path}: cannot be read as a configuration of Zenoh: {_plain(error)}") from error
     for name in _FILES:
         found = json.loads(config.get_json(f"transport/link/tls/{name}"))
         if isinstance(found, str) and not Path(found).is_absolute():
@@ -325,4 +336,20 @@ def _opened(endpoints: Endpoints) -> Any:
     try:
         return zenoh.open(configuration(endpoints))
     except zenoh.ZError as error:
-        raise OSError(f"bus: cannot be opened: {error}") from error
+        raise OSError(f"bus: cannot be opened: {_plain(error)}") from error
+
+
+def _plain(error: zenoh.ZError) -> str:
+    """Return what Zenoh says, without the lines of its sources."""
+    return _SOURCES.sub("", str(error)).strip()
+
+
+def _speaks_for(file: Path | None) -> frozenset[str] | None:
+    """Return the robots for which the certificate of a configuration speaks; None where it does not say.
+
+    Raises:
+        OSError: the file cannot be read, or is none of Zenoh's configurations.
+    """
+    told = json.loads(_from_file(file).get_json("metadata")) if file is not None else None
+    robots = told.get("robots") if isinstance(told, dict) else None
+    return frozenset(map(str, robots)) if isinstance(robots, list) else None
