@@ -228,12 +228,17 @@ def _add_reach(parser: argparse.ArgumentParser) -> None:
     add("--signing-key", type=Path, metavar="FILE", help="sign what is sent, and hear only what is signed so")
 
 
+def _boxes(robots: Sequence[Robot], folder: Path) -> list[Path]:
+    return [black_box_path(folder / robot.log) for robot in robots]
+
+
 def _run(parser: argparse.ArgumentParser, robots: Sequence[Robot], given: Any) -> tuple[str, float]:
     """Return the identifier of the run, and how many seconds of it have passed."""
     taken = [given.log / robot.log for robot in robots if (given.log / robot.log).exists()]
     if taken and not given.resume:
         parser.error(f"{taken[0]}: there is a log already; choose another --log, or go on with --resume")
-    if given.resume and not taken:
+    # A run in which nothing began has black boxes, and no logs.
+    if given.resume and not any(path.exists() for path in (*taken, *_boxes(robots, given.log))):
         parser.error(f"--resume: there is no log of these robots in {given.log}")
     try:
         steps = [step for path in taken for step in read(path)]
