@@ -208,5 +208,5 @@ def test_the_command_line_prints_all_tables_for_programs(capsys):
 
 
 def test_an_unknown_target_has_no_table(capsys):
-    assert run(["--capabilities", "wlp"], program="mmrs-gen") == 1
+    assert run(["--capabilities", "wlp"], program="mmrs-gen") == 2
     assert "did you mean wpl?" in capsys.readouterr().err
