@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from .faults import BATTERY_LOW, GROUND_LOST, POSITION_LOST, VEHICLE_RESTARTED
+from collections.abc import Mapping
+
+from .faults import BATTERY_LOW, GROUND_LOST, LINK_LOST, POSITION_LOST, VEHICLE_RESTARTED
 
 NOTHING = "NOTHING"
 """Response to a pilot: no policy answers that, the program lets go of the vehicle."""
+
+UNDECLARED: Mapping[str, str] = {LINK_LOST: "RETURN", BATTERY_LOW: "RETURN", GROUND_LOST: "CONTINUE"}
+"""What real robots do where no policy says anything; to anything else they hold."""
 
 COMES_DOWN = frozenset({"RETURN", "EMERGENCY_AREA", "LAND", "SURFACE"})
 """Responses after which a battery can be changed."""

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from mmrs_core.behaviour.policies import patience, policy_for, response_to
+from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.flight.faults import TAKEN_OVER
-from mmrs_core.flight.policies import NOTHING
+from mmrs_core.flight.policies import NOTHING, UNDECLARED
 from mmrs_core.scene import Policy
-
-UNDECLARED = {"LINK_LOST": "RETURN", "BATTERY_LOW": "RETURN"}
-"""What real robots do where nobody declared it; to anything else they hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +31,7 @@ class Answers:
         if found.instead:
             return found.instead
         if self.live and policy_for(found.which, self.policies) is None:
-            return UNDECLARED.get(found.which, response_to(found.which, ()))
+            return UNDECLARED.get(found.which, LAST_RESORT)
         return response_to(found.which, self.policies)
 
     def bears(self, found: Fault) -> bool:

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from ..faults import (
-    BATTERY_LOW,
-    GROUND_LOST,
-    LINK_LOST,
-    POSITION_LOST,
-    TAKEN_OVER,
-)
-from ..policies import NOTHING
+from ..faults import POSITION_LOST, TAKEN_OVER
+from ..policies import NOTHING, UNDECLARED
 from ..program import Policy, Robot
 
 CONTINUE = "CONTINUE"
@@ -20,14 +14,6 @@ HOLD = "HOLD"
 LAND = "LAND"
 ESCAPE = "EMERGENCY_AREA"
 RETURN = "RETURN"
-
-DEFAULTS: Mapping[str, str] = {
-    LINK_LOST: RETURN,
-    BATTERY_LOW: RETURN,
-    GROUND_LOST: CONTINUE,
-    TAKEN_OVER: NOTHING,
-}
-"""Responses where no policy says anything; to anything else, robots hold."""
 
 BLOCKED = (
     "cannot fly straight to an emergency area from everywhere on its way: where nobody hears it, its vehicle"
@@ -45,7 +31,7 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
     for policy in (*first, *robot.policies):
         if policy.event == event:
             return policy
-    return Policy(event, DEFAULTS.get(event, HOLD))
+    return Policy(event, UNDECLARED.get(event, HOLD))
 
 
 def alone(policy: Policy, robot: Robot) -> Policy:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from ..faults import Refused
 from ..places import at_height, ends_of
 from ..program import (
-    Action,
     Choose,
     GoTo,
     Land,
@@ -159,7 +158,7 @@ def slots_of(robots: Iterable[Robot], records: Iterable[Record]) -> tuple[set[tu
     for record in sorted(records, key=_order):
         last = _order(record)[0]
         if record["label"] == "ntf":
-            action = _action(steps[str(record["robot"]), str(record["move"])], record)
+            action = steps[str(record["robot"]), str(record["move"])].action(str(record["detail"]))
             assert isinstance(action, Notify)
             active = active | set(action.slots) if action.active else active - set(action.slots)
     return active, last
@@ -172,7 +171,7 @@ def still_on(robot: Robot, records: Iterable[Record]) -> Iterator[Operate]:
     for record in records:
         if record["label"] != "act":
             continue
-        action = _action(steps[str(record["move"])], record)
+        action = steps[str(record["move"])].action(str(record["detail"]))
         if isinstance(action, Operate) and action.command in CAMERA_STATES:
             last[action.device, CAMERA_STATES[action.command]] = action
     yield from last.values()
@@ -180,11 +179,6 @@ def still_on(robot: Robot, records: Iterable[Record]) -> Iterator[Operate]:
 
 def _order(record: Record) -> tuple[int, str, int]:
     return int(str(record["lamport"])), str(record["robot"]), int(str(record["seq"]))
-
-
-def _action(step: Step, record: Record) -> Action:
-    when, _, index = str(record["detail"]).partition(":")
-    return (step.before if when == "pre" else step.after)[int(index)]
 
 
 def _next(label: str, detail: str, step: Step) -> str:
