@@ -19,7 +19,31 @@ from mmrs_core.testing.small_programs import ROBOT_TYPE, hold, program, robot, r
 FAST = 100.0
 
 
-class Walker:
+class Idle:
+    """What any robot of a test says that has no events of its own.
+
+    Attributes:
+        trouble: what is wrong with it; None: nothing.
+        charge: part of its battery that is left; None: unknown.
+    """
+
+    trouble: Fault | None
+    charge: float | None = None
+
+    def fault(self, now):
+        return self.trouble
+
+    def next_event(self, now):
+        return inf
+
+    def wait(self, now):
+        pass
+
+    def state(self, now):
+        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=self.charge)
+
+
+class Walker(Idle):
     """A robot that does each thing until it is told that it is done; it wakes the interpreter itself."""
 
     def __init__(self, given: BackendInput, script):
@@ -30,6 +54,10 @@ class Walker:
         self.elsewhere = ""
         self.recognised = False
         script.robots[given.robot.id] = self
+
+    @property
+    def charge(self):
+        return self.script.charge
 
     def _go(self, what):
         self.begun.append(what)
@@ -61,18 +89,6 @@ class Walker:
 
     def finished(self, now):
         return self.done
-
-    def fault(self, now):
-        return self.trouble
-
-    def next_event(self, now):
-        return inf
-
-    def wait(self, now):
-        pass
-
-    def state(self, now):
-        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None, charge=self.script.charge)
 
     def stop(self, now, response="HOLD"):
         self.stops.append(response)
@@ -211,3 +227,10 @@ WALK = program(robot("r", [do("walk"), do("rest")]))
 
 
 TWO = program(robot("a", [do("walk")]), robot("b", [do("walk")]))
+
+
+def walking(live, **seconds):
+    """Return a run whose robot walks until it is told otherwise, and the robot."""
+    run = live(WALK, Script(walk=inf, **seconds))
+    run.wait_for_step("r begin walk")
+    return run, run.script.robots["r"]

@@ -23,6 +23,21 @@ def mission():
     return program(robot_program("alpha", moves, transitions=fluid))
 
 
+def flying(process, until) -> None:
+    """Wait for something while a process flies."""
+    while not until():
+        assert process.poll() is None
+        threading.Event().wait(0.02)
+
+
+def halted(process, autopilot) -> str:
+    """Wait until a mission is flown no more, and end the process; return what it said."""
+    flying(process, lambda: autopilot.mode != AUTO)
+    assert autopilot.mode == BRAKE
+    process.terminate()
+    return process.communicate(timeout=60)[1]
+
+
 @pytest.mark.parametrize(
     ("after", "to", "words"),
     [
@@ -37,16 +52,9 @@ def test_a_mission_that_somebody_else_moves_ends_in_a_hold_and_is_not_logged_as_
     vehicles, links = hangar(made.program, speedup=10.0)
     autopilot = vehicles["alpha"].autopilot
     with made.start("fleet.py", *links, "--on-stop", "land") as process:
-        while not (autopilot.mode == AUTO and autopilot.item > after):
-            assert process.poll() is None
-            threading.Event().wait(0.02)
+        flying(process, lambda: autopilot.mode == AUTO and autopilot.item > after)
         autopilot.item = to if to < after else autopilot.item + 2
-        while autopilot.mode == AUTO:
-            assert process.poll() is None
-            threading.Event().wait(0.02)
-        assert autopilot.mode == BRAKE
-        process.terminate()
-        _, said = process.communicate(timeout=60)
+        said = halted(process, autopilot)
     assert words in said
     steps = read_logs([made.logs])
     ended = [step.move for step in steps if step.label == "end" and step.move.startswith("p")]
@@ -61,16 +69,9 @@ def test_a_robot_whose_mission_was_replaced_is_held_before_it_is_far_from_where_
     vehicles, links = hangar(made.program, speedup=5.0)
     autopilot = vehicles["alpha"].autopilot
     with made.start("fleet.py", *links, "--on-stop", "land") as process:
-        while not (autopilot.mode == AUTO and autopilot.item > 1):
-            assert process.poll() is None
-            threading.Event().wait(0.02)
+        flying(process, lambda: autopilot.mode == AUTO and autopilot.item > 1)
         elsewhere = [replace(item, y=item.y + 20_000) for item in autopilot.stores[MISSION]]
         autopilot.stores[MISSION] = elsewhere
-        while autopilot.mode == AUTO:
-            assert process.poll() is None
-            threading.Event().wait(0.02)
-        assert autopilot.mode == BRAKE
-        process.terminate()
-        _, said = process.communicate(timeout=60)
+        said = halted(process, autopilot)
     assert "off all legs of its run: it may have got another mission" in said
     assert max(east for _, _, east, _ in autopilot.track) < 60.0 + 20.0

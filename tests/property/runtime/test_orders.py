@@ -8,9 +8,10 @@ from math import inf
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from live_runs import Idle
 
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.execution import Fault
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.interpreter import interpret
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP, Order, Orders
@@ -30,7 +31,7 @@ LOOKS = 40
 """As many as a vehicle needs for whatever it was told, and the interpreter to see that."""
 
 
-class Vehicle:
+class Vehicle(Idle):
     """A robot that does what it is told step by step, each when the test says so, without a word about it."""
 
     def __init__(self, *, armed: bool, stays_armed: bool):
@@ -79,18 +80,6 @@ class Vehicle:
 
     def finished(self, now):
         return self.steps == 0
-
-    def fault(self, now):
-        return self.trouble
-
-    def next_event(self, now):
-        return inf
-
-    def wait(self, now):
-        pass
-
-    def state(self, now):
-        return RobotState(now, (0.0, 0.0, 0.0), 0.0, 0.0, None)
 
     def stop(self, now, response="HOLD"):
         if self.trouble is not None and self.trouble.which == "LINK_LOST" and response != "NOTHING":

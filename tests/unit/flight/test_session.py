@@ -180,12 +180,19 @@ def test_a_robot_that_came_home_for_its_battery_is_not_told_to_have_ended(proces
     assert "fault" not in labels(tmp_path)
 
 
-@pytest.mark.parametrize("left_alone", [True, False])
-def test_another_battery_lets_it_go_on_and_be_watched_as_before(process, vehicle, tmp_path, left_alone):
+def waits_for_a_battery(process, vehicle):
+    """Return a process whose robot waits for a battery while another works, and what it will come to."""
     simulated, port = vehicle
     shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
     code = empty(shared, simulated)
     until(lambda: phase(shared) == SUSPENDED)
+    return shared, code
+
+
+@pytest.mark.parametrize("left_alone", [True, False])
+def test_another_battery_lets_it_go_on_and_be_watched_as_before(process, vehicle, tmp_path, left_alone):
+    shared, code = waits_for_a_battery(process, vehicle)
+    simulated, _ = vehicle
     early = shared.crews.inboxes["alpha"].give(Order("resume"))
     until(lambda: early.confirmed is not None)
     assert not early.confirmed
@@ -272,10 +279,8 @@ def test_a_robot_that_cannot_take_off_again_may_be_resumed_once_more(process, ve
 
 @pytest.mark.parametrize("name", ["hold", "land", "resume"])
 def test_who_waits_for_a_battery_obeys_nothing_while_somebody_else_flies_its_vehicle(process, vehicle, name):
-    simulated, port = vehicle
-    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
-    code = empty(shared, simulated)
-    until(lambda: phase(shared) == SUSPENDED)
+    shared, code = waits_for_a_battery(process, vehicle)
+    simulated, _ = vehicle
     simulated.faults.set_battery(1.0)
     simulated.faults.take_stick("stabilize")
     with simulated.lock:
@@ -292,10 +297,7 @@ def test_who_waits_for_a_battery_obeys_nothing_while_somebody_else_flies_its_veh
 
 @pytest.mark.parametrize("by", ["order", "signal", "others"])
 def test_who_waits_for_a_battery_ends_when_somebody_says_so_or_nobody_works_any_more(process, vehicle, by):
-    simulated, port = vehicle
-    shared = process(robot_of(), OTHER, port=port, words=["--connect", "beta=udpin:127.0.0.1:1"])
-    code = empty(shared, simulated)
-    until(lambda: phase(shared) == SUSPENDED)
+    shared, code = waits_for_a_battery(process, vehicle)
     receipt = None
     if by == "order":
         receipt = shared.crews.inboxes["alpha"].give(Order("stop"))

@@ -28,23 +28,44 @@ def broken_off(live):
     """Return a function that breaks a run off with both robots under way, and resumes it with none ready."""
 
     def begin(behaviour, move="walk", **more):
-        first = live(behaviour, Script(walk=inf, h=inf))
-        first.wait_for_step(f"a begin {move}")
-        first.wait_for_step("b begin walk")
-        made = tuple(first.records)
-        first.abort()
+        made = under_way(live, behaviour, move)
         bus = InProcessBus(behaviour)
         restore(bus, behaviour, made)
-        run = live(behaviour, Script(ready=inf, **more), resumed=made, bus=bus)
-        run.wait_for(lambda: len(run.script.robots) == 2 and all(r.begun for r in run.script.robots.values()))
-        return run
+        return gets_ready(live, behaviour, Script(ready=inf, **more), resumed=made, bus=bus)
 
     return begin
+
+
+def under_way(live, behaviour, move="walk"):
+    """Return the records of a run that is broken off with both robots under way."""
+    first = live(behaviour, Script(walk=inf, h=inf))
+    first.wait_for_step(f"a begin {move}")
+    first.wait_for_step("b begin walk")
+    made = tuple(first.records)
+    first.abort()
+    return made
+
+
+def gets_ready(live, behaviour, script, **more):
+    """Return a run whose two robots are getting ready."""
+    run = live(behaviour, script, **more)
+    run.wait_for(lambda: len(run.script.robots) == 2 and all(r.begun for r in run.script.robots.values()))
+    return run
 
 
 def ready(run, *robots):
     for id in robots:
         run.script.robots[id]._finish("ready")
+
+
+def waits_for_it(run, kind):
+    """Give an order to a robot that is not ready, and return it when it is settled, once the robot is."""
+    order = run.orders.give(kind, ["a"])
+    time.sleep(0.2)
+    assert order.open == ("a",)
+    ready(run, "a")
+    assert order.settled.wait(20.0)
+    return order
 
 
 def test_a_robot_goes_on_before_another_is_ready(broken_off):
@@ -105,12 +126,7 @@ def test_the_run_does_not_go_on_where_no_robot_comes(broken_off):
 
 def test_a_robot_in_the_air_that_is_to_land_is_told_so_as_soon_as_it_is_known_and_does_not_go_on(broken_off):
     run = broken_off(TWO)
-    order = run.orders.give(LAND, ["a"])
-    time.sleep(0.2)
-    assert order.open == ("a",)
-    ready(run, "a")
-    assert order.settled.wait(20.0)
-    assert list(order.confirmed) == ["a"]
+    assert list(waits_for_it(run, LAND).confirmed) == ["a"]
     assert run.script.robots["a"].begun == ["ready", "stop LAND"]
 
 
@@ -126,11 +142,7 @@ def test_a_robot_whose_motors_are_off_confirms_at_once_that_it_stays(broken_off)
 
 def test_a_robot_that_is_held_before_it_is_ready_halts_and_goes_on_when_it_may(broken_off):
     run = broken_off(TWO)
-    held = run.orders.give(HOLD, ["a"])
-    time.sleep(0.2)
-    assert held.open == ("a",)
-    ready(run, "a")
-    assert held.settled.wait(20.0)
+    waits_for_it(run, HOLD)
     walker = run.script.robots["a"]
     assert (walker.halted, walker.recovered) == (True, None)
     assert list(run.order(RESUME, "a").confirmed) == ["a"]
@@ -149,16 +161,11 @@ def test_a_hold_before_a_robot_is_ready_can_be_taken_back(broken_off):
 
 
 def test_a_robot_that_is_not_ready_is_not_touched_where_the_run_is_broken_off_again(live):
-    first = live(TWO, Script(walk=inf))
-    first.wait_for_step("a begin walk")
-    first.wait_for_step("b begin walk")
-    made = tuple(first.records)
-
     def interrupt(record):
         raise KeyboardInterrupt
 
-    run = live(TWO, Script(ready=inf), resumed=made, observe=interrupt)
-    run.wait_for(lambda: len(run.script.robots) == 2 and all(r.begun for r in run.script.robots.values()))
+    made = under_way(live, TWO)
+    run = gets_ready(live, TWO, Script(ready=inf), resumed=made, observe=interrupt)
     ready(run, "a")
     run.end()
     assert isinstance(run.error, KeyboardInterrupt)
@@ -171,12 +178,18 @@ LOW = program(
 )
 
 
-def test_what_goes_wrong_with_a_robot_that_is_known_is_answered_by_its_policy_before_it_is_ready(broken_off):
+def come_home(broken_off):
+    """Return a run whose robot has come home for its battery before it was ready, and the robot."""
     run = broken_off(LOW)
     walker = run.script.robots["a"]
     walker.recognised = True
     walker.fail("BATTERY_LOW")
     run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    return run, walker
+
+
+def test_what_goes_wrong_with_a_robot_that_is_known_is_answered_by_its_policy_before_it_is_ready(broken_off):
+    run, walker = come_home(broken_off)
     assert walker.stops == ["RETURN"]
     ready(run, "b")
     ending = run.end()
@@ -186,11 +199,7 @@ def test_what_goes_wrong_with_a_robot_that_is_known_is_answered_by_its_policy_be
 
 
 def test_a_robot_that_came_home_before_it_was_ready_goes_on_with_a_new_battery(broken_off):
-    run = broken_off(LOW)
-    walker = run.script.robots["a"]
-    walker.recognised = True
-    walker.fail("BATTERY_LOW")
-    run.wait_for(lambda: "'a': has done RETURN" in run.said)
+    run, walker = come_home(broken_off)
     assert list(run.order(RESUME, "a").confirmed) == ["a"]
     run.wait_for_step("a end stop")
     assert walker.recovered == (("start",), "walk")
