@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fault_table import strikes
-from fault_table.row import AT, AUTO, LEG, UP, Row, policy
+from fault_table.row import AT, AUTO, LEG, UP, Row, answered_rows, policy
 
 SILENCE = 2.5
 """Real seconds that a vehicle of ours bears silence at least, with the moment until its next heartbeat."""
@@ -17,20 +17,16 @@ def link_rows() -> list[Row]:
         (AT, "EMERGENCY_AREA", "meadow"),
         (UP, "RETURN", "home"),
     ]
-    rows = [
-        Row(
-            "link lost for good",
-            during,
-            policy("LINK_LOST", response, 3.0),
-            strikes.cut_link,
-            "LINK_LOST",
-            ends,
-            within=12.0,
-            least=SILENCE,
-            fast=response == "RETURN" and during == LEG,
-        )
-        for during, response, ends in lost
-    ]
+    rows = answered_rows(
+        "link lost for good",
+        strikes.cut_link,
+        "LINK_LOST",
+        3.0,
+        lost,
+        fast=(LEG, "RETURN"),
+        within=12.0,
+        least=SILENCE,
+    )
     rows += [
         Row(
             "link lost and back",

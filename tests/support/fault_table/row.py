@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from fault_table.project import POLICY
 from mmrs_core.sitl import SimulatedVehicle
@@ -110,6 +111,37 @@ class Row:
             return ""
         declared = self.policy[1] if self.policy is not None else ""
         return self.responds or ("NOTHING" if self.hands_off else declared)
+
+
+def answered_rows(
+    fault: str,
+    strike: Act,
+    event: str,
+    after: float | None,
+    cases: Sequence[tuple[str, str, str]],
+    *,
+    fast: tuple[str, str] | None = None,
+    **more: Any,
+) -> list[Row]:
+    """Return a row for each moment, response and end of a fault that a policy for its event answers.
+
+    Args:
+        fast: moment and response of the row that is always tested; None: none is.
+        more: attributes of all rows.
+    """
+    return [
+        Row(
+            fault,
+            during,
+            policy(event, response, after),
+            strike,
+            event,
+            ends,
+            fast=(during, response) == fast,
+            **more,
+        )
+        for during, response, ends in cases
+    ]
 
 
 @dataclass(slots=True)
