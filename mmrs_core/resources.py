@@ -1,7 +1,9 @@
-"""Where the shipped metamodels, templates and examples lie: in a wheel or in a checkout."""
+"""Where the shipped metamodels, templates and examples lie, and which file an error is about."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 
@@ -22,3 +24,14 @@ def shipped(folder: str) -> Path:
         if place.is_dir():
             return place
     raise InternalError(f"{folder}: not among the shipped data of {package}")
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Have errors of the system name a file: what fails while one is written names none."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None:
+            error.filename = str(path)
+        raise

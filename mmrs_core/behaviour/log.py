@@ -18,6 +18,7 @@ from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
 from mmrs_core.flight.records.lines import keep_whole_lines, whole_lines
 from mmrs_core.languages.codes import explained
+from mmrs_core.resources import named
 
 SCHEMA = Path(__file__).with_name("log.schema.json")
 SUFFIX = ".jsonl"
@@ -60,10 +61,11 @@ class LogWriter:
     def write(self, record: StepRecord) -> None:
         """Append a step to its robot's log."""
         file = self._files.get(record.robot) or self._opened(record.robot)
-        file.write(to_line(record) + "\n")
-        file.flush()
-        if record.label in ("ntf", "fault"):
-            os.fsync(file.fileno())
+        with named(self._folder / log_name(record.robot)):
+            file.write(to_line(record) + "\n")
+            file.flush()
+            if record.label in ("ntf", "fault"):
+                os.fsync(file.fileno())
 
     def close(self) -> None:
         """Close all files."""

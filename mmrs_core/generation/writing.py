@@ -16,6 +16,7 @@ from tempfile import mkstemp
 from mmrs_core.contributions.targets import GeneratedFile
 from mmrs_core.errors import InternalError, MmrsError
 from mmrs_core.generation.manifest import Recorded, read_manifest
+from mmrs_core.resources import named
 
 
 def write(files: Iterable[GeneratedFile], directory: Path, *, force: bool = False) -> tuple[Path, ...]:
@@ -86,7 +87,7 @@ def _staged(file: GeneratedFile, directory: Path) -> Path:
     folder = (directory / file.path).parent
     folder.mkdir(parents=True, exist_ok=True)
     handle, name = mkstemp(prefix=".mmrs-", dir=folder)
-    with os.fdopen(handle, "wb") as stream:
+    with named(directory / file.path), os.fdopen(handle, "wb") as stream:
         stream.write(file.content)
     Path(name).chmod(0o644)
     return Path(name)

@@ -13,6 +13,7 @@ from mmrs_core.languages.json_form.text import is_json
 from mmrs_core.languages.json_form.writer import JsonWriter
 from mmrs_core.languages.registry import Registry
 from mmrs_core.languages.xmi.quick_writer import writer_for
+from mmrs_core.resources import named
 
 
 def to_xmi(
@@ -80,7 +81,7 @@ def replace_file(path: Path, data: bytes) -> None:
         raise OSError(fault.errno, fault.strerror, str(path)) from None
     part = Path(name)
     try:
-        with os.fdopen(handle, "wb") as stream:
+        with named(path), os.fdopen(handle, "wb") as stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())

@@ -14,6 +14,7 @@ from mmrs_core.cli.flights.gathering import SIMULATION
 from mmrs_core.cli.protection import ProtectedError
 from mmrs_core.contributions.execution import Sample
 from mmrs_core.mavlink.vehicles import vehicle_class
+from mmrs_core.resources import named
 from mmrs_core.runtime.run import Run
 from mmrs_core.scene import RobotType
 
@@ -54,7 +55,8 @@ def write_boxes(run: Run, program: Program, types: Mapping[str, RobotType], fold
         if track := run.tracks.get(robot.id):
             path = folder / box_name(robot.id)
             lines = _lines(name, robot, track, program, types.get(robot.type_name))
-            path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+            with named(path):
+                path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             written.append(path)
     return tuple(written)
 

@@ -10,6 +10,7 @@ import typer
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.parameters import Assume, Context, Robots, Seed, behaviour_file, robot_files
 from mmrs_core.cli.settings import Json, settings_of
+from mmrs_core.resources import named
 
 if TYPE_CHECKING:
     from mmrs_core.cli.journey import Journey, Workshop
@@ -133,5 +134,6 @@ def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:
     folder.mkdir(parents=True, exist_ok=True)
     contents = ((folder / PAGE, page(picture)), (folder / MAP, map_markup(picture, legend=True) + "\n"))
     for path, content in contents:
-        path.write_text(content, encoding="utf-8")
+        with named(path):
+            path.write_text(content, encoding="utf-8")
     return tuple(path for path, _ in contents)
