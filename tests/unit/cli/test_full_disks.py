@@ -31,7 +31,7 @@ def full(monkeypatch):
 
 
 def test_a_file_that_is_replaced_is_named(full, tmp_path):
-    with pytest.raises(OSError, match="model.xmi") as raised:
+    with pytest.raises(OSError, match=r"model\.xmi") as raised:
         replace_file(tmp_path / "model.xmi", b"x")
     assert raised.value.errno == errno.ENOSPC
     assert list(tmp_path.iterdir()) == []
