@@ -6,6 +6,7 @@ import uuid
 from collections.abc import Callable, Collection, Generator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
+from math import inf
 from pathlib import Path
 
 from mmrs_core.behaviour.program import Program
@@ -23,6 +24,9 @@ from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order,
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.standing import Standing
 from mmrs_core.runtime.terms import Ending, Terms
+
+GATHERING_SECONDS = 0.5
+"""Real seconds for which more is waited for, once something keeps a robot from getting ready."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +125,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         stack.callback(steps.close)
         ending = yield from steps
         if robots and set(ending.absent) == set(robots):
-            id = ending.absent[0]
-            raise _unready(id, ending.faults[id])
+            raise _unready({id: ending.faults[id] for id in ending.absent})
         return ending
 
 
@@ -176,12 +179,18 @@ def _get_ready(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrd
 
 
 def _await_ready(robots: Mapping[str, Backend], clock: RealClock, early: _EarlyOrders) -> None:
-    """Return when all robots are ready, and nothing has gone wrong with one that was so earlier."""
-    unready = set(robots)
+    """Return when all robots are ready, and nothing has gone wrong with one that was so earlier.
+
+    Once something has, the others are waited for a moment, so that all that is wrong is told at once.
+    """
+    unready, told_at = set(robots), inf
     while unready:
-        for id, robot in robots.items():
-            _refuse_fault(id, robot, clock.now())
-        unready = {id for id in unready if not robots[id].finished(clock.now())}
+        now = clock.now()
+        faults = {id: found for id, robot in robots.items() if (found := robot.fault(now)) is not None}
+        told_at = min(told_at, now + GATHERING_SECONDS * clock.speedup) if faults else inf
+        if faults and (now >= told_at or faults.keys() >= unready):
+            raise _unready(faults)
+        unready = {id for id in unready if id in faults or not robots[id].finished(now)}
         early.look(unready)
         if unready:
             clock.sleep_until(clock.now() + PACE)
@@ -192,7 +201,8 @@ def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) 
         while True:
             early.look(())
             for id, robot in robots.items():
-                _refuse_fault(id, robot, venture.clock.now())
+                if (found := robot.fault(venture.clock.now())) is not None:
+                    raise _unready({id: found})
             if not early.held:
                 return
             venture.clock.sleep_until(venture.clock.now() + PACE)
@@ -307,12 +317,10 @@ class _EarlyOrders:
                 order.refuse(id, why)
 
 
-def _refuse_fault(id: str, robot: Backend, now: float) -> None:
-    found = robot.fault(now)
-    if found is not None:
-        raise _unready(id, found)
-
-
-def _unready(id: str, found: Fault) -> MmrsError:
-    message = f"robot '{id}': does not get ready: {found.reason or found.which}"
-    return LinkLostError(message) if found.which == "LINK_LOST" else MmrsError(message)
+def _unready(faults: Mapping[str, Fault]) -> MmrsError:
+    """Return what keeps robots from beginning: all of it, whatever is lost first."""
+    lines = (
+        f"robot '{id}': does not get ready: {found.reason or found.which}" for id, found in faults.items()
+    )
+    lost = any(found.which == "LINK_LOST" for found in faults.values())
+    return (LinkLostError if lost else MmrsError)("; ".join(lines))
