@@ -30,18 +30,9 @@ from .records.recording import Recording
 from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
-from .steps.ending import (
-    CODES,
-    FAILED,
-    HEARD_SECONDS,
-    LEAST_HEARD_SECONDS,
-    LEAST_LISTEN_SECONDS,
-    LISTEN_SECONDS,
-    OK,
-    Crew,
-    Ending,
-)
+from .steps.ending import CODES, FAILED, OK, Crew, Ending
 from .steps.guarding import guarding
+from .steps.hearing import is_heard, listening
 from .steps.obeying import astray, away, came_down
 from .steps.pilot import Pilot
 from .steps.resuming import progress_of
@@ -170,7 +161,7 @@ class Session:
         if crew.link is None:
             return
         crew.say("is told nothing any more: take over by hand; heartbeats go on until its motors are off")
-        limit = crew.desk.clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
+        limit = listening(crew.desk.clock)
         while crew.vehicle.state().armed and crew.link.listening and crew.link.silent_for() < limit:
             crew.obedience.refuse_all("its program itself has failed")
             if shared.abandon.wait(GLANCE_SECONDS):
@@ -207,14 +198,12 @@ class Session:
 
     def _hindrance(self, order: str) -> str:
         """Return what keeps a robot that came down for its battery from obeying; empty: nothing does."""
-        crew, clock = self._crew, self._shared.options.clock
+        crew = self._crew
         if crew.robot.vehicle == "copter" and crew.vehicle.state().armed:
             return "its motors run: somebody else has it"
         if order not in (RESUME, RETURN):
             return ""
-        if crew.link is not None and crew.link.silent_for() > clock.patience(
-            HEARD_SECONDS, LEAST_HEARD_SECONDS
-        ):
+        if crew.link is not None and not is_heard(crew.link):
             return "its vehicle is not heard"
         if order == RETURN:
             return away(crew.robot, crew.vehicle, crew.near_home)

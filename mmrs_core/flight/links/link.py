@@ -7,7 +7,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from math import inf
 from typing import Any, TypeVar
 
@@ -120,15 +119,6 @@ class Link:
     def patience(self) -> float:
         """Return the seconds of the run to wait for an answer: networks do not speed up with simulators."""
         return self.clock.patience(self.retries.answer, min(LEAST_SECONDS, self.retries.answer))
-
-    @property
-    def tries(self) -> int:
-        """Return how often to send at most what is not answered."""
-        return self.retries.tries
-
-    @tries.setter
-    def tries(self, tries: int) -> None:
-        self.retries = replace(self.retries, tries=tries)
 
     @property
     def starts(self) -> int:

@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..clock import Clock
 from ..links.link import Message
 from ..program import Geographic, Place
-from ..services.missions import NAMES
+from ..services.items import NAMES
 from ..vehicles.telemetry import NO_HEADING
 from ..vehicles.trail import place_in
 from ..vehicles.vehicle import State

@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..faults import Refused
 from ..links.link import Link, Message
 from .clearing import break_off, clear, left_of
-from .exchanges import mark_of, words_of
-from .items import FENCE, MISSION, NAMES, NO_FRAME, RALLY, RELATIVE, Item
+from .exchanges import words_of
+from .items import MISSION, NAMES, Item
 from .readback import alike
 from .reading import download
 from .sending import Transfer, send_all
@@ -101,18 +101,3 @@ def _texts(said: deque[Message]) -> str:
     warnings = (str(each.text) for each in said if each.severity <= mavlink.MAV_SEVERITY_WARNING)
     told = dict.fromkeys(text for text in warnings if not text.lower().startswith("prearm"))
     return "".join(f"; it says '{text}'" for text in told)
-
-
-__all__ = [
-    "FENCE",
-    "MISSION",
-    "NAMES",
-    "NO_FRAME",
-    "RALLY",
-    "RELATIVE",
-    "Item",
-    "download",
-    "mark_of",
-    "upload",
-    "verify",
-]

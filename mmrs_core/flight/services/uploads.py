@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..places import at_height
 from ..program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
-from .missions import NO_FRAME, Item
+from .items import NO_FRAME, Item
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from ..policies import COMES_DOWN, NOTHING, OVERTAKES
 from ..program import Robot
 from ..vehicles import modes
 from ..vehicles.vehicle import Vehicle
+from .hearing import is_heard, lately, listening
 from .obeying import obeying, undone
 from .pilot import Pilot
 from .responding import HINDRANCES, comes_down_alone, respond_or_less
@@ -33,10 +34,6 @@ from .watch import Watch
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5
 GLANCE_SECONDS = 0.1
-LISTEN_SECONDS, LEAST_LISTEN_SECONDS = 30.0, 2.0
-"""How long a vehicle is listened for whose link is lost, of the run and real, when nobody else works."""
-
-HEARD_SECONDS, LEAST_HEARD_SECONDS = 3.0, 1.0
 KEPT_UP = (
     "is not ours: heartbeats go on until its motors are off; interrupted again, they end, and the vehicle"
     " does what it does about a lost link, whoever has it"
@@ -263,7 +260,7 @@ class Ending:
             return True
         # A stop from before the link was lost is not one that ends the listening.
         stopped = crew.desk.stop.is_set()
-        limit, told = clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS), False
+        limit, told = listening(clock), False
         until = clock.now() + limit
         try:
             while crew.link.listening and not crew.desk.abandon.is_set():
@@ -294,8 +291,7 @@ class Ending:
 
     def _is_heard(self, link: Link, *, again: bool) -> bool:
         """Return whether a vehicle is heard; `again`: a heartbeat shows in which mode it is by now."""
-        limit = self._crew.desk.clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
-        return (link.since("HEARTBEAT") if again else link.silent_for()) < limit
+        return link.since("HEARTBEAT") < lately(link.clock) if again else is_heard(link)
 
     def _tell_undone(self, fault: Fault, response: str) -> None:
         why = f"{response} cannot be carried out: {fault}"

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from ..clock import Clock
 from ..places import at_height, bearing, distance
 from ..program import Geographic, Look, Place
-from ..services.missions import Item
+from ..services.items import Item
 from ..services.uploads import Uploads
 from .modes import GUIDED, HOLD, LAND, SURFACE
 from .vehicle import State

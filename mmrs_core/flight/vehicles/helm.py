@@ -245,7 +245,7 @@ class Helm:
                 if self._link.wait(self._telemetry.airborne, AFRESH_SECONDS, heard=True):
                     self._follow_climb()
                     return
-                lost = 0 if self._telemetry.armed() else self._link.tries
+                lost = 0 if self._telemetry.armed() else self._link.retries.tries
                 if attempt >= max(TAKE_OFF_TRIES, lost):
                     raise
 

@@ -10,7 +10,8 @@ from ..faults import NO_PROGRESS, Fault, Refused
 from ..links.link import Link
 from ..program import Geographic, Place
 from ..services.commands import command
-from ..services.missions import Item, mark_of
+from ..services.exchanges import mark_of
+from ..services.items import Item
 from ..services.uploads import Uploads
 from . import modes, preparation
 from .corridor import width_for

@@ -12,7 +12,8 @@ from ..links.link import Link
 from ..program import Place
 from ..services import parameters
 from ..services.commands import command
-from ..services.missions import FENCE, MISSION, RALLY, Item, upload, verify
+from ..services.items import FENCE, MISSION, RALLY, Item
+from ..services.missions import upload, verify
 from . import modes
 from .footing import LANDED, aside, there
 from .telemetry import Telemetry

@@ -5,12 +5,7 @@ from __future__ import annotations
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.steps.ending import (
-    HEARD_SECONDS,
-    LEAST_HEARD_SECONDS,
-    LEAST_LISTEN_SECONDS,
-    LISTEN_SECONDS,
-)
+from mmrs_core.flight.steps.hearing import is_heard, listening
 
 
 class Reach:
@@ -25,13 +20,12 @@ class Reach:
     @property
     def is_heard(self) -> bool:
         """Return whether it was heard lately."""
-        limit = self._clock.patience(HEARD_SECONDS, LEAST_HEARD_SECONDS)
-        return self._link.listening and self._link.silent_for() < limit
+        return is_heard(self._link)
 
     def may_come_back(self, lost: Fault) -> bool:
         """Return whether it may still be heard again, for some time after a link was lost or last heard."""
         now = self._clock.now()
         if self._lost is not lost or self.is_heard:
             self._lost = lost
-            self._until = now + self._clock.patience(LISTEN_SECONDS, LEAST_LISTEN_SECONDS)
+            self._until = now + listening(self._clock)
         return now < self._until

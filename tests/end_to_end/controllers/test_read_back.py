@@ -11,6 +11,7 @@ from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import open_port
 from mmrs_core.flight.services import missions
+from mmrs_core.flight.services.items import Item
 from mmrs_core.sitl import Settings, SimulatedVehicle
 
 WAYPOINT, SPEED, VERTEX, RALLY_POINT = 16, 178, 5002, 5100
@@ -35,7 +36,7 @@ def read_back(linked):
     link, vehicle = linked
 
     def verify(kind: int, given, **kept) -> None:
-        home = missions.Item(WAYPOINT, x=423_700_000, y=133_500_000)
+        home = Item(WAYPOINT, x=423_700_000, y=133_500_000)
         items = [home, given] if kind == MISSION else [given]
         missions.upload(link, items, kind)
         store = vehicle.autopilot.stores[kind]
@@ -48,9 +49,7 @@ def read_back(linked):
 @pytest.fixture
 def item():
     """Return a function that makes an item 20.5 m above home."""
-    return lambda command, frame=RELATIVE: missions.Item(
-        command, x=423_701_000, y=133_500_000, z=20.5, frame=frame
-    )
+    return lambda command, frame=RELATIVE: Item(command, x=423_701_000, y=133_500_000, z=20.5, frame=frame)
 
 
 @pytest.mark.parametrize("frame", [RELATIVE, RELATIVE_INT])
@@ -68,7 +67,7 @@ def test_a_height_above_something_else_is_refused(read_back, item, frame, kind, 
 
 @pytest.mark.parametrize("frame", [SEA, RELATIVE, NO_FRAME])
 def test_the_frame_of_an_item_without_a_place_means_nothing(read_back, frame):
-    paced = missions.Item(SPEED, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)
+    paced = Item(SPEED, (1.0, 5.0, -1.0, 0.0), frame=NO_FRAME)
     read_back(MISSION, paced, frame=frame)
 
 

@@ -121,4 +121,4 @@ def test_a_device_is_asked_again_after_a_hold_before_it_counts_as_silent(robot):
     asked = len(made.simulated.received)
     assert fault_of(done) == DEVICE_SILENT
     commands = [name for _, name in made.simulated.received[asked:] if name == "COMMAND_LONG"]
-    assert len(commands) > made.crew.link.tries
+    assert len(commands) > made.crew.link.retries.tries

@@ -8,6 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight import Geographic
 from mmrs_core.flight.faults import Fault, Refused
+from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.helm import Helm
@@ -160,7 +161,7 @@ def test_a_take_off_whose_first_answer_was_lost_is_no_refusal(steered):
 
 def test_a_take_off_is_asked_for_as_often_as_anything_where_the_vehicle_disarms_itself_before(steered):
     helm, _, vehicle, wire = steered(c22=mavlink.MAV_RESULT_FAILED)
-    helm._link.tries, asked = 5, []
+    helm._link.retries, asked = Retries(tries=5), []
 
     def disarm_itself(message):
         if message.get_type() == "COMMAND_LONG" and message.command == mavlink.MAV_CMD_NAV_TAKEOFF:

@@ -7,6 +7,7 @@ from flight_crew import HOME, manned
 from patience import until
 
 from mmrs_core.flight.faults import Refused
+from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.vehicles.footing import aside, footing
@@ -85,7 +86,7 @@ def test_a_place_near_home_is_home_and_the_vehicle_is_told_nothing(perched):
 )
 def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
     made = perched(restarted=True, **settings)
-    made.crew.link.tries = 2
+    made.crew.link.retries = Retries(tries=2)
     with pytest.raises(Refused, match="bring it home, and begin anew") as refused:
         made.crew.vehicle.take_off(16.0)
     assert f"it takes off 72 m from its home, and the vehicle does not keep that for its own ({why}" in str(
@@ -97,7 +98,7 @@ def test_one_that_does_not_take_it_does_not_take_off(perched, settings, why):
 def test_one_that_agrees_and_keeps_another_does_not_take_off(perched, monkeypatch):
     monkeypatch.setitem(commands._HANDLERS, SET_HOME, lambda pilot, params: commands.ACCEPTED)
     made = perched(restarted=True)
-    made.crew.link.tries = 2
+    made.crew.link.retries = Retries(tries=2)
     with pytest.raises(Refused, match="the vehicle does not confirm it"):
         made.crew.vehicle.take_off(16.0)
     assert not made.simulated.autopilot.armed

@@ -14,7 +14,9 @@ from mmrs_core.flight.faults import LINK_LOST, Fault, Refused
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services import parameters
 from mmrs_core.flight.services.commands import command
-from mmrs_core.flight.services.missions import FENCE, Item, download, upload
+from mmrs_core.flight.services.items import FENCE, Item
+from mmrs_core.flight.services.missions import upload
+from mmrs_core.flight.services.reading import download
 from mmrs_core.flight.vehicles.px4 import Px4
 from mmrs_core.flight.vehicles.telemetry import Telemetry
 
@@ -81,7 +83,7 @@ def test_a_vehicle_that_is_heard_and_does_not_answer_is_given_up_after_the_tries
         link.guard = lost_after(link, 60.0)
         with suppress(Refused):
             EXCHANGES[exchange](link)
-        assert 0 < len(wire.sent) <= link.tries * link.tries
+        assert 0 < len(wire.sent) <= link.retries.tries * link.retries.tries
 
 
 def test_an_exchange_goes_on_when_the_vehicle_is_back_within_the_seconds_of_the_policy():
@@ -98,7 +100,7 @@ def test_an_exchange_goes_on_when_the_vehicle_is_back_within_the_seconds_of_the_
         link.guard = lost_after(link, 20.0)
         command(link, ARM, 1.0)
         assert parameters.write(link, "A", 1.0)
-        assert len(wire.of("COMMAND_LONG")) > link.tries
+        assert len(wire.of("COMMAND_LONG")) > link.retries.tries
 
 
 def test_time_in_which_the_vehicle_is_silent_is_no_time_that_it_takes():

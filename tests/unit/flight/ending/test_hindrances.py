@@ -7,6 +7,7 @@ from flight_crew import HOME, in_background
 from patience import until
 
 from mmrs_core.flight.faults import Fault, Stopped
+from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.orders.orders import Order
 from mmrs_core.flight.program import Policy
 
@@ -35,7 +36,7 @@ def lose_position_unanswered(made) -> None:
 def heed_no_modes(made) -> None:
     """Have the vehicle neither take nor answer any other mode, which it is then told only twice."""
     made.simulated.faults.silence(SET_MODE)
-    made.crew.link.tries = 2
+    made.crew.link.retries = Retries(tries=2)
 
 
 def test_a_return_that_cannot_be_steered_ends_on_the_ground_where_it_is(halted):
