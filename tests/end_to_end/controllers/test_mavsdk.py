@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import queue
 import subprocess
 import sys
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from lossy_proxy import LossyProxy
+from peer_lines import said_in
 
 from mmrs_core import flight
 from mmrs_core.flight.clock import Clock
@@ -59,11 +59,12 @@ class Peer:
         self.process.stdout.close()
 
     def next(self):
-        line = ""
-        while not line.startswith("peer "):
+        said = None
+        while said is None:
             line = self.lines.get(timeout=60.0)
             print(line, end="")
-        return json.loads(line.removeprefix("peer "))
+            said = said_in(line)
+        return said
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from math import isnan
 from pathlib import Path
 
 import pytest
+from peer_lines import said_in
 
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
@@ -43,7 +44,7 @@ def handed_over(paths, links):
     command = [sys.executable, str(IMPORTER), port, *map(str, paths)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
-    told = [json.loads(line[5:]) for line in done.stdout.splitlines() if line.startswith("peer ")]
+    told = [said for line in done.stdout.splitlines() if (said := said_in(line)) is not None]
     return dict(zip([path.name for path in paths], told, strict=True))
 
 

@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import cos, radians, sin
 from pathlib import Path
 
+from peer_lines import said_in
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyproj import Geod
 
@@ -119,8 +120,8 @@ class OfMavsdk:
 
     def _read(self) -> None:
         for line in self._process.stdout:
-            if line.startswith("peer "):
-                self._said.append(json.loads(line.removeprefix("peer ")))
+            if (said := said_in(line)) is not None:
+                self._said.append(said)
                 self._ready.set()
 
     def __exit__(self, *_):
