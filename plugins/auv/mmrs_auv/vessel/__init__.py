@@ -1,4 +1,6 @@
-"""The control and mission layers of an underwater vehicle, standalone: numpy, python-can and cantools, no MMRS.
+"""The control and mission layers of an underwater vehicle, standalone: no MMRS.
+
+They need numpy, python-can and cantools.
 
 ``sheet.py`` says what a vehicle is made of, ``wire/`` what is said on its CAN bus and how, ``body/`` is
 the vehicle in simulation, ``control/`` reads sensors and drives thrusters, ``movement/`` brings the

@@ -40,7 +40,8 @@ class Sheet:
         robot: identifier in the behaviour.
         thrusters: in the order of their numbers on the bus.
         length, width, height: of the hull, metres.
-        mass: kilograms in air. weight_in_water: kilograms of apparent mass when immersed, negative: it floats.
+        mass: kilograms in air.
+        weight_in_water: kilograms of apparent mass when immersed, negative: it floats.
         drop_weight: kilograms of ballast that it can release to come up; 0: none.
         speed: metres per second that it can do forward, at most. max_depth: metres.
         battery: joules when full; hotel: watts that all but the thrusters draw.

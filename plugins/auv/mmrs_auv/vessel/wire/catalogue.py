@@ -71,6 +71,23 @@ def _unsigned(name: str, bits: int, scale: float, unit: str, comment: str = "") 
     return Field(name, bits, False, scale, unit, 0.0, (2**bits - 1) * scale, comment=comment)
 
 
+def _body(bits: int, scale: float, unit: str) -> tuple[Field, ...]:
+    return tuple(_signed(name, bits, scale, unit) for name in ("Surge", "Sway", "Heave"))
+
+
+def _turns(scale: float, unit: str) -> tuple[Field, ...]:
+    return tuple(_signed(name, 16, scale, unit) for name in ("Roll", "Pitch", "Yaw"))
+
+
+def _place() -> tuple[Field, ...]:
+    return (_signed("North", 24, 0.001, "m"), _signed("East", 24, 0.001, "m"))
+
+
+def _angles() -> tuple[Field, ...]:
+    leaning = tuple(_signed(name, 16, 0.01, "deg") for name in ("Roll", "Pitch"))
+    return (*leaning, _unsigned("Heading", 16, 0.01, "deg"))
+
+
 def _named(name: str, bits: int, *names: str) -> Field:
     return Field(name, bits, False, 1.0, "", 0.0, float(2**bits - 1), names)
 
@@ -83,7 +100,8 @@ MODES = ("IDLE", "HOLD", "GO_TO", "TURN", "SURFACE", "SEARCH")
 PROGRESS = ("NONE", "ACTIVE", "REACHED", "FAILED")
 DRIVES = ("OFF", "RUNS", "WATCHDOG", "FAULT")
 REASONS = (
-    "NONE", "ORDERED", "COMMANDS_SILENT", "SENSORS_SILENT", "LEAK", "THRUSTER_FAULT", "TOO_DEEP", "BATTERY", "POLICY",
+    "NONE", "ORDERED", "COMMANDS_SILENT", "SENSORS_SILENT", "LEAK", "THRUSTER_FAULT", "TOO_DEEP", "BATTERY",
+    "POLICY",
 )  # fmt: skip
 
 COMMON = (
@@ -94,57 +112,49 @@ COMMON = (
     Message(0x080, "WrenchForce", MOVEMENT,
             (_signed("Surge", 16, 0.02, "N"), _signed("Sway", 16, 0.02, "N"), _signed("Heave", 15, 0.02, "N"),
              _flag("Enable")), COMMAND_PERIOD, comment="force on the body; obeyed when its moment comes"),
-    Message(0x081, "WrenchMoment", MOVEMENT,
-            (_signed("Roll", 16, 0.01, "N.m"), _signed("Pitch", 16, 0.01, "N.m"), _signed("Yaw", 16, 0.01, "N.m")),
+    Message(0x081, "WrenchMoment", MOVEMENT, _turns(0.01, "N.m"),
             COMMAND_PERIOD, comment="moment on the body; its counter is that of its force"),
     Message(0x200, "Pressure", VEHICLE,
             (_unsigned("Pressure", 32, 1.0, "Pa", "absolute"), _signed("Temperature", 16, 0.01, "degC")),
             SENSOR_PERIOD),
-    Message(0x201, "Rates", VEHICLE,
-            (_signed("Roll", 16, 0.01, "deg/s"), _signed("Pitch", 16, 0.01, "deg/s"), _signed("Yaw", 16, 0.01, "deg/s")),
-            SENSOR_PERIOD),
-    Message(0x202, "Attitude", VEHICLE,
-            (_signed("Roll", 16, 0.01, "deg"), _signed("Pitch", 16, 0.01, "deg"), _unsigned("Heading", 16, 0.01, "deg")),
-            SENSOR_PERIOD),
-    Message(0x203, "Acceleration", VEHICLE,
-            (_signed("Surge", 16, 0.001, "m/s2"), _signed("Sway", 16, 0.001, "m/s2"), _signed("Heave", 16, 0.001, "m/s2")),
-            SENSOR_PERIOD),
+    Message(0x201, "Rates", VEHICLE, _turns(0.01, "deg/s"), SENSOR_PERIOD),
+    Message(0x202, "Attitude", VEHICLE, _angles(), SENSOR_PERIOD),
+    Message(0x203, "Acceleration", VEHICLE, _body(16, 0.001, "m/s2"), SENSOR_PERIOD),
     Message(0x204, "GroundSpeed", VEHICLE,
-            (_signed("Surge", 15, 0.001, "m/s"), _signed("Sway", 15, 0.001, "m/s"), _signed("Heave", 15, 0.001, "m/s"),
-             _flag("Valid")), 0.2, comment="of the Doppler log, over ground"),
+            (*_body(15, 0.001, "m/s"), _flag("Valid")), 0.2, comment="of the Doppler log, over ground"),
     Message(0x205, "Altitude", VEHICLE, (_unsigned("Altitude", 16, 0.01, "m"), _flag("Valid")), 0.2,
             comment="above the bottom"),
-    Message(0x206, "Fix", VEHICLE, (_signed("North", 24, 0.001, "m"), _signed("East", 24, 0.001, "m")), 1.0,
+    Message(0x206, "Fix", VEHICLE, _place(), 1.0,
             comment="of the satellite receiver, at the surface only"),
     Message(0x207, "Health", VEHICLE,
             (_flag("Leak"), _unsigned("Charge", 15, 0.0001, "", "part of the battery that is left"),
-             _unsigned("Power", 16, 0.1, "W"), _unsigned("SonarRange", 16, 0.01, "m", "ahead; 655.35: nothing seen")), 0.2),
-    Message(0x300, "Position", SENSORS, (_signed("North", 24, 0.001, "m"), _signed("East", 24, 0.001, "m")), STATE_PERIOD),
+             _unsigned("Power", 16, 0.1, "W"),
+             _unsigned("SonarRange", 16, 0.01, "m", "ahead; 655.35: nothing seen")), 0.2),
+    Message(0x300, "Position", SENSORS, _place(), STATE_PERIOD),
     Message(0x301, "Depth", SENSORS,
-            (_signed("Depth", 24, 0.001, "m"), _unsigned("Uncertainty", 16, 0.01, "m", "of the position, one sigma"),
+            (_signed("Depth", 24, 0.001, "m"),
+             _unsigned("Uncertainty", 16, 0.01, "m", "of the position, one sigma"),
              _flag("Trusted", "depth, heading and position may be relied on")), STATE_PERIOD),
-    Message(0x302, "Pose", SENSORS,
-            (_signed("Roll", 16, 0.01, "deg"), _signed("Pitch", 16, 0.01, "deg"), _unsigned("Heading", 16, 0.01, "deg")),
-            STATE_PERIOD),
-    Message(0x303, "Velocity", SENSORS,
-            (_signed("Surge", 16, 0.001, "m/s"), _signed("Sway", 16, 0.001, "m/s"), _signed("Heave", 16, 0.001, "m/s")),
-            STATE_PERIOD),
-    Message(0x304, "Turning", SENSORS,
-            (_signed("Roll", 16, 0.01, "deg/s"), _signed("Pitch", 16, 0.01, "deg/s"), _signed("Yaw", 16, 0.01, "deg/s")),
-            STATE_PERIOD),
-    Message(0x400, "GoalPlace", DECISION, (_signed("North", 24, 0.001, "m"), _signed("East", 24, 0.001, "m")), 0.2,
+    Message(0x302, "Pose", SENSORS, _angles(), STATE_PERIOD),
+    Message(0x303, "Velocity", SENSORS, _body(16, 0.001, "m/s"), STATE_PERIOD),
+    Message(0x304, "Turning", SENSORS, _turns(0.01, "deg/s"), STATE_PERIOD),
+    Message(0x400, "GoalPlace", DECISION, _place(), 0.2,
             comment="obeyed when its pose comes"),
     Message(0x401, "GoalPose", DECISION,
             (_unsigned("Depth", 16, 0.01, "m"), _unsigned("Heading", 16, 0.01, "deg"),
-             _unsigned("Speed", 8, 0.02, "m/s"), _named("Mode", 3, *MODES), _flag("FaceAlong"), _unsigned("Goal", 4, 1.0, "")),
+             _unsigned("Speed", 8, 0.02, "m/s"), _named("Mode", 3, *MODES), _flag("FaceAlong"),
+             _unsigned("Goal", 4, 1.0, "")),
             0.2, comment="repeated; Goal changes when another goal begins"),
     Message(0x402, "Progress", MOVEMENT,
-            (_unsigned("Goal", 4, 1.0, ""), _named("State", 2, *PROGRESS), _unsigned("Distance", 16, 0.01, "m")), 0.1),
+            (_unsigned("Goal", 4, 1.0, ""), _named("State", 2, *PROGRESS),
+             _unsigned("Distance", 16, 0.01, "m")), 0.1),
     Message(0x500, "DeviceCommand", DECISION,
-            (_unsigned("Device", 8, 1.0, ""), _unsigned("Action", 8, 1.0, ""), _signed("Parameter", 24, 0.001, ""),
-             _unsigned("Request", 8, 1.0, "")), None, comment="repeated until its status comes"),
+            (_unsigned("Device", 8, 1.0, ""), _unsigned("Action", 8, 1.0, ""),
+             _signed("Parameter", 24, 0.001, ""), _unsigned("Request", 8, 1.0, "")), None,
+            comment="repeated until its status comes"),
     Message(0x501, "DeviceStatus", VEHICLE,
-            (_unsigned("Device", 8, 1.0, ""), _unsigned("Request", 8, 1.0, ""), _named("State", 2, *PROGRESS)), None),
+            (_unsigned("Device", 8, 1.0, ""), _unsigned("Request", 8, 1.0, ""),
+             _named("State", 2, *PROGRESS)), None),
 )  # fmt: skip
 
 BEATS = tuple(
