@@ -7,9 +7,8 @@ from math import cos, radians, sin
 from .vessel.sheet import Sheet, Thruster, Vector
 
 
-def thruster(
-    name: str, position: tuple[float, float, float], direction: tuple[float, float, float]
-) -> Thruster:
+def thruster(name: str, position: Vector, direction: Vector) -> Thruster:
+    """Return a thruster of 18 N, for short 35 N."""
     return Thruster(name, position, direction, 18.0, 35.0, 90.0, 230.0, 100.0)
 
 
