@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import inf
 
 from .sheet import Sheet
 
@@ -11,8 +12,7 @@ from .sheet import Sheet
 class Instruments:
     """Standard deviations of what instruments say, for those that fuse it and those that simulate it.
 
-    Each may be overridden by `Sheet.extra` under its name with the first underscore as a point:
-    `pressure.noise`, `heading.bias`.
+    Each may be overridden by `Sheet.extra` under its name.
 
     Attributes:
         pressure_noise: pascals. pressure_air: of the air at the surface, pascals absolute.
@@ -51,9 +51,10 @@ def instruments_of(sheet: Sheet) -> Instruments:
     """
     given: dict[str, float] = {}
     for each in fields(Instruments):
-        key = each.name.replace("_", ".", 1)
-        if key in sheet.extra:
-            if not sheet.extra[key] >= 0.0:
-                raise ValueError(f"{sheet.robot}: {key} is {sheet.extra[key]:g}, and is to be 0 or more")
-            given[each.name] = sheet.extra[key]
+        value = sheet.extra.get(each.name)
+        if value is None:
+            continue
+        if not 0.0 <= value < inf:
+            raise ValueError(f"{sheet.robot}: {each.name} is {value:g}, and is to be 0 or more")
+        given[each.name] = value
     return Instruments(**given)
