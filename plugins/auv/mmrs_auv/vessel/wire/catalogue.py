@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
+from ..refusals import refuse
 from ..sheet import Sheet, Thruster
 
 VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION = "Vehicle", "Sensors", "Actuators", "Movement", "Decision"
@@ -17,7 +18,6 @@ NODES = (VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION)
 
 CLOCK_ID, EMERGENCY_ID = 0x001, 0x010
 COMMAND_BASE, STATUS_BASE, HEARTBEAT_BASE = 0x100, 0x140, 0x700
-MOST_THRUSTERS = 32
 
 COMMAND_PERIOD, STATUS_PERIOD, SENSOR_PERIOD, STATE_PERIOD, BEAT_PERIOD = 0.05, 0.1, 0.05, 0.05, 0.5
 SEQUENCE, CHECK = "Sequence", "Check"
@@ -114,6 +114,10 @@ COMMON = (
              _flag("Enable")), COMMAND_PERIOD, comment="force on the body; obeyed when its moment comes"),
     Message(0x081, "WrenchMoment", MOVEMENT, _turns(0.01, "N.m"),
             COMMAND_PERIOD, comment="moment on the body; its counter is that of its force"),
+    Message(0x0A0, "Reach", ACTUATORS,
+            (*(_flag(degree) for degree in ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")),
+             _flag("Limited", "the wrench asks for more than thrusters may give"), _unsigned("Thrusters", 6, 1.0, "", "that work")),
+            STATUS_PERIOD, comment="degrees of freedom that the thrusters that work can push along"),
     Message(0x200, "Pressure", VEHICLE,
             (_unsigned("Pressure", 32, 1.0, "Pa", "absolute"), _signed("Temperature", 16, 0.01, "degC")),
             SENSOR_PERIOD),
@@ -169,10 +173,9 @@ def messages_of(sheet: Sheet) -> tuple[Message, ...]:
     """Return all messages of a vehicle, by identifier.
 
     Raises:
-        ValueError: it has more thrusters than there are identifiers for.
+        SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
     """
-    if len(sheet.thrusters) > MOST_THRUSTERS:
-        raise ValueError(f"{len(sheet.thrusters)} thrusters: there are identifiers for {MOST_THRUSTERS}")
+    refuse(sheet)
     own = [
         message
         for number, thruster in enumerate(sheet.thrusters)
