@@ -38,7 +38,7 @@ def bounded_least_squares(matrix: Array, wanted: Array, low: Array, high: Array,
     scale = float(hessian.diagonal().max(initial=0.0)) or 1.0
     hessian = hessian + tiny * scale * np.eye(count)
     gradient = matrix.T @ wanted
-    x: Array = np.linalg.solve(hessian, gradient)
+    x = np.asarray(np.linalg.solve(hessian, gradient), np.float64)
     if np.all(x >= low) and np.all(x <= high):
         return x
     x = np.clip(x, low, high)

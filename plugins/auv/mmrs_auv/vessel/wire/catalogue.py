@@ -7,11 +7,15 @@ on the bus. Every message carries a counter and a check over its identifier and 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
+from typing import TypeVar
 
 from ..refusals import refuse
 from ..sheet import Sheet, Thruster
+
+Kind = TypeVar("Kind")
 
 VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION = "Vehicle", "Sensors", "Actuators", "Movement", "Decision"
 NODES = (VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION)
@@ -116,7 +120,8 @@ COMMON = (
             COMMAND_PERIOD, comment="moment on the body; its counter is that of its force"),
     Message(0x0A0, "Reach", ACTUATORS,
             (*(_flag(degree) for degree in ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")),
-             _flag("Limited", "the wrench asks for more than thrusters may give"), _unsigned("Thrusters", 6, 1.0, "", "that work")),
+             _flag("Limited", "the wrench asks for more than thrusters may give"),
+             _unsigned("Thrusters", 6, 1.0, "", "that work")),
             STATUS_PERIOD, comment="degrees of freedom that the thrusters that work can push along"),
     Message(0x200, "Pressure", VEHICLE,
             (_unsigned("Pressure", 32, 1.0, "Pa", "absolute"), _signed("Temperature", 16, 0.01, "degC")),
@@ -142,6 +147,9 @@ COMMON = (
     Message(0x302, "Pose", SENSORS, _angles(), STATE_PERIOD),
     Message(0x303, "Velocity", SENSORS, _body(16, 0.001, "m/s"), STATE_PERIOD),
     Message(0x304, "Turning", SENSORS, _turns(0.01, "deg/s"), STATE_PERIOD),
+    Message(0x305, "Current", SENSORS,
+            (_signed("North", 16, 0.001, "m/s"), _signed("East", 16, 0.001, "m/s")), 0.2,
+            comment="of the water over ground, as far as it is known"),
     Message(0x400, "GoalPlace", DECISION, _place(), 0.2,
             comment="obeyed when its pose comes"),
     Message(0x401, "GoalPose", DECISION,
@@ -167,6 +175,16 @@ BEATS = tuple(
              _named("Reason", 8, *REASONS)), BEAT_PERIOD)
     for number, node in enumerate(NODES)
 )  # fmt: skip
+
+
+def by_id(named: Mapping[str, Kind]) -> dict[int, Kind]:
+    """Return what belongs to messages that every vehicle has, by their identifiers instead of their names.
+
+    Raises:
+        KeyError: there is no such message.
+    """
+    ids = {message.name: message.id for message in (*COMMON, *BEATS)}
+    return {ids[name]: each for name, each in named.items()}
 
 
 def messages_of(sheet: Sheet) -> tuple[Message, ...]:

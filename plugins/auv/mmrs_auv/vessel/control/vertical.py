@@ -1,0 +1,68 @@
+"""Depth and its rate from pressure, and from the Doppler log where it has the bottom."""
+
+from __future__ import annotations
+
+from ..body.hydrodynamics import GRAVITY
+from ..instruments import Instruments
+from ..sheet import Sheet
+from .plausibility import Channel
+
+DEPTH_GAIN, RATE_GAIN, LOG_GAIN = 0.25, 0.04, 0.4
+"""Parts of a residual taken over: of depth into depth and (per second) rate, of the log's into rate."""
+
+STEEPEST = 3.0
+"""Metres per second that no vehicle sinks or rises."""
+
+GIVE_WAY = 2.0
+"""Seconds without a plausible pressure after which any is taken that is not frozen."""
+
+
+class Vertical:
+    """How deep the vehicle is, metres, and at what rate it sinks, metres per second.
+
+    Attributes:
+        depth: positive below the surface.
+        rate: positive when it sinks.
+    """
+
+    def __init__(self, sheet: Sheet, instruments: Instruments) -> None:
+        self.depth = sheet.home[2]
+        self.rate = 0.0
+        self._per_metre = sheet.water_density * GRAVITY
+        self._air = instruments.pressure_air
+        self._noise = instruments.pressure_noise / self._per_metre
+        deepest = self._air + self._per_metre * (2.0 * sheet.max_depth + 10.0)
+        self.pressure = Channel(0.9 * self._air, deepest)
+        self._rate_at: float | None = None
+
+    def advance(self, acceleration: float, period: float) -> None:
+        """Let time go by, seconds, with an acceleration down as reckoned from thrust."""
+        self.rate = min(max(self.rate + acceleration * period, -STEEPEST), STEEPEST)
+        self.depth += self.rate * period
+
+    def take_pressure(self, pressure: float, now: float) -> None:
+        """Take an absolute pressure, pascals."""
+        depth = (pressure - self._air) / self._per_metre
+        age = self.pressure.age(now)
+        sure = self._rate_at is not None and now - self._rate_at < 0.5
+        allowed = 6.0 * self._noise + (0.15 + 0.3 * age if sure else 0.15 + STEEPEST * age)
+        gives_way = age >= GIVE_WAY
+        residual = depth - self.depth
+        if not self.pressure.judge(
+            (pressure,), now, residual=residual, allowed=float("inf") if gives_way else allowed
+        ):
+            return
+        if gives_way:
+            self.depth, self.rate = depth, 0.0
+            return
+        self.depth += DEPTH_GAIN * residual
+        self.rate += RATE_GAIN * residual / max(age, 0.02)
+
+    def take_rate(self, rate: float, now: float) -> None:
+        """Take a rate of sinking that the log says, metres per second."""
+        self._rate_at = now
+        self.rate += LOG_GAIN * (rate - self.rate)
+
+    def trusted(self, now: float) -> bool:
+        """Tell whether the depth may be relied on."""
+        return self.pressure.trusted(now)
