@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import TYPE_CHECKING
 
+from ..refusals import MOST_THRUSTERS
 from ..sheet import Sheet
-from .catalogue import ACTUATORS, BEAT_PERIOD, EMERGENCY_ID, NODES, Message, messages_of
+from .catalogue import COMMAND_BASE, EMERGENCY_ID, NODES, Message, messages_of
 from .layout import Layout, Slot, layout_of
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def _senders(message: Message) -> list[str]:
 
 def _patience(message: Message, sheet: Sheet) -> float:
     """Return the seconds without this message after which a thruster's drive stops; 0: it goes by another."""
-    return sheet.watchdog if message.sender == ACTUATORS and message.period != BEAT_PERIOD else 0.0
+    return sheet.watchdog if COMMAND_BASE <= message.id < COMMAND_BASE + MOST_THRUSTERS else 0.0
 
 
 def _signal(slot: Slot, message: Message) -> Signal:
