@@ -37,10 +37,11 @@ class Drives(Protocol):
 class Actuators:
     """Shares the wrench of movement among the thrusters that work, within what they may give.
 
-    It gives none before a state was trusted. From the first wrench obeyed on it gives zero thrust, and says so
-    to every drive, when no wrench that is complete and valid came in `failsafe.COMMANDS_SILENT`; and for good, having sent an emergency that releases the drop weight, when
-    movement or the sensor controller are gone, when the state is not to be trusted, when water is inside, or
-    when it is too deep. An emergency of any other node counts as its own.
+    It gives none before a state was trusted. From the first wrench obeyed on it gives zero thrust, and says
+    so to every drive, when no wrench that is complete and valid came in `failsafe.COMMANDS_SILENT`; and for
+    good, having sent an emergency that releases the drop weight, when movement or the sensor controller are
+    gone, when the state is not to be trusted, when water is inside, or when it is too deep. An emergency of
+    any other node counts as its own.
 
     Args:
         driver: of thrusters; by default the messages of the vehicle's own bus.

@@ -13,7 +13,7 @@ COMMANDS_SILENT = 0.3
 """Seconds without a wrench, complete and valid, after which thrust is zero; it goes on when one comes."""
 
 COMMANDS_GONE = 2.0
-"""Seconds without a wrench after which the actuator controller gives up the dive: an emergency, weight gone."""
+"""Seconds without a wrench after which the actuator controller gives up the dive: emergency, weight gone."""
 
 STATE_SILENT = 0.5
 """Seconds without a valid depth of the sensor controller after which it does."""
