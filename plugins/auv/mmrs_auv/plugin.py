@@ -1,14 +1,14 @@
-"""What this plug-in contributes: the metamodel, how underwater vehicles move, what must hold."""
+"""What this plug-in contributes: metamodels, how underwater vehicles move, what they do, what must hold."""
 
 from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
 
-from mmrs_auv.names import AUV, AUV_MOVEMENT
+from mmrs_auv import names
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.contributions.rules import RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
@@ -16,9 +16,12 @@ from mmrs_core.languages.registry import MetamodelSource
 
 @hookimpl
 def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
-    """Contribute underwater vehicles to the Robot Language."""
-    ecore = Path(str(files("mmrs_auv"))) / "metamodels" / "auv.ecore"
-    return (MetamodelSource(AUV, ecore, "mmrs-auv"),)
+    """Contribute underwater vehicles to the Robot Language, and what they do to the mission layer."""
+    folder = Path(str(files("mmrs_auv"))) / "metamodels"
+    return (
+        MetamodelSource(names.AUV, folder / "auv.ecore", "mmrs-auv"),
+        MetamodelSource(names.AUV_TASKS, folder / "auv-tasks.ecore", "mmrs-auv"),
+    )
 
 
 @hookimpl
@@ -31,7 +34,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
-    """Contribute what mends thrusters whose figures are exchanged."""
+    """Contribute what mends figures that are exchanged, and overlaps in per cent."""
     from mmrs_auv.fixes import FIXES
 
     return FIXES
@@ -46,6 +49,29 @@ def mmrs_robot_kinds() -> tuple[RobotKind, ...]:
 
 
 @hookimpl
+def mmrs_rules() -> tuple[Rule, ...]:
+    """Contribute what tasks under water are made of."""
+    from mmrs_auv.tasks.objects import OBJECT_RULES
+    from mmrs_auv.tasks.pipelines import PIPELINE_RULE
+    from mmrs_auv.tasks.profiles import YO_YO_RULE
+    from mmrs_auv.tasks.surfacing import SURFACE_RULE
+    from mmrs_auv.tasks.surveys import SURVEY_RULE
+
+    return (SURVEY_RULE, YO_YO_RULE, *OBJECT_RULES, PIPELINE_RULE, SURFACE_RULE)
+
+
+@hookimpl
 def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
-    """Contribute how the movement of underwater vehicles looks on maps."""
-    return (MapSymbol(AUV_MOVEMENT, "underwater vehicle", "#0b7a75", "⚓", ("payloadWeight", "lifetime")),)
+    """Contribute how underwater vehicles, their tasks and pipelines look on maps."""
+    return (
+        MapSymbol(names.AUV_MOVEMENT, "underwater vehicle", "#0b7a75", "⚓", ("payloadWeight", "lifetime")),
+        MapSymbol(names.PIPELINE, "pipeline", "#6b4f1d", "═", ("diameter",)),
+        MapSymbol(
+            names.DEPTH_HOLD_SURVEY_TASK, "sonar survey", "#1c5d99", "☰", ("depth", "swath", "overlap")
+        ),
+        MapSymbol(names.YO_YO_TASK, "yo-yo", "#2b7a4b", "∿", ("minDepth", "maxDepth", "pitch")),
+        MapSymbol(names.INSPECT_OBJECT_TASK, "inspect", "#a0235d", "◌", ("object", "distance", "views")),
+        MapSymbol(names.ALIGN_TASK, "align", "#4b3f72", "⌖", ("object", "distance", "bearing")),
+        MapSymbol(names.FOLLOW_PIPELINE_TASK, "pipeline run", "#8a4b08", "⇶", ("pipeline", "height")),
+        MapSymbol(names.SURFACE_TASK, "surface", "#37474f", "⤒", ("duration",)),
+    )
