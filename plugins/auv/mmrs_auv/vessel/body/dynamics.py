@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import ceil, sqrt
 from typing import TypeAlias
 
 from ..sheet import Sheet, Vector
@@ -25,7 +25,9 @@ State: TypeAlias = tuple[
 """North, east, depth; quaternion; surge, sway, heave through the water, m/s; roll, pitch, yaw, rad/s."""
 
 _DRAWS_AIR = 0.1  # metres of depth over which a thruster gains its thrust
-_GROUND_PULSE, _GROUND_LOSS, _GRIP, _SLIP = 20.0, 0.7, 0.4, 0.01
+_GROUND_PULSE, _GROUND_LOSS = 20.0, 0.3  # rad/s and damping ratio of a hull that lies on the bottom
+_GRIP, _SLIP = 0.4, 0.05  # friction there, and the metres per second from which it is full
+_STIFF = 1.0  # part of a speed that drag may take in one step
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +61,16 @@ class Body:
 
 
 def body_of(sheet: Sheet, current: tuple[float, float], bottom: float, density: float | None = None) -> Body:
-    """Return a vehicle in water that flows so, m/s north and east, above a bottom at that depth."""
+    """Return a vehicle in water that flows so, m/s north and east, above a bottom at that depth.
+
+    Raises:
+        ValueError: a dimension, mass, density or coefficient can't be.
+    """
     hull = hull_of(sheet)
     jets = tuple(_jet(each.position, each.direction) for each in sheet.thrusters)
     water = sheet.water_density if density is None else density
+    if not water > 0.0:
+        raise ValueError(f"{sheet.robot}: the density of its water is {water:g}, and has to be positive")
     reach = max([sqrt(_dot(jet.position, jet.position)) for jet in jets], default=0.0)
     return Body(
         hull=hull,
@@ -107,11 +115,21 @@ def over_ground(body: Body, state: State) -> Vector:
 
 
 def step(body: Body, state: State, thrusts: Sequence[Sequence[float]], duration: float) -> State:
-    """Return the state after so many seconds: classic Runge-Kutta of order four.
+    """Return the state after so many seconds, in shorter steps if drag is so great that it has to be.
 
     Args:
         thrusts: of all thrusters, newtons, at the beginning, in the middle and at the end.
     """
+    parts = ceil(_decay(body, state) * duration / _STIFF)
+    if parts <= 1:
+        return runge_kutta(body, state, thrusts, duration)
+    for _ in range(parts):
+        state = runge_kutta(body, state, (thrusts[1], thrusts[1], thrusts[1]), duration / parts)
+    return state
+
+
+def runge_kutta(body: Body, state: State, thrusts: Sequence[Sequence[float]], duration: float) -> State:
+    """Return the state after one step of the classic method of order four; see `step`."""
     half, sixth = duration / 2.0, duration / 6.0
     first = slopes(body, state, thrusts[0])
     second = slopes(body, _moved(state, first, half), thrusts[1])
@@ -284,6 +302,18 @@ def _ground(body: Body, state: State, rows: Rows, extent: float, pressed: float)
 
 def _stiffness(body: Body) -> float:
     return _GROUND_PULSE**2 * body.inertia[2]
+
+
+def _decay(body: Body, state: State) -> float:
+    """Return the greatest part of a speed that drag takes per second."""
+    most = 0.0
+    for linear, quadratic, inertia, speed in zip(
+        body.hull.linear, body.hull.quadratic, body.inertia, state[7:], strict=True
+    ):
+        rate = (linear + 2.0 * quadratic * abs(speed)) / inertia
+        if rate > most:
+            most = rate
+    return most
 
 
 def _moved(state: State, slope: State, duration: float) -> State:

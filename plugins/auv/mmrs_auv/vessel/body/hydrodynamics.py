@@ -96,6 +96,10 @@ def hull_of(sheet: Sheet) -> Hull:
     added = added_mass((half[0] * swell, half[1] * swell, half[2] * swell), sheet.water_density)
     masses = _said(sheet, "added_mass", added[:3], AXES[:3])
     mean, bare = sum(masses) / 3.0, min(1.0, _number(sheet, "munk", 0.0))
+    turning = _said(sheet, "added_inertia", added[3:], AXES[3:])
+    for axis, own, water in zip(AXES[3:], moments, turning, strict=True):
+        if own + water <= 0.0:
+            raise ValueError(f"{sheet.robot}: inertia.{axis} and added_inertia.{axis} can't both be 0")
     surge, sway, heave = (mean + bare * (mass - mean) for mass in masses)
     return Hull(
         half=half,
@@ -103,7 +107,7 @@ def hull_of(sheet: Sheet) -> Hull:
         volume=volume,
         righting_arm=_number(sheet, "righting_arm", _ARM * sheet.height),
         rigid=_six([sheet.mass] * 3 + moments),
-        added=_six(masses + _said(sheet, "added_inertia", added[3:], AXES[3:])),
+        added=_six(masses + turning),
         linear=_six(_said(sheet, "linear_drag", linear)),
         quadratic=_six(_said(sheet, "quadratic_drag", quadratic)),
         carried=(surge, sway, heave),
