@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from mmrs_auv import names
+from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import RobotKind, Rule
@@ -75,3 +76,10 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
         MapSymbol(names.FOLLOW_PIPELINE_TASK, "pipeline run", "#8a4b08", "⇶", ("pipeline", "height")),
         MapSymbol(names.SURFACE_TASK, "surface", "#37474f", "⤒", ("duration",)),
     )
+
+
+@hookimpl
+def mmrs_commands() -> tuple[Command, ...]:
+    """Contribute what concerns the CAN buses of vehicles."""
+    said = "CAN buses of vehicles: database (DBC), a hub for one machine, what is said, how busy."
+    return (Command("can", said, "mmrs_auv.commands.can:main"),)
