@@ -167,6 +167,6 @@ def test_a_node_in_real_time_ticks_at_its_period() -> None:
 
 
 def test_a_sheet_may_say_how_good_its_instruments_are() -> None:
-    assert instruments_of(pool_sheet(heading_bias=3.0)).heading_bias == 3.0
-    with pytest.raises(ValueError, match="heading_bias is -1"):
-        instruments_of(pool_sheet(heading_bias=-1.0))
+    assert instruments_of(pool_sheet(**{"heading.bias": 3.0})).heading_bias == 3.0
+    with pytest.raises(ValueError, match=r"heading\.bias is -1"):
+        instruments_of(pool_sheet(**{"heading.bias": -1.0}))

@@ -15,7 +15,7 @@ from .wire.codec import Codec, Received
 from .wire.frame import Frame
 
 POSITION_LOST = 10.0
-"""Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position_lost``)."""
+"""Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
 
 OFTEN = 25
 """Emergency messages that are sent for one order, one at each tick."""
@@ -75,7 +75,7 @@ class Craft:
 
     def __init__(self, sheet: Sheet, codec: Codec) -> None:
         self._sheet, self._codec = sheet, codec
-        self._lost = sheet.extra.get("position_lost", POSITION_LOST)
+        self._lost = sheet.extra.get("position.lost", POSITION_LOST)
         self._lock = threading.Lock()
         self._hearers = by_id({
             "Position": self._hear_place, "Pose": self._hear_pose, "Velocity": self._hear_speed,
@@ -147,7 +147,7 @@ class Craft:
         """Search around a place; return the goal's number.
 
         Args:
-            heading: None: along a spiral outwards, facing where it goes; else a full turn on the spot, from it.
+            heading: None: along a spiral outwards, facing where it goes; else a full turn on the spot.
         """
         return self._begin(Goal("SEARCH", north, east, depth, heading or 0.0, speed, heading is None))
 

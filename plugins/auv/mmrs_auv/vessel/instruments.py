@@ -12,7 +12,8 @@ from .sheet import Sheet
 class Instruments:
     """Standard deviations of what instruments say, for those that fuse it and those that simulate it.
 
-    Each may be overridden by `Sheet.extra` under its name.
+    Each may be overridden by `Sheet.extra` under its name with a point for the first underscore, such as
+    ``heading.bias``.
 
     Attributes:
         pressure_noise: pascals. pressure_air: of the air at the surface, pascals absolute.
@@ -51,10 +52,11 @@ def instruments_of(sheet: Sheet) -> Instruments:
     """
     given: dict[str, float] = {}
     for each in fields(Instruments):
-        value = sheet.extra.get(each.name)
+        key = each.name.replace("_", ".", 1)
+        value = sheet.extra.get(key)
         if value is None:
             continue
         if not 0.0 <= value < inf:
-            raise ValueError(f"{sheet.robot}: {each.name} is {value:g}, and is to be 0 or more")
+            raise ValueError(f"{sheet.robot}: {key} is {value:g}, and is to be 0 or more")
         given[each.name] = value
     return Instruments(**given)

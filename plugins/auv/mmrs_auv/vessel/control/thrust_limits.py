@@ -10,7 +10,7 @@ from ..sheet import Sheet, Thruster
 from .allocation import Array
 
 PEAK_TIME, RISE_TIME = 10.0, 0.4
-"""Seconds of peak thrust from cold (`Sheet.extra`: ``peak_time``), and from zero to it (``rise_time``)."""
+"""Seconds of peak thrust from cold (`Sheet.extra`: ``peak.time``), and from zero to it (``rise.time``)."""
 
 WARM = 0.5
 """Part of its heat that a thruster that was at its limit keeps when it may exceed operating thrust again."""
@@ -21,16 +21,16 @@ class ThrustLimits:
 
     A thruster heats by the square of its thrust above operating thrust, and cools by the square of what it
     gives less: peak thrust lasts `PEAK_TIME` from cold, and after that as long at rest makes it cold.
-    ``power_limit`` in `Sheet.extra`, watts for all thrusters together, is kept; without it there is none.
+    ``power.limit`` in `Sheet.extra`, watts for all thrusters together, is kept; without it there is none.
 
     Raises:
         ValueError: a limit in the sheet is not positive.
     """
 
     def __init__(self, sheet: Sheet) -> None:
-        self._peak_time = _positive(sheet, "peak_time", PEAK_TIME)
-        self._rise_time = _positive(sheet, "rise_time", RISE_TIME)
-        self.power_limit = _positive(sheet, "power_limit", float("inf"))
+        self._peak_time = _positive(sheet, "peak.time", PEAK_TIME)
+        self._rise_time = _positive(sheet, "rise.time", RISE_TIME)
+        self.power_limit = _positive(sheet, "power.limit", float("inf"))
         self._operating = np.array([each.operating_thrust for each in sheet.thrusters], float)
         self._most = np.array(
             [max(each.max_thrust, each.operating_thrust) for each in sheet.thrusters], float

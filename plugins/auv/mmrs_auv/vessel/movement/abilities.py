@@ -70,8 +70,8 @@ def abilities_of(sheet: Sheet) -> Abilities:
         weight=weight,
         fastest=(ahead, min(terminal[1], sheet.speed)),
         braking=min(0.3, 0.3 * most[0] / mass[0]),
-        steepest=sheet.extra.get("climb_speed", 0.8 * steepest),
-        turning=min(np.radians(sheet.extra.get("turn_rate", QUICKEST)), 0.8 * terminal[5]),
+        steepest=sheet.extra.get("climb.speed", 0.8 * steepest),
+        turning=min(np.radians(sheet.extra.get("turn.rate", QUICKEST)), 0.8 * terminal[5]),
         cruise=0.7 * ahead,
         afloat=sheet.height / 2.0 + 0.1,
     )

@@ -23,7 +23,7 @@ BACKWARDS, SLOWLY = 110.0, 0.25
 """Degrees from the bow beyond which, metres per second below which, it rather goes backwards."""
 
 SEARCH_RADIUS, SEARCH_SPACING, SWEEP = 5.0, 1.5, 20.0
-"""Metres of a search's spiral (`Sheet.extra`: ``search_radius``, ``search_spacing``); degrees per second."""
+"""Metres of a search's spiral (`Sheet.extra`: ``search.radius``, ``search.spacing``); degrees per second."""
 
 
 class Guidance:
@@ -49,8 +49,8 @@ class Guidance:
         self._abilities = abilities
         self._begin = (motion.north, motion.east)
         self._heading = motion.heading if goal.along else goal.heading
-        self._radius = sheet.extra.get("search_radius", SEARCH_RADIUS)
-        self._spacing = sheet.extra.get("search_spacing", SEARCH_SPACING)
+        self._radius = sheet.extra.get("search.radius", SEARCH_RADIUS)
+        self._spacing = sheet.extra.get("search.spacing", SEARCH_SPACING)
         self._angle = 0.0
 
     @property

@@ -22,7 +22,7 @@ GOAL_SILENT = 5.0 * GOAL_PERIOD
 """Seconds without a goal after which the decision centre counts as silent: the vehicle holds its place."""
 
 PATIENCE = 10.0
-"""Seconds for which it holds, before it surfaces by thrust (`Sheet.extra`: ``movement_patience``)."""
+"""Seconds for which it holds, before it surfaces by thrust (`Sheet.extra`: ``movement.patience``)."""
 
 STATE_SILENT = 0.3
 """Seconds without a state that is to be trusted after which it asks for no thrust."""
@@ -51,7 +51,7 @@ class Movement:
         self._abilities = abilities_of(sheet)
         served = Allocation(sheet).served([True] * len(sheet.thrusters))
         self._loops = Loops(self._abilities, served)
-        self._patience = sheet.extra.get("movement_patience", PATIENCE)
+        self._patience = sheet.extra.get("movement.patience", PATIENCE)
         self._most = {
             field.name: field.high for each in COMMON for field in each.fields if each.id in (0x80, 0x81)
         }
