@@ -11,6 +11,7 @@ from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Fix
 from mmrs_core.contributions.rules import RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.contributions.targets import Target
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
 
@@ -59,6 +60,14 @@ def mmrs_rules() -> tuple[Rule, ...]:
     from mmrs_auv.tasks.surveys import SURVEY_RULE
 
     return (SURVEY_RULE, YO_YO_RULE, *OBJECT_RULES, PIPELINE_RULE, SURFACE_RULE)
+
+
+@hookimpl
+def mmrs_targets() -> tuple[Target, ...]:
+    """Contribute what can be generated for underwater vehicles of others."""
+    from mmrs_auv.targets.imc.target import IMC
+
+    return (IMC,)
 
 
 @hookimpl

@@ -3,12 +3,14 @@ from __future__ import annotations
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
 
+from mmrs_core.generation.capabilities.probes import plain
 from mmrs_core.scene import Kinematics, Part
 from mmrs_core.testing.conformance import (
     MetamodelConformance,
     PluginConformance,
     RobotKindConformance,
     RuleConformance,
+    TargetConformance,
 )
 from mmrs_core.testing.scenes import sample_device, sample_robot, sample_scene, sample_type
 
@@ -35,7 +37,7 @@ class TestRobotKinds(RobotKindConformance):
 SONAR = sample_device("sonar", "Record", properties={"sonar.swath": "8.0"})
 CAMERA = sample_device("camera", "TakePicture")
 SWIMMER = Kinematics(1.0, 0.0, 2.0, 0.5, 0.5, floor=-50.0, ceiling=0.0)
-SHELL = ((10.0, 10.0, 0.0), (60.0, 10.0, 0.0), (60.0, 40.0, 0.0), (10.0, 40.0, 0.0))
+SHELL = ((10.0, 10.0, 0.0), (40.0, 10.0, 0.0), (40.0, 25.0, 0.0), (10.0, 25.0, 0.0))
 LINE = ((10.0, 0.0, -5.0), (60.0, 0.0, -5.0), (60.0, 60.0, -6.0))
 BUOY = {"point": (30.0, 20.0, -4.0), "object": "buoy", "distance": 3.0}
 RECORDING = {"deviceId": "sonar", "startAction": "Record", "stopAction": None, "speed": 0.8}
@@ -70,3 +72,8 @@ class TestRules(RuleConformance):
         "follow_pipeline": {"pipeline": "outfall", "height": 1.5, "offset": 1.0, **RECORDING},
         "surface_fix": {"point": (30.0, 20.0, -4.0), "duration": 20.0},
     }
+
+
+class TestTargets(TargetConformance):
+    plugin = plugin
+    inputs = {"imc": plain("sub")}
