@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 from mmrs_auv.testing import heavy_sheet, pool_sheet
@@ -136,6 +137,41 @@ def test_what_sinks_comes_up_without_its_drop_weight():
 
     assert vehicle.released
     assert vehicle.truth.antenna < 0.1
+
+
+def test_the_drop_weight_falls_by_itself_when_nobody_commands_a_vehicle_down_there():
+    vehicle, _, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
+    water.run(20.0)
+    water.kill("Actuators")
+
+    water.run(4.8)
+    assert not vehicle.released
+    water.run(0.3)
+    assert vehicle.released
+
+
+@pytest.mark.parametrize(
+    ("place", "extra"), [((0.0, 0.0, 0.0), {}), ((0.0, 0.0, 3.0), {"deadman.time": 0.0})]
+)
+def test_the_drop_weight_stays_at_the_surface_and_where_it_is_to_stay(place, extra):
+    vehicle, _, water = at_sea(
+        sheet=replace(heavy_sheet(**extra), weight_in_water=-0.5), thrusts=(0.0,) * 8, place=place
+    )
+    water.run(2.0)
+    water.kill("Actuators")
+
+    water.run(20.0)
+
+    assert not vehicle.released
+
+
+def test_a_vehicle_that_was_never_commanded_keeps_its_drop_weight():
+    vehicle, _, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
+    water.kill("Actuators")
+
+    water.run(20.0)
+
+    assert not vehicle.released
 
 
 def test_thrust_is_zero_in_time_when_commands_end():

@@ -139,7 +139,8 @@ def quadratic_drag(sheet: Sheet, half: Vector) -> Six:
     pressure = 0.5 * sheet.water_density
     ahead, across, down = (pressure * pi * one * other for one, other in ((b, c), (a, c), (a, b)))
     thrust = sum(each.operating_thrust * abs(each.direction[0]) for each in sheet.thrusters)
-    declared = thrust / (sheet.speed * (sheet.speed + _CREEP)) if sheet.speed > 0.0 else 0.0
+    squared = sheet.speed * (sheet.speed + _CREEP)
+    declared = thrust / squared if squared > 0.0 else 0.0
     surge = min(max(declared, _SLEEKEST * ahead), _BLUNTEST * ahead)
     strip = pressure * _BLUFF * 8.0 / 15.0
     roll = strip * (a * b**4 + a * c**4)

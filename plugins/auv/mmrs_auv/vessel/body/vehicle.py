@@ -9,9 +9,10 @@ from ..sheet import Sheet, Vector
 from ..wire.catalogue import COMMAND_BASE, EMERGENCY_ID, VEHICLE, messages_of
 from ..wire.codec import Codec, Received, Value
 from ..wire.frame import Frame
+from .ballast import Release
 from .devices import Devices, Operation
 from .drive import Drive
-from .dynamics import at_rest, body_of, floating_depth, lighter, over_ground, slopes, step
+from .dynamics import Body, at_rest, body_of, floating_depth, lighter, over_ground, slopes, step
 from .propulsion import Propulsion, watts_of
 from .rotation import angles_of, of_angles, rows_of, to_body
 from .sensing import SENSORS, Faults, Sensing, Truth, antenna_of
@@ -34,7 +35,6 @@ class Vehicle:
         drives: of the thrusters, in the order of their numbers.
         devices: what they did is in `devices.operations`.
         charge: joules that are left; without any, all is silent and the drop weight falls.
-        released: whether the drop weight is gone.
     """
 
     name = VEHICLE
@@ -52,8 +52,8 @@ class Vehicle:
     ) -> None:
         """Put a vehicle into the water, at rest over ground, level.
 
-        What `Sheet.extra` may say is told at `hull_of`, `Propulsion`, `Sensing`, `Devices`, `antenna_of` and
-        `instruments_of`.
+        What `Sheet.extra` may say is told at `hull_of`, `Propulsion`, `Sensing`, `Devices`, `Release`,
+        `antenna_of` and `instruments_of`.
 
         Args:
             seed: of the noise and bias of its instruments.
@@ -67,14 +67,15 @@ class Vehicle:
         self.drives = tuple(Drive(thruster, sheet.watchdog) for thruster in sheet.thrusters)
         self.devices = Devices(sheet)
         self.charge = sheet.battery
-        self.released = False
+        self._release = Release(sheet)
         self._sheet, self._codec = sheet, codec
-        self._body = body_of(sheet, surroundings.current, surroundings.bottom, surroundings.density)
+        self._laden = body_of(sheet, surroundings.current, surroundings.bottom, surroundings.density)
+        self._light = lighter(self._laden, sheet.drop_weight)
         north, east, depth = sheet.home if place is None else place
         deepest = surroundings.bottom - sheet.height / 2.0
-        begin = (north, east, min(max(depth, floating_depth(self._body)), deepest))
+        begin = (north, east, min(max(depth, floating_depth(self._laden)), deepest))
         attitude = of_angles(0.0, 0.0, sheet.heading if heading is None else heading)
-        self._state = at_rest(self._body, begin, attitude)
+        self._state = at_rest(self._laden, begin, attitude)
         self._propulsion = Propulsion(sheet, STEP)
         self._sensing = Sensing(sheet, surroundings, seed)
         self._antenna = antenna_of(sheet)
@@ -90,6 +91,11 @@ class Vehicle:
         }
         self._due = dict.fromkeys(self._periods, -inf)
         self._last: dict[str, Mapping[str, Value]] = {}
+
+    @property
+    def released(self) -> bool:
+        """Whether the drop weight is gone."""
+        return self._release.open
 
     @property
     def truth(self) -> Truth:
@@ -133,7 +139,8 @@ class Vehicle:
             self.devices.command(_operation(received, now))
         elif received.sequence is not None:
             thrust, enable = float(received.values["Thrust"]), bool(received.values["Enable"])
-            self.drives[number].command(thrust, enable, received.sequence, now)
+            if self.drives[number].command(thrust, enable, received.sequence, now):
+                self._release.command(now)
 
     def tick(self, now: float) -> Sequence[Frame]:
         """Move on to that time; return what instruments, drives and devices have to say."""
@@ -149,6 +156,10 @@ class Vehicle:
             values = {"Device": answer.device, "Request": answer.request, "State": answer.state}
             frames.append(self._encoded("DeviceStatus", values))
         return frames
+
+    @property
+    def _body(self) -> Body:
+        return self._light if self._release.open else self._laden
 
     @property
     def _time(self) -> float:
@@ -171,6 +182,7 @@ class Vehicle:
         self.charge = max(0.0, self.charge - self._watts * STEP)
         if self.charge <= 0.0:
             self._stop(release=True)
+        self._release.run(self._time, self._state[2])
 
     def _look_after_drives(self, now: float) -> None:
         for number, drive in enumerate(self.drives):
@@ -180,9 +192,7 @@ class Vehicle:
     def _stop(self, release: bool) -> None:
         for drive in self.drives:
             drive.stop()
-        if release and not self.released:
-            self.released = True
-            self._body = lighter(self._body, self._sheet.drop_weight)
+        self._release.open = self._release.open or release
 
     def _is_due(self, name: str, now: float) -> bool:
         due, period = self._due[name], self._periods[name]
