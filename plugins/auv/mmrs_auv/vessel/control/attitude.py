@@ -6,11 +6,14 @@ import numpy as np
 
 from ..instruments import Instruments
 from .allocation import Array
-from .plausibility import Channel
+from .plausibility import Channel, Drift
 
 GYRO_GAIN, RATE_GAIN_ALONE = 0.7, 0.06
 ANGLE_GAIN, ANGLE_GAIN_ALONE = 0.12, 0.35
 """Parts of a residual that are taken over: of rates, of angles; and those without gyroscopes to believe."""
+
+DRIFT = 8.0
+"""Degrees by which compass and gyroscopes may be apart after some seconds."""
 
 GIVE_WAY = 2.0
 """Seconds without a plausible attitude after which any is taken that is not frozen."""
@@ -27,15 +30,17 @@ class AttitudeFilter:
     def __init__(self, heading: float, instruments: Instruments) -> None:
         self.angles: Array = np.array((0.0, 0.0, heading % 360.0))
         self.rates: Array = np.zeros(3)
-        self.attitude = Channel(-180.0, 360.0, 3)
-        self.gyroscopes = Channel(-500.0, 500.0, 3)
+        self.attitude = Channel(-180.0, 360.0, 0.01, 3)
+        self.gyroscopes = Channel(-500.0, 500.0, 0.01, 3)
         self._noise = max(instruments.attitude_noise, instruments.heading_noise)
         self._rates_noise = instruments.rates_noise
         self._at: float | None = None
+        self._drift = Drift()
 
     def advance(self, period: float) -> None:
         """Let time go by, seconds."""
-        self.angles = self._turned(self.angles + self.rates * period)
+        self.angles = _turned(self.angles + self.rates * period)
+        self._drift.advance(float(self.rates[2]), period)
 
     def take_rates(self, rates: Array, now: float) -> None:
         """Take what gyroscopes say, degrees per second."""
@@ -53,16 +58,20 @@ class AttitudeFilter:
         rate = 20.0 if turning else 120.0
         allowed = np.inf if age >= GIVE_WAY else 3.0 + 6.0 * self._noise + rate * age
         residual = _difference(angles, self.angles)
+        far = float(np.abs(residual).max())
+        self._drift.take(float(angles[2]), circle=360.0)
+        if not turning or age >= GIVE_WAY:
+            self._drift.forget()
+        if abs(self._drift.difference) > DRIFT + 6.0 * self._noise:
+            far = np.inf
         period = min(max(now - self._at, 0.02), 0.2) if self._at is not None else 0.05
-        if not self.attitude.judge(
-            angles.tolist(), now, residual=float(np.abs(residual).max()), allowed=allowed
-        ):
+        if not self.attitude.judge(angles.tolist(), now, residual=far, allowed=allowed):
             return
         self._at = now
         if first or age >= GIVE_WAY:
-            self.angles = self._turned(angles)
+            self.angles = _turned(angles)
             return
-        self.angles = self._turned(self.angles + (ANGLE_GAIN if turning else ANGLE_GAIN_ALONE) * residual)
+        self.angles = _turned(self.angles + (ANGLE_GAIN if turning else ANGLE_GAIN_ALONE) * residual)
         if not turning:
             self.rates = self.rates + RATE_GAIN_ALONE * residual / period
 
@@ -70,8 +79,11 @@ class AttitudeFilter:
         """Tell whether the attitude may be relied on."""
         return self.attitude.trusted(now)
 
-    def _turned(self, angles: Array) -> Array:
-        return np.array((angles[0], angles[1], angles[2] % 360.0))
+
+def _turned(angles: Array) -> Array:
+    """Return an attitude within its circles."""
+    tilts = (angles[:2] + 180.0) % 360.0 - 180.0
+    return np.array((tilts[0], tilts[1], angles[2] % 360.0))
 
 
 def _difference(one: Array, other: Array) -> Array:

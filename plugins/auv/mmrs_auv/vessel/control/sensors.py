@@ -54,7 +54,7 @@ class Sensors:
         self._attitude = AttitudeFilter(sheet.heading, instruments)
         self._vertical = Vertical(sheet, instruments)
         self.reckoning = Reckoning(sheet.home[0], sheet.home[1], instruments)
-        self._log = Channel(-FASTEST, FASTEST, 3)
+        self._log = Channel(-FASTEST, FASTEST, 0.001, 3)
         self._flow: Array = np.zeros(3)
         self._hearers = by_id({
             "Pressure": self._hear_pressure, "Rates": self._hear_rates, "Attitude": self._hear_attitude,
@@ -89,7 +89,7 @@ class Sensors:
         yaw_rate = radians(self._attitude.rates[2])
         self._water.advance(self._thrusts, yaw_rate, self._vertical.depth, period)
         self._flow[:2] += yaw_rate * period * np.array((self._flow[1], -self._flow[0]))
-        self._vertical.advance(float(self._water.acceleration[2]), period)
+        self._vertical.advance(float(self._water.acceleration[2]), now, period)
         compass = radians(self._attitude.angles[2])
         if self._log.trusted(now):
             ahead, aside = self._level(self._water.speed + self._flow)

@@ -5,13 +5,16 @@ from __future__ import annotations
 from ..body.hydrodynamics import GRAVITY
 from ..instruments import Instruments
 from ..sheet import Sheet
-from .plausibility import Channel
+from .plausibility import Channel, Drift
 
 DEPTH_GAIN, RATE_GAIN, LOG_GAIN = 0.25, 0.04, 0.4
 """Parts of a residual taken over: of depth into depth and (per second) rate, of the log's into rate."""
 
 STEEPEST = 3.0
 """Metres per second that no vehicle sinks or rises."""
+
+DRIFT = 0.3
+"""Metres by which pressure and the log may be apart after some seconds."""
 
 GIVE_WAY = 2.0
 """Seconds without a plausible pressure after which any is taken that is not frozen."""
@@ -32,13 +35,19 @@ class Vertical:
         self._air = instruments.pressure_air
         self._noise = instruments.pressure_noise / self._per_metre
         deepest = self._air + self._per_metre * (2.0 * sheet.max_depth + 10.0)
-        self.pressure = Channel(0.9 * self._air, deepest)
+        self.pressure = Channel(0.9 * self._air, deepest, 1.0)
         self._rate_at: float | None = None
+        self._rate_said = 0.0
+        self._drift = Drift()
 
-    def advance(self, acceleration: float, period: float) -> None:
-        """Let time go by, seconds, with an acceleration down as reckoned from thrust."""
+    def advance(self, acceleration: float, now: float, period: float) -> None:
+        """Let time go by, seconds, accelerated down as reckoned from thrust; without pressure, stay."""
+        if self.pressure.age(now) > GIVE_WAY:
+            self.rate = 0.0
+            return
         self.rate = min(max(self.rate + acceleration * period, -STEEPEST), STEEPEST)
         self.depth += self.rate * period
+        self._drift.advance(self._rate_said, period)
 
     def take_pressure(self, pressure: float, now: float) -> None:
         """Take an absolute pressure, pascals."""
@@ -48,6 +57,11 @@ class Vertical:
         allowed = 6.0 * self._noise + (0.15 + 0.3 * age if sure else 0.15 + STEEPEST * age)
         gives_way = age >= GIVE_WAY
         residual = depth - self.depth
+        self._drift.take(depth)
+        if not sure or gives_way:
+            self._drift.forget()
+        if abs(self._drift.difference) > DRIFT + 6.0 * self._noise:
+            residual = float("inf")
         if not self.pressure.judge(
             (pressure,), now, residual=residual, allowed=float("inf") if gives_way else allowed
         ):
@@ -60,7 +74,7 @@ class Vertical:
 
     def take_rate(self, rate: float, now: float) -> None:
         """Take a rate of sinking that the log says, metres per second."""
-        self._rate_at = now
+        self._rate_at, self._rate_said = now, rate
         self.rate += LOG_GAIN * (rate - self.rate)
 
     def trusted(self, now: float) -> bool:
