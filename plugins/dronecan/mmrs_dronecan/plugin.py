@@ -15,7 +15,6 @@ def mmrs_codecs() -> tuple[Codec, ...]:
 
 
 def _open(thrusters: Sequence[ThrusterData], options: Mapping[str, str]) -> ThrusterDriver:
-    from mmrs_dronecan.options import options_of
-    from mmrs_dronecan.speed_controllers import SpeedControllers
+    from mmrs_dronecan.speed_controllers import opened
 
-    return SpeedControllers(thrusters, options_of(options))
+    return opened(thrusters, options)

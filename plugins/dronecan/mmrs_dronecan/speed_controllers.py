@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import copysign, sqrt
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ import dronecan
 
 from mmrs_core.contributions.codecs import CanFrame, ThrusterData
 from mmrs_core.errors import UnsupportedError
-from mmrs_dronecan.options import Options
+from mmrs_dronecan.options import Options, options_of
 from mmrs_dronecan.transfers import Frame, Incoming, Outgoing
 
 if TYPE_CHECKING:
@@ -97,3 +97,12 @@ class SpeedControllers:
             return None
         part = rpm / self._options.max_rpm
         return self._most[number] * part * abs(part)
+
+
+def opened(thrusters: Sequence[ThrusterData], options: Mapping[str, str]) -> SpeedControllers:
+    """Return what speaks for thrusters, with options by name.
+
+    Raises:
+        UnsupportedError: there are too many, or an option is none.
+    """
+    return SpeedControllers(thrusters, options_of(options))

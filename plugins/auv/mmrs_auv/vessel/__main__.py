@@ -13,12 +13,16 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from .hosting import Pace, serve
 from .node import Node
 from .sheet import Sheet, from_json
 from .wire.codec import Codec
 from .wire.ports import CHANNEL, PortError, open_port
+
+if TYPE_CHECKING:
+    from .control.actuators import Drives
 
 PARTS = ("sensors", "actuators", "movement", "vehicle")
 
@@ -74,6 +78,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--surroundings", type=Path, help="file that says what is around the simulated vehicle"
     )
+    parser.add_argument(
+        "--drives",
+        metavar="MODULE:FUNCTION,OPTION=VALUE,...",
+        help="of thrusters that go by other messages, such as mmrs_dronecan.speed_controllers:opened",
+    )
     parser.add_argument("--seed", type=int, default=0, help="of its instruments' noise and bias")
     parser.add_argument("--figures", type=Path, help="file for how late ticks were, at the end")
     return parser
@@ -95,7 +104,7 @@ def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
     if given.part == "actuators":
         from .control.actuators import Actuators
 
-        return Actuators(sheet, codec)
+        return Actuators(sheet, codec, _drives(given.drives, sheet))
     if given.part == "movement":
         from .movement.movement import Movement
 
@@ -106,6 +115,14 @@ def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
     text = None if given.surroundings is None else given.surroundings.read_text(encoding="utf-8")
     found = around.Surroundings() if text is None else around.from_json(text)
     return Vehicle(sheet, codec, found, given.seed)
+
+
+def _drives(text: str | None, sheet: Sheet) -> Drives | None:
+    if text is None:
+        return None
+    from .control.foreign import drives_of
+
+    return drives_of(text, sheet)
 
 
 def _setter(stop: threading.Event) -> Callable[[int, FrameType | None], None]:
