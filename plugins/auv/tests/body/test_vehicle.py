@@ -128,12 +128,13 @@ def test_an_emergency_stops_all_thrust_for_good():
 
 
 def test_what_sinks_comes_up_without_its_drop_weight():
-    vehicle, helm, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
+    vehicle, helm, water = at_sea(sheet=heavy_sheet(), place=(0.0, 0.0, 1.0))
+    water.kill("Actuators")
     water.run(5.0)
-    assert vehicle.truth.depth > 3.05
+    assert vehicle.truth.depth > 1.05
 
     water.post(helm.codec.encode("Emergency", Reason="ORDERED", Release=True))
-    water.run(60.0)
+    water.run(20.0)
 
     assert vehicle.released
     assert vehicle.truth.antenna < 0.1
@@ -141,7 +142,7 @@ def test_what_sinks_comes_up_without_its_drop_weight():
 
 def test_the_drop_weight_falls_by_itself_when_nobody_commands_a_vehicle_down_there():
     vehicle, _, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
-    water.run(20.0)
+    water.run(6.0)
     water.kill("Actuators")
 
     water.run(4.8)
@@ -160,7 +161,7 @@ def test_the_drop_weight_stays_at_the_surface_and_where_it_is_to_stay(place, ext
     water.run(2.0)
     water.kill("Actuators")
 
-    water.run(20.0)
+    water.run(6.0)
 
     assert not vehicle.released
 
@@ -169,7 +170,7 @@ def test_a_vehicle_that_was_never_commanded_keeps_its_drop_weight():
     vehicle, _, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
     water.kill("Actuators")
 
-    water.run(20.0)
+    water.run(6.0)
 
     assert not vehicle.released
 
@@ -276,15 +277,18 @@ def test_the_sonar_sees_what_is_ahead(heading, seen):
     assert helm.last("Health")["SonarRange"] == pytest.approx(seen, abs=0.02)
 
 
-def test_a_vehicle_with_an_empty_battery_is_silent_and_comes_up():
+def test_a_vehicle_with_an_empty_battery_is_silent_and_drops_its_weight():
     vehicle, helm, water = at_sea(sheet=heavy_sheet(), thrusts=(0.0,) * 8)
     vehicle.charge = 20.0 * 4.0
 
-    water.run(80.0)
+    water.run(3.9)
+    assert not vehicle.released
+    water.run(2.0)
 
     assert 3.9 <= max(now for now, _ in helm.heard) <= 4.1
     assert vehicle.charge == 0.0
-    assert vehicle.truth.antenna < 0.1
+    assert vehicle.released
+    assert [drive.thrust for drive in vehicle.drives] == [0.0] * 8
 
 
 def test_the_battery_pays_for_thrust_and_hotel():

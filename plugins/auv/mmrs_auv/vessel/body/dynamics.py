@@ -27,7 +27,7 @@ State: TypeAlias = tuple[
 _DRAWS_AIR = 0.1  # metres of depth over which a thruster gains its thrust
 _GROUND_PULSE, _GROUND_LOSS = 20.0, 0.3  # rad/s and damping ratio of a hull that lies on the bottom
 _GRIP, _SLIP = 0.4, 0.05  # friction there, and the metres per second from which it is full
-_STIFF = 1.0  # part of a speed that drag may take in one step
+_FAST = 20.0  # steps per radian of a vehicle that tumbles
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +115,12 @@ def over_ground(body: Body, state: State) -> Vector:
 
 
 def step(body: Body, state: State, thrusts: Sequence[Sequence[float]], duration: float) -> State:
-    """Return the state after so many seconds, in shorter steps if drag is so great that it has to be.
+    """Return the state after so many seconds, in shorter steps if it tumbles or drag is very great.
 
     Args:
         thrusts: of all thrusters, newtons, at the beginning, in the middle and at the end.
     """
-    parts = ceil(_decay(body, state) * duration / _STIFF)
+    parts = ceil(max(_decay(body, state), _FAST * max(state[10:]), -_FAST * min(state[10:])) * duration)
     if parts <= 1:
         return runge_kutta(body, state, thrusts, duration)
     for _ in range(parts):
