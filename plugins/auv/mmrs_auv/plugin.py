@@ -66,8 +66,9 @@ def mmrs_rules() -> tuple[Rule, ...]:
 def mmrs_targets() -> tuple[Target, ...]:
     """Contribute what can be generated for underwater vehicles of others."""
     from mmrs_auv.targets.imc.target import IMC
+    from mmrs_auv.targets.moos.target import MOOS
 
-    return (IMC,)
+    return (IMC, MOOS)
 
 
 @hookimpl

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import ceil, dist, radians
-from typing import Literal
 
 from mmrs_auv.targets.imc.messages import (
     DEPTH,
@@ -17,25 +16,15 @@ from mmrs_auv.targets.imc.messages import (
     Message,
     Value,
 )
-from mmrs_auv.targets.imc.wiring import seconds_of, set_by
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_auv.targets.imc.wiring import set_by
+from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of, seconds_of_hold
+from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import metres
-from mmrs_core.scene import Name, Position
+from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
-
-Sort = Literal["start", "stop", "go", "hold", "turn"]
-
-MOVES: Mapping[Name, Sort] = {
-    (BEHAVIOUR, "Start"): "start",
-    (BEHAVIOUR, "Stop"): "stop",
-    (BEHAVIOUR, "GoTo"): "go",
-    (BEHAVIOUR, "HoldPosition"): "hold",
-    (BEHAVIOUR, "HeadTo"): "turn",
-}
-"""What the target knows of moves, by their own metaclass: one that extends it may move otherwise."""
 
 DONE, IS_DONE = "_done_", "ManeuverIsDone"
 LONGEST = 0xFFFF
@@ -185,7 +174,7 @@ class _Walk:
         self._pending = []
 
     def _depth(self) -> float:
-        return metres(max(0.0, -short_of(self._here, self._context)))
+        return metres(max(0.0, -above_surface(self._here, self._context)))
 
     def _slowly(self) -> float:
         type = self._context.type
@@ -208,17 +197,6 @@ def places_of(context: RobotContext) -> Iterator[tuple[float, float]]:
         if transition is None or transition.condition is not None:
             return
         index = transition.to
-
-
-def short_of(position: Position, context: RobotContext) -> float:
-    """Return how far a position is above the surface, metres; one of a robot that stays on it never is."""
-    return metres(position[2] - context.frame.surface) if context.vehicle.dives else 0.0
-
-
-def seconds_of_hold(move: Move) -> float:
-    """Return how long a move holds; 0 for others."""
-    found = move.attributes.get("duration") if MOVES.get(move.metaclasses[0]) == "hold" else None
-    return float(found) if isinstance(found, (int, float)) else 0.0
 
 
 def _plan_maneuver(each: Maneuver, id: str) -> Message:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.targets.imc.plans import LONGEST, MOVES, plan_of, seconds_of_hold, short_of
+from mmrs_auv.targets.imc.plans import LONGEST, plan_of
 from mmrs_auv.targets.imc.wiring import set_by
+from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of_hold
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, Target, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.actions import DEVICE_ACTION
@@ -63,7 +64,7 @@ def _of_target(target: Target, context: RobotContext) -> Iterator[str]:
     if target.description is not None:
         yield f"object '{target.description}', which a plan cannot have looked for"
     if target.position is not None and not context.vehicle.flies:
-        above = short_of(target.position, context)
+        above = above_surface(target.position, context)
         if above > 1e-6:
             yield f"leads {above:g} m above the surface"
 

@@ -29,10 +29,3 @@ def set_by(action: Action, type: RobotType | None) -> Message | str:
         Message("EntityParameter", {"name": name.strip(), "value": value.strip()}) for name, _, value in pairs
     )
     return Message("SetEntityParameters", {"name": entity, "params": params})
-
-
-def seconds_of(action: Action, type: RobotType | None) -> float:
-    """Return how long an action of a device takes; 0 where nothing is known."""
-    device = type.devices.get(action.device) if type is not None else None
-    known = device.actions.get(action.name) if device is not None else None
-    return known.duration if known is not None else 0.0
