@@ -31,8 +31,7 @@ def sheet_in(path: Path, robot: str) -> Sheet:
     try:
         refuse(sheet)
     except SheetError as error:
-        lines = "".join(f"\n  {fault}" for fault in error.faults)
-        raise UnsupportedError(f"{path}: no bus can be made of this vehicle:{lines}", error.faults) from error
+        raise UnsupportedError(f"{path}: no bus can be made of this vehicle", error.faults) from error
     return sheet
 
 

@@ -80,6 +80,17 @@ def test_a_busy_tenth_of_a_second_is_found_among_quiet_ones() -> None:
     assert found.mean == pytest.approx(52 * bits / 500_000 / 10.01)
 
 
+def test_frames_at_the_ends_of_windows_are_shared_out_evenly() -> None:
+    found = heard_load([(100.0 + number * 0.05, Frame(0x555, b"\xaa")) for number in range(2001)], 500_000)
+    assert found is not None
+    assert (
+        found.median
+        == found.high
+        == found.peak
+        == pytest.approx(2 * length_of(Frame(0x555, b"\xaa")) / 50_000)
+    )
+
+
 @pytest.mark.parametrize("times", [[], [1.0], [1.0, 1.0]])
 def test_no_load_of_no_time(times: list[float]) -> None:
     assert heard_load([(time, Frame(1, b"")) for time in times], 500_000) is None

@@ -12,6 +12,9 @@ from .frame import Frame
 from .layout import layout_of
 from .stuffing import length_of, longest, shortest
 
+_ROUNDING = 1e-6
+"""Part of a window by which a time may come before it and still count in it: times are rounded."""
+
 
 @dataclass(frozen=True, slots=True)
 class Share:
@@ -134,12 +137,13 @@ def heard_load(frames: Iterable[tuple[float, Frame]], bit_rate: int, window: flo
         first = time if first is None else first
         last = time
         length = length_of(frame)
-        windows[floor((time - first) / window)] = windows.get(floor((time - first) / window), 0) + length
+        number = floor((time - first) / window + _ROUNDING)
+        windows[number] = windows.get(number, 0) + length
         count, bits = count + 1, bits + length
         plain += shortest(len(frame.data), frame.extended)
     if first is None or last is None or last <= first:
         return None
-    whole = max(1, floor((last - first) / window))
+    whole = max(1, floor((last - first) / window + _ROUNDING))
     shares = sorted(windows.get(each, 0) / (bit_rate * window) for each in range(whole))
     return Heard(
         count, last - first, window, bits / bit_rate / (last - first),
