@@ -45,7 +45,6 @@ class Bench:
 
     def tick(self) -> None:
         self.now += TICK
-        decode = Codec(self.sheet).decode
         self.said = []
         for frame in self.actuators.tick(self.now):
             found = self._listener.decode(frame)

@@ -19,6 +19,12 @@ NEAR = 1.0
 ADRIFT = 0.08
 """Metres per second through the water below which a vehicle that steers by heading need not head anywhere."""
 
+TOO_FAR, NEAR_ENOUGH = 0.25, 0.12
+"""Metres from its goal from which on it heads there again, and within which it no longer does."""
+
+CLOSE, ALIGNED = 4.0, 0.7
+"""Metres from its goal within which it turns first, and the cosine to its way from which on it goes then."""
+
 BACKWARDS, SLOWLY = 110.0, 0.25
 """Degrees from the bow beyond which, metres per second below which, it rather goes backwards."""
 
@@ -52,6 +58,7 @@ class Guidance:
         self._radius = sheet.extra.get("search.radius", SEARCH_RADIUS)
         self._spacing = sheet.extra.get("search.spacing", SEARCH_SPACING)
         self._angle = 0.0
+        self._chases = True
 
     @property
     def speed(self) -> float:
@@ -136,17 +143,21 @@ class Guidance:
         flow_north, flow_east = motion.current_north, motion.current_east
         through_north, through_east = north - flow_north, east - flow_east
         through = hypot(through_north, through_east)
-        if through > ADRIFT:
+        away = self.distance(motion)
+        self._chases = away > (NEAR_ENOUGH if self._chases else TOO_FAR)
+        if through > ADRIFT and (self._chases or hypot(flow_north, flow_east) > ADRIFT):
             self._heading = bearing(through_north, through_east)
             behind = abs(turn(self._heading, motion.heading)) > BACKWARDS
-            if behind and through < SLOWLY and self.distance(motion) < NEAR:
+            if behind and through < SLOWLY and away < NEAR:
                 self._heading = (self._heading + 180.0) % 360.0
         elif not self.goal.along:
             self._heading = self.goal.heading
         ahead = (cos(radians(motion.heading)), sin(radians(motion.heading)))
         surge = through_north * ahead[0] + through_east * ahead[1]
-        if self.distance(motion) > NEAR:
+        if away > NEAR:
             surge = max(0.0, surge)
+        if away < CLOSE and through > ADRIFT:
+            surge *= max(0.0, (abs(surge) / through - ALIGNED) / (1.0 - ALIGNED))
         return Aim(
             surge * ahead[0] + flow_north, surge * ahead[1] + flow_east, self.goal.depth, self._heading
         )

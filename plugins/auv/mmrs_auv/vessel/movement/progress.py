@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 from .abilities import Abilities
-from .guidance import Guidance
+from .guidance import ADRIFT, Guidance
 from .loops import Motion, turn
 
 PLACE, DEPTH, HEADING, SPEED = 0.3, 0.1, 5.0, 0.12
@@ -20,6 +20,9 @@ PATIENCE, ALLOWANCE = 3.0, 30.0
 
 class Progress:
     """How far a goal is.
+
+    A vehicle without thrust to the side cannot keep both its place and a heading in a current: it keeps its
+    place, and any heading will do.
 
     Attributes:
         state: one of `catalogue.PROGRESS`; once reached or failed it stays so.
@@ -65,7 +68,9 @@ class Progress:
         deep = (
             abs(goal.depth - motion.depth) <= DEPTH or max(goal.depth, motion.depth) <= self._abilities.afloat
         )
-        faces = goal.along or goal.mode == "SEARCH" or abs(turn(goal.heading, motion.heading)) <= HEADING
+        swept = steers and goal.mode != "TURN" and hypot(motion.current_north, motion.current_east) > ADRIFT
+        any_heading = goal.along or goal.mode == "SEARCH" or swept
+        faces = any_heading or abs(turn(goal.heading, motion.heading)) <= HEADING
         free = goal.mode == "SEARCH" or (goal.mode == "TURN" and steers)
         here = free or self._guidance.distance(motion) <= PLACE
         north, east, down = motion.over_ground()
