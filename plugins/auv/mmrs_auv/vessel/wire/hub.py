@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from random import Random
 
 from .frame import Frame
-from .socketcand import CHANNEL, ECHO, HI, OK, frame_of, frame_word, words_of
+from .socketcand import CHANNEL, ECHO, HI, OK, error_word, frame_of, frame_word, words_of
 
 MOST_CLIENTS, MOST_BEHIND, MOST_WRONG, MOST_DELAYED = 256, 262_144, 100, 100_000
 """Clients; bytes that wait for a client that does not read, after which it misses frames; words that a client
@@ -253,7 +253,7 @@ class _Client(asyncio.Protocol):
     def _refuse(self, why: str) -> None:
         self._hub.counts["wrong"] += 1
         self._wrong += 1
-        self._answer(f"< error {why} >".encode())
+        self._answer(error_word(why, time.time()))
         if self._wrong >= MOST_WRONG:
             self.leave()
 

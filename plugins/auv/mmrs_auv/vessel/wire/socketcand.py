@@ -56,3 +56,11 @@ def frame_word(frame: Frame, time: float) -> bytes:
     """Return the word that tells a frame and the time, in seconds, at which it was on the bus."""
     id = f"{frame.id:08X}" if frame.extended else f"{frame.id:03X}"
     return f"< frame {id} {time:.6f} {frame.data.hex().upper()} >".encode()
+
+
+def error_word(why: str, time: float) -> bytes:
+    """Return the word that tells a client what was wrong, in seconds when.
+
+    It has the form of an error frame, since python-can takes every error for one and fails on others.
+    """
+    return f"< error 000 {time:.6f} {why} >".encode()
