@@ -67,7 +67,7 @@ def test_energy_never_grows_without_thrust(sheet, state):
 @given(sheets(), STATES, st.tuples(SPEEDS, SPEEDS), st.floats(-35.0, 35.0))
 @settings(max_examples=30, deadline=None)
 def test_all_numbers_stay_finite_under_thrust_in_a_current_on_the_bottom(sheet, state, current, force):
-    body = body_of(sheet, current, 4.0)
+    body = body_of(sheet, current, 12.0)
     thrusts = [force] * len(body.jets)
     for _ in range(300):
         state = step(body, state, (thrusts, thrusts, thrusts), 0.01)

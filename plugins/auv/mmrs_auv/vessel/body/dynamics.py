@@ -27,7 +27,8 @@ State: TypeAlias = tuple[
 _DRAWS_AIR = 0.1  # metres of depth over which a thruster gains its thrust
 _GROUND_PULSE, _GROUND_LOSS = 20.0, 0.3  # rad/s and damping ratio of a hull that lies on the bottom
 _GRIP, _SLIP = 0.4, 0.05  # friction there, and the metres per second from which it is full
-_FAST = 20.0  # steps per radian of a vehicle that tumbles
+_STICKS = 10.0  # part of a speed that friction takes per second, at most
+_FAST, _FINEST = 20.0, 50  # steps per radian of a vehicle that tumbles, and the most parts of one step
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +121,8 @@ def step(body: Body, state: State, thrusts: Sequence[Sequence[float]], duration:
     Args:
         thrusts: of all thrusters, newtons, at the beginning, in the middle and at the end.
     """
-    parts = ceil(max(_decay(body, state), _FAST * max(state[10:]), -_FAST * min(state[10:])) * duration)
+    fastest = max(_decay(body, state), _FAST * max(state[10:]), -_FAST * min(state[10:]))
+    parts = ceil(min(fastest * duration, _FINEST))
     if parts <= 1:
         return runge_kutta(body, state, thrusts, duration)
     for _ in range(parts):
@@ -293,7 +295,7 @@ def _ground(body: Body, state: State, rows: Rows, extent: float, pressed: float)
     mass = body.inertia[2]
     normal = max(0.0, _stiffness(body) * pressed + 2.0 * _GROUND_LOSS * _GROUND_PULSE * mass * sinks)
     slides = _plus(speed, (-sinks * x, -sinks * y, -sinks * z))
-    grip = -_GRIP * normal / (sqrt(_dot(slides, slides)) + _SLIP)
+    grip = -min(_GRIP * normal / (sqrt(_dot(slides, slides)) + _SLIP), _STICKS * mass)
     force = _plus(
         (-normal * x, -normal * y, -normal * z), (grip * slides[0], grip * slides[1], grip * slides[2])
     )
