@@ -103,9 +103,19 @@ def test_a_device_is_asked_until_it_answers() -> None:
     for _ in range(3):
         assert values_of(listener.tick(), "DeviceCommand") == [asked]
     listener.tell("DeviceStatus", Device=1, Request=request, State="ACTIVE")
-    assert values_of(listener.tick(), "DeviceCommand") == []
+    asked_again = [len(values_of(listener.tick(), "DeviceCommand")) for _ in range(10)]
+    assert sum(asked_again) == 2
     listener.tell("DeviceStatus", Device=1, Request=request, State="REACHED")
     assert listener.craft.state().devices[request] == "REACHED"
+    assert not any(values_of(listener.tick(), "DeviceCommand") for _ in range(10))
+
+
+def test_a_device_is_not_asked_for_what_it_was_asked_before_the_last() -> None:
+    listener = Listener()
+    listener.craft.operate("ctd", 1)
+    other, later = listener.craft.operate("front-camera", 2), listener.craft.operate("ctd", 3)
+    asked = {values["Request"] for values in values_of(listener.tick(), "DeviceCommand")}
+    assert asked == {other, later}
 
 
 def test_a_device_that_is_not_there_is_refused() -> None:

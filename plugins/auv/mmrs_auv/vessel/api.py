@@ -17,6 +17,9 @@ from .wire.frame import Frame
 POSITION_LOST = 10.0
 """Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
 
+SELDOM = 5
+"""Ticks from one repetition of a device's command to the next, once the device has answered."""
+
 OFTEN = 25
 """Emergency messages that are sent for one order, one at each tick."""
 
@@ -88,6 +91,7 @@ class Craft:
         self._devices: dict[int, str] = {}
         self._requests: dict[int, dict[str, float]] = {}
         self._request = 0
+        self._ticks = 0
         self._state_at = self._heard_at = float("-inf")
         self._now = 0.0
         self._emergency: tuple[str, bool] | None = None
@@ -158,6 +162,8 @@ class Craft:
     def operate(self, device: str, action: int, parameter: float = 0.0) -> int:
         """Have a device do something; return the number of the request, under which its progress is told.
 
+        It is asked again until it says that it is done, or is asked for something else.
+
         Args:
             device: identifier. action: its number at the device.
 
@@ -175,6 +181,10 @@ class Craft:
                 "Request": float(request),
             }
             self._codec.encode("DeviceCommand", **values)
+            for earlier in [
+                number for number, each in self._requests.items() if each["Device"] == values["Device"]
+            ]:
+                del self._requests[earlier]
             self._request = request
             self._devices[request] = "NONE"
             self._requests[request] = values
@@ -229,7 +239,12 @@ class Craft:
                     self._codec.encode("Emergency", Reason=self._emergency[0], Release=self._emergency[1])
                 )
             said += goal_frames(self._codec, self._goal)
-            said += [self._codec.encode("DeviceCommand", **values) for values in self._requests.values()]
+            self._ticks += 1
+            said += [
+                self._codec.encode("DeviceCommand", **values)
+                for request, values in self._requests.items()
+                if self._devices[request] == "NONE" or self._ticks % SELDOM == 0
+            ]
             if now + 1e-6 >= self._beat_due:
                 self._beat_due = now + BEAT_PERIOD
                 uptime = now - self._began
@@ -287,7 +302,8 @@ class Craft:
         request, state = int(found.values["Request"]), str(found.values["State"])
         if request in self._devices:
             self._devices[request] = state
-            self._requests.pop(request, None)
+            if state in ("REACHED", "FAILED"):
+                self._requests.pop(request, None)
 
 
 class Connection:
