@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from mmrs_auv import names
+from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Fix
@@ -69,6 +70,14 @@ def mmrs_targets() -> tuple[Target, ...]:
     from mmrs_auv.targets.moos.target import MOOS
 
     return (IMC, MOOS)
+
+
+@hookimpl
+def mmrs_backends() -> tuple[BackendFactory, ...]:
+    """Contribute what drives underwater vehicles by a pilot's sticks."""
+    from mmrs_auv.manual import ARDUSUB_MANUAL
+
+    return (ARDUSUB_MANUAL,)
 
 
 @hookimpl
