@@ -101,6 +101,39 @@ def test_a_hub_that_ends_is_noticed_by_who_only_listens() -> None:
         assert eventually(lambda: not port._reader.is_alive())
 
 
+def test_a_hub_that_takes_nothing_any_more_holds_nobody_up_for_long() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer() -> None:
+            server.accept()[0].close()  # who only looks whether anybody is there
+            stuck.append(server.accept()[0])
+            for word in (b"< hi >", b"< ok >", b"< ok >"):
+                stuck[0].sendall(word)
+                time.sleep(0.1)
+
+        stuck: list[socket.socket] = []
+        threading.Thread(target=answer).start()
+        port = open_port("socketcand", "can0", port=server.getsockname()[1])
+        longest = 0.0
+
+        def send() -> None:
+            nonlocal longest
+            for _ in range(1_000_000):
+                begin = time.monotonic()
+                try:
+                    port.send(FRAMES[2])
+                finally:
+                    longest = max(longest, time.monotonic() - begin)
+
+        try:
+            with pytest.raises(PortError, match=r"cannot be written to|has ended the connection"):
+                send()
+            assert longest < 3.0
+        finally:
+            port.close()
+            stuck[0].close()
+
+
 def test_a_hub_that_comes_late_is_waited_for() -> None:
     with running() as other:
         pass

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import socket
 import threading
 import time
@@ -18,6 +19,8 @@ MOST_WAITING = 4096
 """Frames that wait for a node that does not take them; the oldest go first."""
 
 _POLL, _TRIES = 0.1, 5
+_SEND = 1.0
+"""Seconds for which a hub may take nothing."""
 
 
 class PortError(OSError):
@@ -186,7 +189,9 @@ def _bus_of_hub(channel: str, patience: float, options: dict[str, Any]) -> BusAB
     _await_hub(host, port, patience)
     for left in reversed(range(_TRIES)):
         try:
-            return _bus("socketcand", name, {"host": host, "port": port, **options})
+            bus = _bus("socketcand", name, {"host": host, "port": port, **options})
+            _limit(bus)
+            return bus
         except PortError as error:
             if not left or not isinstance(error.__cause__, CanError):
                 raise
@@ -215,16 +220,30 @@ def _await_hub(host: str, port: int, patience: float) -> None:
             time.sleep(0.05)
 
 
+def _limit(bus: BusABC) -> None:
+    """Have a connection to a hub fail that takes nothing for `_SEND` seconds, rather than hold up a node."""
+    connection = _connection(bus)
+    if connection is not None:
+        connection.settimeout(_SEND)
+        if hasattr(socket, "TCP_USER_TIMEOUT"):
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(_SEND * 1000))
+
+
+def _connection(bus: BusABC) -> socket.socket | None:
+    """Return the socket of python-can's client of a hub, which it keeps to itself."""
+    found = getattr(bus, "_SocketCanDaemonBus__socket", None)
+    return found if isinstance(found, socket.socket) else None
+
+
 def _ended(bus: BusABC) -> bool:
     """Return whether a hub has ended the connection, which python-can's client does not tell."""
-    connection = getattr(bus, "_SocketCanDaemonBus__socket", None)
-    if not isinstance(connection, socket.socket):
+    connection = _connection(bus)
+    if connection is None:
         return False
     try:
-        return connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT) == b""
-    except BlockingIOError:
-        return False
-    except OSError:
+        readable, _, _ = select.select([connection], [], [], 0.0)
+        return bool(readable) and connection.recv(1, socket.MSG_PEEK) == b""
+    except (OSError, ValueError):
         return True
 
 
