@@ -285,10 +285,13 @@ class TestSurface:
 
         assert change[9] == pytest.approx(GRAVITY * 19.0 / body.inertia[2])
 
-    def test_thrusters_in_air_do_nothing(self):
+    def test_thrusters_in_air_do_nothing_and_just_below_it_little(self):
         body = made()
 
         assert thrust(body, (0.0, 0.0, -0.01, *LEVEL, *(0.0,) * 6), [10.0] * 6) == (0.0,) * 6
+        assert thrust(body, (0.0, 0.0, 0.2, *LEVEL, *(0.0,) * 6), [10.0] * 6)[0] == pytest.approx(
+            40.0 * cos(pi / 4.0)
+        )
         assert thrust(body, (0.0, 0.0, 0.05, *LEVEL, *(0.0,) * 6), [10.0] * 6)[0] == pytest.approx(
             0.5 * 40.0 * cos(pi / 4.0)
         )
