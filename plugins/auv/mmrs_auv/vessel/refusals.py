@@ -10,7 +10,7 @@ from .sheet import Sheet, Thruster
 
 MOST_THRUSTERS, MOST_DEVICES = 32, 256
 LEAST_THRUST, MOST_THRUST = 0.01, 32767.0
-MOST_POWER, MOST_DEPTH, MOST_SPEED, MOST_PLACE = 6553.5, 655.35, 5.1, 8388.607
+MOST_POWER, MOST_DEPTH, MOST_SPEED, MOST_PLACE = 6553.5, 8388.607, 5.1, 8388.607
 MOST_BIT_RATE, LEAST_WATCHDOG, MOST_WATCHDOG = 1_000_000, 0.1, 60.0
 LONGEST_NAME = 64
 """Figures that do not fit are refused. Power, depth, speed and place: what the fields of messages hold."""

@@ -201,3 +201,15 @@ def test_every_node_has_a_heartbeat() -> None:
         heard = codec.decode(codec.encode(f"{node}Beat", State="RUNS", Uptime=12.5, Reason="NONE"))
         assert heard is not None
         assert heard.values == {"State": "RUNS", "Uptime": 12.5, "Reason": "NONE"}
+
+
+@pytest.mark.parametrize(
+    ("most", "step"), [(50.0, 0.01), (655.35, 0.01), (655.36, 0.02), (6000.0, 0.1), (8388.607, 0.13)]
+)
+def test_goals_are_told_down_to_the_vehicles_depth(most: float, step: float) -> None:
+    codec = Codec(sheet(max_depth=most))
+    goal = {"Heading": 0.0, "Speed": 1.0, "Mode": "GO_TO", "FaceAlong": True, "Goal": 3}
+    for depth in (0.0, most / 3, most):
+        heard = codec.decode(codec.encode("GoalPose", Depth=depth, **goal))
+        assert heard is not None
+        assert heard.values["Depth"] == pytest.approx(depth, abs=step / 2 + 1e-9)

@@ -119,7 +119,7 @@ def test_limits_are_what_the_fields_hold() -> None:
         for field in message.fields
     }
     assert fields["Thruster0Status.Power"] == pytest.approx(refusals.MOST_POWER)
-    assert fields["GoalPose.Depth"] == pytest.approx(refusals.MOST_DEPTH)
+    assert fields["Depth.Depth"] == pytest.approx(refusals.MOST_DEPTH)
     assert fields["GoalPose.Speed"] == pytest.approx(refusals.MOST_SPEED)
     assert fields["Position.North"] == pytest.approx(refusals.MOST_PLACE)
     assert fields["DeviceCommand.Device"] == refusals.MOST_DEVICES - 1

@@ -20,7 +20,7 @@ Kind = TypeVar("Kind")
 VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION = "Vehicle", "Sensors", "Actuators", "Movement", "Decision"
 NODES = (VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION)
 
-CLOCK_ID, EMERGENCY_ID = 0x001, 0x010
+CLOCK_ID, EMERGENCY_ID, GOAL_POSE_ID = 0x001, 0x010, 0x401
 COMMAND_BASE, STATUS_BASE, HEARTBEAT_BASE = 0x100, 0x140, 0x700
 
 COMMAND_PERIOD, STATUS_PERIOD, SENSOR_PERIOD, STATE_PERIOD, BEAT_PERIOD = 0.05, 0.1, 0.05, 0.05, 0.5
@@ -108,6 +108,18 @@ REASONS = (
     "POLICY",
 )  # fmt: skip
 
+
+def _goal_pose(scale: float) -> Message:
+    """Return the message of goals, with metres of depth in a step, as fine as 16 bits allow for a vehicle."""
+    fields = (
+        _unsigned("Depth", 16, scale, "m"), _unsigned("Heading", 16, 0.01, "deg"),
+        _unsigned("Speed", 8, 0.02, "m/s"), _named("Mode", 3, *MODES), _flag("FaceAlong"),
+        _unsigned("Goal", 4, 1.0, ""),
+    )  # fmt: skip
+    return Message(GOAL_POSE_ID, "GoalPose", DECISION, fields, 0.2,
+                   comment="repeated; Goal changes when another goal begins")  # fmt: skip
+
+
 COMMON = (
     Message(CLOCK_ID, "Clock", VEHICLE, (_unsigned("Time", 32, 0.001, "s"),), None, guarded=False,
             comment="simulated time: nodes that go by it tick when it has come"),
@@ -152,11 +164,7 @@ COMMON = (
             comment="of the water over ground, as far as it is known"),
     Message(0x400, "GoalPlace", DECISION, _place(), 0.2,
             comment="obeyed when its pose comes"),
-    Message(0x401, "GoalPose", DECISION,
-            (_unsigned("Depth", 16, 0.01, "m"), _unsigned("Heading", 16, 0.01, "deg"),
-             _unsigned("Speed", 8, 0.02, "m/s"), _named("Mode", 3, *MODES), _flag("FaceAlong"),
-             _unsigned("Goal", 4, 1.0, "")),
-            0.2, comment="repeated; Goal changes when another goal begins"),
+    _goal_pose(0.01),
     Message(0x402, "Progress", MOVEMENT,
             (_unsigned("Goal", 4, 1.0, ""), _named("State", 2, *PROGRESS),
              _unsigned("Distance", 16, 0.01, "m")), 0.1),
@@ -199,7 +207,9 @@ def messages_of(sheet: Sheet) -> tuple[Message, ...]:
         for number, thruster in enumerate(sheet.thrusters)
         for message in (_command(number, thruster), _status(number, thruster))
     ]
-    return tuple(sorted((*COMMON, *BEATS, *own), key=lambda message: message.id))
+    common = [each for each in COMMON if each.id != GOAL_POSE_ID]
+    pose = _goal_pose(max(1, ceil(sheet.max_depth * 100.0 / 65535.0)) / 100.0)
+    return tuple(sorted((*common, pose, *BEATS, *own), key=lambda message: message.id))
 
 
 def _thrust(thruster: Thruster) -> Field:
