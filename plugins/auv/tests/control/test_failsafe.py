@@ -257,3 +257,14 @@ def test_declared_times_are_those_of_the_manual() -> None:
         failsafe.STATE_SILENT,
         failsafe.STATE_UNTRUSTED,
     } <= told
+
+
+@pytest.mark.parametrize("name", ["Pressure", "Attitude"])
+def test_an_instrument_that_never_moved_is_found_out_by_the_others(name: str) -> None:
+    rig = Rig(replace(FLOATS, home=(0.0, 0.0, 2.0)), CURRENT)
+    rig.vehicle.faults.frozen |= {name}
+    rig.run(1.0)
+    rig.craft.go_to(0.0, 0.0, 4.0, heading=120.0)
+    rig.until(lambda: rig.state.emergency is not None, 12.0)
+    assert rig.emergencies[0][1] == "SENSORS_SILENT"
+    rig.until(lambda: rig.afloat, 60.0, 0.5)
