@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
@@ -240,10 +240,17 @@ def _connected(interface: str, channel: str, bit_rate: int) -> Iterator[Port]:
         raise typer.BadParameter(str(error)) from error
 
 
-def _opened(file: Path | None) -> AbstractContextManager[TextIO | None]:
+@contextmanager
+def _opened(file: Path | None) -> Iterator[TextIO | None]:
     if file is None:
-        return nullcontext()
+        yield None
+        return
     try:
-        return file.open("w", encoding="ascii", buffering=1)
+        log = file.open("w", encoding="ascii", buffering=1)
     except OSError as error:
         raise UnreadableError(f"{file}: {error.strerror}") from error
+    try:
+        yield log
+    finally:
+        with suppress(OSError):  # that was told when it happened
+            log.close()

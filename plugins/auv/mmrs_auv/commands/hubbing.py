@@ -36,15 +36,28 @@ def run_hub(
     Raises:
         LinkLostError: it cannot listen there.
     """
-    hub = Hub(troubles, seed, _logging(log))
+    hub = Hub(troubles, seed, _logging(log, say))
     asyncio.run(_run(hub, host, port, troubles, seconds, say))
     return hub
 
 
-def _logging(log: TextIO | None) -> Callable[[float, str, Frame], None] | None:
+def _logging(log: TextIO | None, say: Callable[[str], None]) -> Callable[[float, str, Frame], None] | None:
+    """Return what writes a frame to the log; it ends, and says so once, where that cannot be written."""
     if log is None:
         return None
-    return lambda now, channel, frame: (log.write(log_line(now, channel, frame)), None)[1]
+    failed = False
+
+    def write(now: float, channel: str, frame: Frame) -> None:
+        nonlocal failed
+        if failed:
+            return
+        try:
+            log.write(log_line(now, channel, frame))
+        except OSError as error:
+            failed = True
+            say(f"no log from here on: {error.strerror}")
+
+    return write
 
 
 async def _run(

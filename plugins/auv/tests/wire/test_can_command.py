@@ -254,6 +254,22 @@ def test_the_hub_as_a_process(tmp_path: Path) -> None:
         ]
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_log_that_is_full_is_told_once_and_the_hub_goes_on() -> None:
+    hub = HubProcess("--log", "/dev/full")
+    try:
+        with Raw(hub.port) as said, Raw(hub.port) as heard:
+            for number in range(3):
+                said.say(f"< send 10{number} 0 >")
+                assert heard.word().startswith(f"< frame 10{number} ")
+        hub.process.terminate()
+        out, _ = hub.process.communicate(timeout=20)
+    finally:
+        hub.process.kill()
+        hub.process.wait()
+    assert out.splitlines() == ["no log from here on: No space left on device", "3 frames"]
+
+
 def test_a_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     with running() as hub:
         assert mmrs(["can", "hub", "--port", str(hub.port)]) == 5
