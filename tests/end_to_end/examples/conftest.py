@@ -11,7 +11,7 @@ from mmrs_core import pipeline
 from mmrs_core.languages.reading import read_model
 from mmrs_core.resources import shipped
 
-MISSIONS = ("carbon-dioxide", "pool", "mixed-team", "solar-park", "drone-and-rover")
+MISSIONS = ("carbon-dioxide", "pool", "mixed-team", "solar-park", "drone-and-rover", "outfall")
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Frame
-from mmrs_core.testing.programs import move, robot_program
+from mmrs_core.testing.programs import feedback, move, robot_program
 from mmrs_core.testing.small_programs import notify
 
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=6)
@@ -130,6 +130,13 @@ def test_actions_post_what_their_devices_say(given, dive, does, swimmer):
     ]
     gone = next(time for time, _, value in helm.posted if "_goes_" in value)
     assert gone - posted[0][0] >= 4.0
+
+
+def test_feedback_is_posted_for_people(given, dive):
+    helm = sailed(given(dive("a", 5.0, 0.0, 2.0, after=(feedback("arrived", ("at", "a")),))))
+    assert ("MMRS_FEEDBACK", "arrived,at=a") in [(name, value) for _, name, value in helm.posted]
+    with pytest.raises(UnsupportedError, match="feedback 'a } b' is no plain text"):
+        render(MOOS, given(dive("a", 5.0, 0.0, 2.0, after=(feedback("a } b"),))))
 
 
 def test_moves_that_come_round_again_are_refused(given, dive):

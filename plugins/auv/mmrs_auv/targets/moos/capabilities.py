@@ -31,6 +31,7 @@ CAPABILITIES: Mapping[str, str] = {
     "MoveTransition.waitFor": "conditions on the slots' variables",
     "MoveTransition.fluid": "a helm passes waypoints as its capture radius says",
     "Choice": "a variable of yours is true or false",
+    "Feedback": "an endflag: MMRS_FEEDBACK",
     "UnicastNotify": "an endflag: NODE_MESSAGE_LOCAL (uFldMessageHandler), sent once, unacknowledged",
     "MulticastNotify": "endflags: NODE_MESSAGE_LOCAL (uFldMessageHandler), sent once, unacknowledged",
     "BroadcastNotify": "endflags: NODE_MESSAGE_LOCAL (uFldMessageHandler), sent once, unacknowledged",

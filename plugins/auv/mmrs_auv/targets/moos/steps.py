@@ -8,7 +8,7 @@ from math import ceil, dist
 
 from mmrs_auv.targets.moos.words import MESSAGE, variables_of, words_of
 from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of, seconds_of_hold
-from mmrs_core.behaviour.program import Action, Move, SlotId
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
@@ -18,6 +18,10 @@ from mmrs_core.transformation.kinds import before_target
 
 POSTS = "moos.post."
 """Property of a device before the name of an action: what is posted, as in ``SONAR=on;RANGE=50``."""
+
+FEEDBACK = (BEHAVIOUR, "Feedback")
+TOLD = "MMRS_FEEDBACK"
+"""The variable in which feedback is posted for people."""
 
 TOLERANCE = 0.5
 """Metres of depth within which a place is reached."""
@@ -204,6 +208,9 @@ def posts_of(action: Action, type: RobotType | None, variables: Variables) -> li
     """Return what an action posts, each a variable and its value; or why it posts nothing."""
     if action.sets:
         return [variables.told[slot, action.active] for slot in action.sets]
+    if action.is_a(FEEDBACK):
+        said = ",".join([action.name, *(f"{key}={value}" for key, value in action.parameters)])
+        return [(TOLD, said)] if _is_plain(said) else f"feedback '{said}' is no plain text"
     if not action.is_a(DEVICE_ACTION):
         return f"action {action.metaclasses[0][1]} has no form in a behaviour file"
     device = type.devices.get(action.device) if type is not None else None
