@@ -222,7 +222,7 @@ def _logged(file: Path) -> list[tuple[float, Frame]]:
             ]
     except OSError as error:
         raise UnreadableError(f"{file}: {error.strerror}") from error
-    except (ValueError, NotImplementedError, IndexError) as error:
+    except Exception as error:  # python-can's readers raise whatever their format's library does
         raise UnreadableError(f"{file}: is no log of a bus: {error}") from error
 
 

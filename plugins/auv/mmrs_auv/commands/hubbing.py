@@ -69,7 +69,7 @@ async def _run(
     try:
         found = await hub.start(host, port)
     except OSError as error:
-        raise LinkLostError(f"no hub at {host}:{port}: {error}") from error
+        raise LinkLostError(f"no hub at {host}:{port}: {error.strerror or error}") from error
     say(f"hub at {host}:{found}; python-can: interface=socketcand host={host} port={found} channel=can0")
 
     def order(line: str) -> None:

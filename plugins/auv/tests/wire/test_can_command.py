@@ -179,10 +179,20 @@ def test_load_by_design_from_a_log_and_as_json(
     assert "as heard: " in told
 
 
-@pytest.mark.parametrize("text", ["", "nonsense\n", "(1.0) can0 100#XX\n"])
-def test_logs_that_are_none(text: str, vehicle: str, tmp_path: Path) -> None:
-    log = tmp_path / "bus.log"
-    log.write_text(text)
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("bus.log", b""),
+        ("bus.log", b"nonsense\n"),
+        ("bus.log", b"(1.0) can0 100#XX\n"),
+        ("bus.log", b"\xff\xfe"),
+        ("bus.csv", b"nonsense" * 20),
+        ("bus.md", b"# Log\n"),
+    ],
+)
+def test_logs_that_are_none(name: str, text: bytes, vehicle: str, tmp_path: Path) -> None:
+    log = tmp_path / name
+    log.write_bytes(text)
     with pytest.raises((UnreadableError, LinkLostError)):
         main(["load", vehicle, "--log", str(log)])
 

@@ -216,7 +216,7 @@ def _await_hub(host: str, port: int, patience: float) -> None:
             return
         except OSError as error:
             if time.monotonic() >= until:
-                raise PortError(f"no hub at {host}:{port}: {error}") from error
+                raise PortError(f"no hub at {host}:{port}: {error.strerror or error}") from error
             time.sleep(0.05)
 
 
