@@ -54,6 +54,21 @@ def test_errors_are_as_large_as_they_are_said_to_be(log: bool) -> None:
     assert 0.3 < float(np.mean(found)) < 3.4
 
 
+def test_a_drag_that_is_not_what_the_sheet_says_is_allowed_for_while_there_is_no_log() -> None:
+    """The current is known when the log falls silent; from then on speed is reckoned wrongly by a tenth."""
+    found = []
+    for ahead in (0.45, 0.55):
+        reckoning = Reckoning(0.0, 0.0, KINDS)
+        for _ in range(3000):
+            reckoning.note_current(0.0, np.array((0.5, 0.0)), np.array((0.5, 0.0)))
+        place = np.zeros(2)
+        for _ in range(600):
+            place = place + np.array((ahead, 0.0)) * PERIOD
+            reckoning.advance_through_water(0.0, 0.5, 0.0, PERIOD)
+        found.append(squared(reckoning, place))
+    assert max(found) < 1.5
+
+
 def test_uncertainty_grows_much_faster_without_a_log() -> None:
     with_log, without = journey(1, log=True)[0], journey(1, log=False)[0]
     assert with_log.uncertainty < 1.0

@@ -33,7 +33,9 @@ def test_peak_thrust_comes_back_after_rest() -> None:
     limits = ThrustLimits(pool_sheet())
     hold(limits, 35.0, 15.0)
     assert limits.bounds(np.zeros(6), ALL, 1.0)[1][0] == pytest.approx(18.0)
-    hold(limits, 0.0, PEAK_TIME)
+    hold(limits, 0.0, 0.3 * PEAK_TIME)
+    assert limits.bounds(np.zeros(6), ALL, 1.0)[1][0] == pytest.approx(18.0)
+    hold(limits, 0.0, 0.7 * PEAK_TIME)
     assert limits.bounds(np.zeros(6), ALL, 1.0)[1][0] == pytest.approx(35.0)
 
 

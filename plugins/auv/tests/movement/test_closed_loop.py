@@ -179,10 +179,14 @@ def test_it_goes_no_deeper_than_it_may() -> None:
 
 def test_goals_whose_halves_do_not_belong_together_are_not_pursued() -> None:
     rig = begun(pool_sheet())
+    rig.craft.go_to(6.0, 0.0, 2.0)
+    rig.run(1.0)
     rig.bus.disturb(WireFault(loss=1.0, ids=frozenset({0x400})))
-    rig.craft.go_to(20.0, 0.0, 2.0)
-    rig.run(5.0)
-    assert abs(rig.vehicle.truth.north) < 0.3
+    rig.craft.go_to(-20.0, 0.0, 2.0)
+    rig.run(8.0)
+    assert rig.vehicle.truth.north < 1.5
+    assert rig.movement.goal is not None
+    assert rig.movement.goal.north == pytest.approx(6.0)
 
 
 def test_it_keeps_to_the_line_to_its_goal() -> None:
