@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import thruster
 from mmrs_auv.vessel.body.drive import FAULT, OFF, RUNS, WATCHDOG, Drive
@@ -120,6 +120,7 @@ COMMANDS = st.lists(
 )
 
 
+@settings(deadline=None)
 @given(COMMANDS, st.floats(0.0, 1.0))
 def test_there_is_thrust_only_for_a_while_after_a_valid_command(commands, later):
     drive = Drive(thruster("T1", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), WATCH)

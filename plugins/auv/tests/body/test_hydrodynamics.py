@@ -7,7 +7,7 @@ from math import atanh, log, nan, pi, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import pool_sheet, torpedo_sheet
 from mmrs_auv.vessel.body.hydrodynamics import AXES, added_mass, ellipsoid_inertia, hull_of
@@ -52,6 +52,7 @@ def test_a_disc_carries_eight_thirds_of_its_radius_cubed():
     assert added[3] == pytest.approx(16.0 / 45.0 * DENSITY * radius**5, rel=1e-3)
 
 
+@settings(deadline=None)
 @given(HALVES)
 def test_added_mass_of_any_ellipsoid_is_that_of_the_integrals(half):
     shares = [_integral(half, axis) for axis in range(3)]
@@ -62,6 +63,7 @@ def test_added_mass_of_any_ellipsoid_is_that_of_the_integrals(half):
     )
 
 
+@settings(deadline=None)
 @given(HALVES)
 def test_added_mass_is_never_negative_and_least_along_the_longest_axis(half):
     added = added_mass(half, DENSITY)

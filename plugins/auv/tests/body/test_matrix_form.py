@@ -12,7 +12,7 @@ from math import cos, degrees, radians, sin, tan
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
 from mmrs_auv.vessel.body.dynamics import body_of, runge_kutta, slopes, thrust
@@ -71,6 +71,7 @@ def turning(angles, rates):
     return [degrees(rate) for rate in jacobian @ rates]
 
 
+@settings(deadline=None)
 @given(BODIES, ANGLES, SPEEDS, FORCES)
 def test_accelerations_are_those_of_the_matrix_form(body, angles, speeds, force):
     state = (0.0, 0.0, 100.0, *of_angles(*angles), *speeds)
@@ -82,6 +83,7 @@ def test_accelerations_are_those_of_the_matrix_form(body, angles, speeds, force)
     assert change[7:] == pytest.approx(list(wanted), rel=1e-9, abs=1e-9)
 
 
+@settings(deadline=None)
 @given(BODIES, ANGLES, SPEEDS)
 def test_attitude_changes_by_the_jacobian_of_its_angles(body, angles, speeds):
     tiny = 1e-5
@@ -99,6 +101,7 @@ def test_attitude_changes_by_the_jacobian_of_its_angles(body, angles, speeds):
     assert changes == pytest.approx(turning(angles, speeds[3:]), abs=0.01, rel=1e-4)
 
 
+@settings(deadline=None)
 @given(BODIES, st.lists(FORCES, min_size=8, max_size=8))
 def test_thrust_is_a_matrix_of_directions_and_levers(body, forces):
     columns = [[*jet.wrench[:3], *np.cross(jet.position, jet.wrench[:3])] for jet in body.jets]

@@ -6,14 +6,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from mmrs_auv.testing import heavy_sheet, pool_sheet
+from mmrs_auv.vessel.body.rotation import to_world
 from mmrs_auv.vessel.body.surroundings import BUOY, Obstacle, Surroundings, Thing
 from mmrs_auv.vessel.body.vehicle import DEVICE_COMMAND, Vehicle
-from mmrs_auv.vessel.hosting import Rehearsal
+from mmrs_auv.vessel.hosting import Rehearsal, WireFault
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.codec import Codec, Received
 from mmrs_auv.vessel.wire.frame import Frame
 
+POOL = Codec(pool_sheet())
 QUIET = Surroundings(noise=False, bottom=10.0)
 
 
@@ -83,6 +87,21 @@ def test_instruments_tell_the_truth_when_there_is_no_noise():
     assert helm.last("GroundSpeed")["Surge"] == pytest.approx(truth.speeds[0], abs=0.002)
     assert helm.last("Altitude") == {"Altitude": pytest.approx(10.0 - truth.depth, abs=0.02), "Valid": True}
     assert helm.last("Acceleration")["Heave"] == pytest.approx(-9.807, abs=0.1)
+
+
+def test_acceleration_is_how_velocity_changes_in_the_world():
+    vehicle, _, water = at_sea(thrusts=(18.0, 6.0, 2.0, 18.0, 9.0, 4.0))
+    water.run(3.0)
+    before = vehicle.truth.velocity
+    water.run(0.05)
+    truth = vehicle.truth
+    water.run(0.05)
+    after = vehicle.truth.velocity
+
+    assert abs(truth.rates[2]) > 20.0
+    assert abs(truth.speeds[1]) > 0.05
+    changes = [(one - other) / 0.1 for one, other in zip(after, before, strict=True)]
+    assert to_world(truth.axes, truth.acceleration) == pytest.approx(changes, abs=5e-3)
 
 
 def test_messages_come_as_often_as_the_catalogue_says():
@@ -187,6 +206,30 @@ def test_thrust_is_zero_in_time_when_commands_end():
     assert [drive.thrust for drive in vehicle.drives] == [0.0] * 6
 
 
+def test_corrupted_commands_do_not_keep_the_watchdog_quiet():
+    vehicle, helm, water = at_sea(thrusts=(10.0,) * 6)
+    water.run(2.0)
+
+    water.disturb(WireFault(corruption=1.0, sender="Actuators"))
+    water.run(0.5)
+
+    assert [drive.state for drive in vehicle.drives] == ["WATCHDOG"] * 6
+    assert helm.last("Thruster0Status")["Drive"] == "WATCHDOG"
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 0x7FF), st.binary(max_size=8), st.booleans()), max_size=20))
+def test_no_frame_of_chance_moves_or_harms_it(frames):
+    vehicle = Vehicle(pool_sheet(), POOL, QUIET, place=(0.0, 0.0, 3.0))
+    for id, data, extended in frames:
+        for number in (id, 0x100, 0x010, 0x500):
+            vehicle.hear(Frame(number, data, extended), 0.0)
+    vehicle.tick(0.5)
+
+    assert all(drive.thrust == 0.0 for drive in vehicle.drives)
+    assert vehicle.truth.north == 0.0
+
+
 def test_a_dead_thruster_says_so_and_does_nothing():
     vehicle, helm, water = at_sea(thrusts=(10.0,) * 6)
     vehicle.faults.dead.add(1)
@@ -268,7 +311,10 @@ def test_the_sonar_sees_what_is_ahead(heading, seen):
         noise=False,
         bottom=50.0,
         obstacles=(Obstacle(10.0, 0.0, 0.5), Obstacle(-5.0, 0.0, 0.5, bottom=2.0)),
-        things=(Thing(BUOY, "red buoy", 0.0, 5.0, 3.0, size=0.5),),
+        things=(
+            Thing(BUOY, "ahead", 0.0, 5.0, 3.0, size=0.5),
+            Thing(BUOY, "beside", 0.3, -5.0, 3.0, size=0.5),
+        ),
     )
     _, helm, water = at_sea(pool, heading=heading)
 
@@ -283,9 +329,12 @@ def test_a_vehicle_with_an_empty_battery_is_silent_and_drops_its_weight():
 
     water.run(3.9)
     assert not vehicle.released
-    water.run(2.0)
+    water.run(1.0)
+    water.post(helm.codec.encode("DeviceCommand", Device=0, Action=0, Parameter=0.0, Request=1))
+    water.run(1.0)
 
-    assert 3.9 <= max(now for now, _ in helm.heard) <= 4.1
+    assert 3.9 <= max(helm.times("Pressure")) <= 4.1
+    assert vehicle.devices.operations == []
     assert vehicle.charge == 0.0
     assert vehicle.released
     assert [drive.thrust for drive in vehicle.drives] == [0.0] * 8
