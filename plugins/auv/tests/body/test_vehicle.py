@@ -89,6 +89,27 @@ def test_instruments_tell_the_truth_when_there_is_no_noise():
     assert helm.last("Acceleration")["Heave"] == pytest.approx(-9.807, abs=0.1)
 
 
+def test_it_begins_at_home_or_where_it_is_put():
+    sheet = replace(pool_sheet(), home=(5.0, -6.0, 2.0), heading=120.0)
+
+    home, elsewhere = (
+        Vehicle(sheet, Codec(sheet), QUIET, place=place, heading=heading).truth
+        for place, heading in ((None, None), ((1.0, 2.0, 3.0), 10.0))
+    )
+
+    assert (home.north, home.east, home.depth) == (5.0, -6.0, 2.0)
+    assert home.heading == pytest.approx(120.0)
+    assert (elsewhere.north, elsewhere.east, elsewhere.depth) == (1.0, 2.0, 3.0)
+    assert elsewhere.heading == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(("depth", "begins"), [(-1.0, 0.035), (0.0, 0.035), (99.0, 10.0 - 0.175)])
+def test_it_begins_neither_in_the_air_nor_in_the_ground(depth, begins):
+    sheet = replace(pool_sheet(), weight_in_water=-19.0)
+
+    assert Vehicle(sheet, Codec(sheet), QUIET, place=(0.0, 0.0, depth)).truth.depth == pytest.approx(begins)
+
+
 def test_acceleration_is_how_velocity_changes_in_the_world():
     vehicle, _, water = at_sea(thrusts=(18.0, 6.0, 2.0, 18.0, 9.0, 4.0))
     water.run(3.0)
