@@ -26,6 +26,8 @@ _HELP = (
 
 app = typer.Typer(rich_markup_mode=None, help=_HELP, no_args_is_help=True, add_completion=False)
 
+_COUNTED = ("frames", "lost", "corrupted", "overdue", "missed", "wrong", "refused")
+
 Interface = Annotated[
     str,
     typer.Option("--interface", metavar="NAME", help="As python-can calls it: socketcand, socketcan, ..."),
@@ -60,7 +62,7 @@ def dbc(
 ) -> int:
     """Write the database of a vehicle's bus, for other people's tools.
 
-    Example: mmrs can dbc examples/pool --robot AUV -o auv.dbc
+    Example: mmrs can dbc examples/pool --robot Naiad -o auv.dbc
     """
     from mmrs_auv.vessel.wire.database import dbc_of
 
@@ -79,7 +81,7 @@ def dbc(
 @app.command("hub")
 def hub(
     host: Annotated[
-        str, typer.Option("--host", help="Where to listen; all of your network may drive what is there.")
+        str, typer.Option("--host", help="Where to listen; who reaches that can drive what is there.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option("--port", min=0, max=65_535, help="TCP port; 0: any.")] = 29536,
     loss: Annotated[
@@ -120,9 +122,6 @@ def hub(
     return 0
 
 
-_COUNTED = ("frames", "lost", "corrupted", "overdue", "missed", "wrong", "refused")
-
-
 @app.command("monitor")
 def monitor(
     vehicle: Vehicle,
@@ -136,7 +135,7 @@ def monitor(
 ) -> int:
     """Tell what is said on a vehicle's bus, and at the end what was missed or not believed.
 
-    Example: mmrs can monitor examples/pool --robot AUV --only Depth --only Emergency
+    Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only Emergency
     """
     from mmrs_auv.commands.watching import Monitor, heard
 
@@ -180,7 +179,7 @@ def load(
     each message is over in the worst case. With a log or a bus to listen to: also as it was, by the stuff
     bits of the very frames.
 
-    Example: mmrs can load examples/pool --robot AUV --messages
+    Example: mmrs can load examples/pool --robot Naiad --messages
     """
     from mmrs_auv.commands.load_words import summary, table
     from mmrs_auv.vessel.wire.load import heard_load, load_of

@@ -40,6 +40,14 @@ def test_frames_go_from_one_to_all_others(opened: Callable[[], Port]) -> None:
         assert not second.errors
 
 
+@pytest.mark.parametrize(
+    "frame", [Frame(0x900, b""), Frame(1 << 29, b"", True), Frame(-1, b""), Frame(0x100, bytes(9))]
+)
+def test_what_is_no_frame_is_not_sent(opened: Callable[[], Port], frame: Frame) -> None:
+    with opened() as port, pytest.raises(ValueError, match="no frame of classic CAN"):
+        port.send(frame)
+
+
 def test_nothing_comes_from_a_quiet_bus_in_the_time_that_was_given(opened: Callable[[], Port]) -> None:
     with opened() as port:
         begin = time.monotonic()

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
 from ..sheet import Sheet
 from .catalogue import CHECK, SEQUENCE, Message, messages_of
@@ -134,7 +134,7 @@ class _Coding:
     def _about(self, slot: Slot, value: Value, wanted: str) -> str:
         return f"{self.message.name}.{slot.field.name}: {value!r}: {wanted}"
 
-    def _refuse_fields(self, values: Mapping[str, Value]) -> None:
+    def _refuse_fields(self, values: Mapping[str, Value]) -> NoReturn:
         missing, unknown = self._own.keys() - values.keys(), values.keys() - self._own.keys()
         said = [f"{name} is missing" for name in sorted(missing)]
         said += [f"there is no field {name}" for name in sorted(unknown)]

@@ -51,9 +51,12 @@ class Port:
 
         Raises:
             PortError: the bus is gone.
+            ValueError: the frame is none of classic CAN; python-can would cut its identifier.
         """
         from can import CanError, Message
 
+        if frame.id >> (29 if frame.extended else 11) or len(frame.data) > 8:
+            raise ValueError(f"no frame of classic CAN: {frame}")
         self._check()
         message = Message(arbitration_id=frame.id, data=frame.data, is_extended_id=frame.extended)
         try:
