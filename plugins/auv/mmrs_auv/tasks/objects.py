@@ -108,7 +108,13 @@ def align_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
             distance=stroke.object_distance,
             look=stroke.look if stroke.look.device else None,
         ),
-        MoveSpec((BEHAVIOUR, "HeadTo"), look=stroke.look),
+        MoveSpec(
+            (BEHAVIOUR, "HeadTo"),
+            object=stroke.object,
+            object_tolerance=stroke.object_tolerance,
+            look=stroke.look,
+            facing=True,
+        ),
         MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": stroke.hold}, after=stroke.actions),
     )
 

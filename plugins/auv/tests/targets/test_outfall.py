@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from imc_reader import read_packet
+from lxml import etree
 from moos_reader import Helm, read, run
 
 from mmrs_core.testing.conformance.missions import run_command
@@ -26,6 +27,17 @@ def generated(planned, target):
     out = planned.parent / target
     run_command("generate", planned, "--target", target, "-o", out, "--allow-lossy")
     return out
+
+
+def test_the_vehicle_faces_the_object_wherever_it_is_found(planned):
+    root = etree.parse(planned / "behaviour.xmi").getroot()
+    kind = "{http://www.w3.org/2001/XMLSchema-instance}type"
+    (turn,) = (
+        each for each in root.iter("moves") if each.get("rule") == "align" and "HeadTo" in each.get(kind)
+    )
+    index = int(turn.find("heading").get("target").rpartition(".")[2])
+    target = root.findall("targets")[index]
+    assert (target.get(kind), target.get("description")) == ("behaviour:ObjectTarget", "marker buoy")
 
 
 def test_its_plan_for_lsts_vehicles_is_read_back(planned):

@@ -65,6 +65,7 @@ def test_aligning_goes_to_the_object_faces_it_holds_and_then_acts(robot, scene, 
     go, turn, hold = align_moves(there, robot())
     assert (go.object, go.target, go.distance, go.object_tolerance) == ("gate", POINT, 2.0, 1.0)
     assert (turn.metaclass[1], turn.look.at) == ("HeadTo", POINT)
+    assert (turn.facing, turn.object, turn.object_tolerance) == (True, "gate", 1.0)
     assert hold.attributes == {"duration": 5.0}
     assert [each.action for each in hold.after] == ["TakePicture"]
     assert back.points == there.points[:1]
