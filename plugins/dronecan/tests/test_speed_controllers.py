@@ -9,7 +9,7 @@ import dronecan
 import pytest
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_dronecan.options import Options, options_of
 from mmrs_dronecan.speed_controllers import SpeedControllers
@@ -73,7 +73,7 @@ def test_all_thrusters_are_told_in_one_message(count: int) -> None:
 
 
 @given(st.lists(st.floats(-60.0, 60.0), min_size=6, max_size=6), st.booleans())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_commands_are_in_range_and_keep_sign_and_order(asked: list[float], square: bool) -> None:
     found = command(SpeedControllers(thrusters(6), Options(square=square)).commands(asked, True))
     assert all(-8192 <= each <= 8191 for each in found)
@@ -198,7 +198,7 @@ class Any29:
         max_size=40,
     )
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_anything_at_all_is_heard_without_an_error(frames: list[Any29]) -> None:
     driver = opened_fast(6)
     for frame in frames:

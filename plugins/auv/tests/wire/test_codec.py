@@ -6,7 +6,7 @@ from itertools import combinations
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import EMERGENCY_ID, NODES, Field, Message, messages_of
@@ -43,7 +43,7 @@ def any_values(message: Message) -> dict[str, Any]:
 
 
 @given(said())
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_values_come_back_to_the_nearest_step(saying: tuple[Sheet, Message, dict[str, Any]]) -> None:
     vehicle, message, values = saying
     codec = Codec(vehicle)
@@ -60,7 +60,7 @@ def test_values_come_back_to_the_nearest_step(saying: tuple[Sheet, Message, dict
 
 
 @given(st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_what_was_heard_is_said_again_in_the_same_bytes(data: st.DataObject) -> None:
     message = data.draw(st.sampled_from(MESSAGES))
     values = data.draw(values_of(message))
@@ -101,7 +101,7 @@ def _flags(message: Message) -> dict[str, Any]:
 
 
 @given(st.binary(max_size=8), st.sampled_from(MESSAGES))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_anything_at_all_is_heard_without_an_error(data: bytes, message: Message) -> None:
     CODEC.decode(Frame(message.id, data))
     assert CODEC.decode(Frame(message.id, data, extended=True)) is None

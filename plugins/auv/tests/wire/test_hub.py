@@ -15,7 +15,7 @@ from random import Random
 import can
 import pytest
 from can_hub import Raw, eventually, running
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.vessel.wire import hub as hubs
 from mmrs_auv.vessel.wire.frame import Frame
@@ -48,7 +48,7 @@ def test_clients_of_python_can_and_by_sockets_hear_each_other_and_not_themselves
 
 
 @given(FRAMES)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_frames_are_told_as_python_can_reads_them(frame: Frame) -> None:
     from can.interfaces.socketcand.socketcand import (
         convert_ascii_message_to_can_message,
@@ -68,7 +68,7 @@ def test_frames_are_told_as_python_can_reads_them(frame: Frame) -> None:
 
 
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=5))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_words_are_the_same_however_they_arrive(text: bytes, cuts: list[int]) -> None:
     def heard(pieces: list[bytes]) -> list[list[str]]:
         buffer, words = bytearray(), []
@@ -189,7 +189,7 @@ def test_who_says_words_without_end_or_only_nonsense_is_sent_away() -> None:
 
 
 @given(st.binary(max_size=300))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_garbage_leaves_the_others_alone(garbage: bytes) -> None:
     with (
         Raw(_SHARED.port) as odd,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.vessel.wire.catalogue import messages_of
 from mmrs_auv.vessel.wire.frame import Frame
@@ -41,7 +41,7 @@ def test_a_bus_that_is_too_slow_has_no_limits() -> None:
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=60, max_size=60), st.sampled_from([50_000, 125_000, 500_000]))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_no_message_is_over_later_than_told_on_a_simulated_bus(phases: list[float], bit_rate: int) -> None:
     """Messages begin at any phase, frames are as long as they can be, the lowest identifier goes first."""
     vehicle = sheet(6, bit_rate=bit_rate)
