@@ -73,14 +73,6 @@ def mmrs_targets() -> tuple[Target, ...]:
 
 
 @hookimpl
-def mmrs_backends() -> tuple[BackendFactory, ...]:
-    """Contribute what drives underwater vehicles by a pilot's sticks."""
-    from mmrs_auv.manual import ARDUSUB_MANUAL
-
-    return (ARDUSUB_MANUAL,)
-
-
-@hookimpl
 def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
     """Contribute how underwater vehicles, their tasks and pipelines look on maps."""
     return (
@@ -98,7 +90,20 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
 
 
 @hookimpl
+def mmrs_backends() -> tuple[BackendFactory, ...]:
+    """Contribute what drives underwater vehicles: over their buses, or by a pilot's sticks."""
+    from mmrs_auv.backend import CAN, CAN_SIM
+    from mmrs_auv.manual import ARDUSUB_MANUAL
+
+    return (CAN, CAN_SIM, ARDUSUB_MANUAL)
+
+
+@hookimpl
 def mmrs_commands() -> tuple[Command, ...]:
-    """Contribute what concerns the CAN buses of vehicles."""
+    """Contribute what concerns the CAN buses of vehicles, and vehicles that are simulated on them."""
     said = "CAN buses of vehicles: database (DBC), a hub for one machine, what is said, how busy."
-    return (Command("can", said, "mmrs_auv.commands.can:main"),)
+    rehearse = "Simulated underwater vehicles to rehearse on, each on a CAN bus of its own."
+    return (
+        Command("can", said, "mmrs_auv.commands.can:main"),
+        Command("auv", rehearse, "mmrs_auv.commands.auv:main"),
+    )
