@@ -201,6 +201,29 @@ def test_a_dead_thruster_is_made_up_for_where_others_can(seed: int) -> None:
     assert rig.emergencies == []
 
 
+def test_one_upright_thruster_of_two_takes_it_down_without_turning_it_over() -> None:
+    rig = diving(pool_sheet())
+    rig.vehicle.faults.dead |= {4}
+    rig.craft.go_to(rig.state.north + 2.0, 0.0, 3.0, heading=0.0)
+    most = 0.0
+    while rig.state.progress != "REACHED":
+        rig.run(0.1)
+        most = max(most, abs(rig.vehicle.truth.roll))
+        assert rig.bus.now < 60.0, rig.where()
+    assert 5.0 < most < 30.0
+    assert rig.emergencies == []
+
+
+@pytest.mark.parametrize("name", ["GroundSpeed", "Pressure", "Attitude", "Rates"])
+def test_an_instrument_with_much_noise_does_not_end_the_dive(name: str) -> None:
+    rig = diving(pool_sheet())
+    rig.vehicle.faults.noisy[name] = 20.0
+    rig.craft.go_to(rig.state.north + 2.0, 0.0, 2.5, heading=20.0)
+    rig.reach(60.0)
+    assert rig.emergencies == []
+    assert abs(rig.vehicle.truth.depth - 2.5) < 0.2
+
+
 def test_a_thruster_that_gives_nothing_though_its_drive_says_it_runs_counts_as_dead() -> None:
     rig = diving(SINKS)
     rig.vehicle.drives[4]._most = 0.0

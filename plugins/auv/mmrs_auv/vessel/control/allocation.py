@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import radians, sin
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..body.hydrodynamics import GRAVITY, hull_of
 from ..sheet import Sheet
 
 Array: TypeAlias = NDArray[np.float64]
@@ -18,6 +20,12 @@ STEERED = (0, 1, 2, 5)
 
 WEIGHTS = (1.0, 1.0, 10.0, 3.0, 3.0, 10.0)
 """Of what is missing of each degree when thrust is short: depth and heading go before speed."""
+
+TILT = 15.0
+"""Degrees to which moments that nothing balances may tilt a vehicle."""
+
+STRICTER = (2.0, 4.0, 8.0, 16.0, 32.0)
+"""Factors of the weights of roll and pitch that are tried until it tilts no further."""
 
 TINY = 1e-6
 """Weight of thrust itself, so that of all ways to a wrench the one with least thrust is taken."""
@@ -97,13 +105,26 @@ class Allocation:
             for direction in [_unit(each.direction)]
         ]
         self.matrix: Array = np.array(columns, float).T.reshape(6, len(columns))
+        hull = hull_of(sheet)
+        self._tilting = hull.mass * GRAVITY * hull.righting_arm * sin(radians(TILT))
         lever = max(0.05, sheet.length / 2.0, sheet.width / 2.0)
         self._scale = np.array((1.0, 1.0, 1.0, 1.0 / lever, 1.0 / lever, 1.0 / lever)) * np.array(WEIGHTS)
         self._scaled = self.matrix * self._scale[:, None]
 
     def thrusts(self, wrench: Array, low: Array, high: Array) -> Array:
-        """Return newtons for each thruster, within bounds, that come nearest to a wrench by `WEIGHTS`."""
-        return bounded_least_squares(self._scaled, wrench * self._scale, low, high)
+        """Return newtons for each thruster, within bounds, that come nearest to a wrench by `WEIGHTS`.
+
+        Where thrusters that are missing would make the others tilt the vehicle by more than `TILT`, against
+        what rights it, they give so much less that it does not tilt so far.
+        """
+        thrusts = bounded_least_squares(self._scaled, wrench * self._scale, low, high)
+        for factor in STRICTER:
+            tilting = np.abs(self.missing(wrench, thrusts)[3:5])
+            if float(tilting.max()) <= self._tilting:
+                break
+            scale = self._scale * np.array((1.0, 1.0, 1.0, factor, factor, 1.0))
+            thrusts = bounded_least_squares(self.matrix * scale[:, None], wrench * scale, low, high)
+        return thrusts
 
     def missing(self, wrench: Array, thrusts: Array) -> Array:
         """Return what of a wrench those thrusts do not give: N and N.m."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import cos, radians, sin, tan
+
 import numpy as np
 
 from ..instruments import Instruments
@@ -11,6 +13,9 @@ from .plausibility import Channel, Drift
 GYRO_GAIN, RATE_GAIN_ALONE = 0.7, 0.06
 ANGLE_GAIN, ANGLE_GAIN_ALONE = 0.12, 0.35
 """Parts of a residual that are taken over: of rates, of angles; and those without gyroscopes to believe."""
+
+STEEPEST = 80.0
+"""Degrees of pitch beyond which rates are taken as at this, for a heading has no meaning straight down."""
 
 DRIFT = 8.0
 """Degrees by which compass and gyroscopes may be apart after some seconds."""
@@ -39,8 +44,9 @@ class AttitudeFilter:
 
     def advance(self, period: float) -> None:
         """Let time go by, seconds."""
-        self.angles = _turned(self.angles + self.rates * period)
-        self._drift.advance(float(self.rates[2]), period)
+        changes = changes_of(self.angles, self.rates)
+        self.angles = _turned(self.angles + changes * period)
+        self._drift.advance(float(changes[2]), period)
 
     def take_rates(self, rates: Array, now: float) -> None:
         """Take what gyroscopes say, degrees per second."""
@@ -78,6 +84,14 @@ class AttitudeFilter:
     def trusted(self, now: float) -> bool:
         """Tell whether the attitude may be relied on."""
         return self.attitude.trusted(now)
+
+
+def changes_of(angles: Array, rates: Array) -> Array:
+    """Return how roll, pitch and heading change, degrees per second, by rates about the body's axes."""
+    roll, pitch = radians(angles[0]), radians(min(max(angles[1], -STEEPEST), STEEPEST))
+    across = rates[1] * sin(roll) + rates[2] * cos(roll)
+    tilting = rates[1] * cos(roll) - rates[2] * sin(roll)
+    return np.array((rates[0] + across * tan(pitch), tilting, across / cos(pitch)))
 
 
 def _turned(angles: Array) -> Array:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 from ..body.hydrodynamics import GRAVITY
 from ..instruments import Instruments
 from ..sheet import Sheet
-from .plausibility import Channel, Drift
+from .plausibility import FORGETS, Channel, Drift
+from .reckoning import LOG_PERIOD
 
 DEPTH_GAIN, RATE_GAIN, LOG_GAIN = 0.25, 0.04, 0.4
 """Parts of a residual taken over: of depth into depth and (per second) rate, of the log's into rate."""
@@ -13,8 +16,9 @@ DEPTH_GAIN, RATE_GAIN, LOG_GAIN = 0.25, 0.04, 0.4
 STEEPEST = 3.0
 """Metres per second that no vehicle sinks or rises."""
 
-DRIFT = 0.3
-"""Metres by which pressure and the log may be apart after some seconds."""
+DRIFT, VARIANCE_GAIN = 0.3, 0.1
+"""Metres by which pressure and a log without noise may be apart after some seconds; part of a squared
+residual of the log that is taken over into its variance."""
 
 GIVE_WAY = 2.0
 """Seconds without a plausible pressure after which any is taken that is not frozen."""
@@ -38,6 +42,7 @@ class Vertical:
         self.pressure = Channel(0.9 * self._air, deepest, 1.0)
         self._rate_at: float | None = None
         self._rate_said = 0.0
+        self._variance = 0.0
         self._drift = Drift()
 
     def advance(self, acceleration: float, now: float, period: float) -> None:
@@ -60,7 +65,8 @@ class Vertical:
         self._drift.take(depth)
         if not sure or gives_way:
             self._drift.forget()
-        if abs(self._drift.difference) > DRIFT + 6.0 * self._noise:
+        wanders = 3.0 * sqrt(self._variance * LOG_PERIOD * FORGETS / 2.0)
+        if abs(self._drift.difference) > DRIFT + 6.0 * self._noise + wanders:
             residual = float("inf")
         if not self.pressure.judge(
             (pressure,), now, residual=residual, allowed=float("inf") if gives_way else allowed
@@ -75,6 +81,7 @@ class Vertical:
     def take_rate(self, rate: float, now: float) -> None:
         """Take a rate of sinking that the log says, metres per second."""
         self._rate_at, self._rate_said = now, rate
+        self._variance += VARIANCE_GAIN * ((rate - self.rate) ** 2 - self._variance)
         self.rate += LOG_GAIN * (rate - self.rate)
 
     def trusted(self, now: float) -> bool:
