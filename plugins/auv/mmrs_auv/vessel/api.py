@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from .goals import GOAL_PERIOD, GOALS, Goal, goal_frames
+from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from .hosting import Pace, Port, serve
 from .sheet import Sheet
 from .wire.catalogue import BEAT_PERIOD, DECISION, by_id
@@ -254,7 +254,7 @@ class Craft:
     def _begin(self, goal: Goal) -> int:
         with self._lock:
             goal = replace(goal, number=(self._goal.number + 1) % GOALS)
-            goal_frames(self._codec, goal)
+            check_goal(self._codec, goal)
             self._goal = goal
             self._state = replace(self._state, goal=goal.number, progress="NONE", distance=0.0)
             return goal.number

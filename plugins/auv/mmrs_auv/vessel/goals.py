@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from .sheet import Sheet
-from .wire.codec import Codec, Received
+from .wire.codec import Codec, Received, Value
 from .wire.frame import Frame
 
 GOAL_PERIOD = 0.2
@@ -44,18 +44,30 @@ def goal_frames(codec: Codec, goal: Goal) -> list[Frame]:
     Raises:
         ValueError: a value is beyond what messages hold.
     """
-    return [
-        codec.encode("GoalPlace", North=goal.north, East=goal.east),
-        codec.encode(
-            "GoalPose",
-            Depth=goal.depth,
-            Heading=goal.heading % 360.0,
-            Speed=goal.speed,
-            Mode=goal.mode,
-            FaceAlong=goal.along,
-            Goal=goal.number,
-        ),
-    ]
+    return [codec.encode(name, **values) for name, values in _said(goal)]
+
+
+def check_goal(codec: Codec, goal: Goal) -> None:
+    """Return if a goal can be said; nothing is.
+
+    Raises:
+        ValueError: as `goal_frames`.
+    """
+    for name, values in _said(goal):
+        codec.check(name, **values)
+
+
+def _said(goal: Goal) -> tuple[tuple[str, dict[str, Value]], ...]:
+    """Return the names and values of the messages that say a goal."""
+    pose: dict[str, Value] = {
+        "Depth": goal.depth,
+        "Heading": goal.heading % 360.0,
+        "Speed": goal.speed,
+        "Mode": goal.mode,
+        "FaceAlong": goal.along,
+        "Goal": goal.number,
+    }
+    return ("GoalPlace", {"North": goal.north, "East": goal.east}), ("GoalPose", pose)
 
 
 def goal_of(place: Received, pose: Received) -> Goal:

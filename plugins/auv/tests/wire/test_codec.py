@@ -195,6 +195,18 @@ def test_a_refused_message_leaves_no_gap_in_the_counter() -> None:
     assert heard.sequence == 0
 
 
+def test_what_is_only_checked_is_refused_alike_and_counts_for_nothing() -> None:
+    codec = Codec(SHEET)
+    codec.check("Fix", North=1.0, East=2.0)
+    with pytest.raises(ValueError, match=r"Fix\.North"):
+        codec.check("Fix", North=1e9, East=2.0)
+    with pytest.raises(ValueError, match="no message"):
+        codec.check("Fixx", North=1.0, East=2.0)
+    heard = codec.decode(codec.encode("Fix", North=0.0, East=0.0))
+    assert heard is not None
+    assert heard.sequence == 0
+
+
 def test_every_node_has_a_heartbeat() -> None:
     codec = Codec(SHEET)
     for node in NODES:

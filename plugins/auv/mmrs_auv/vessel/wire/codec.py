@@ -65,10 +65,15 @@ class Codec:
         Raises:
             ValueError: there is no such message, a field is missing or unknown, or a value is out of range.
         """
-        coding = self._codings.get(name)
-        if coding is None:
-            raise ValueError(f"there is no message {name!r} on this bus")
-        return coding.frame(values)
+        return self._coding(name).frame(values)
+
+    def check(self, name: str, **values: Value) -> None:
+        """Return if `encode` would say so; nothing is said, and nothing counted.
+
+        Raises:
+            ValueError: as `encode`.
+        """
+        self._coding(name).raw(values)
 
     def decode(self, frame: Frame) -> Received | None:
         """Return what a frame says; None: it is none of this bus, or cannot be believed (see `faults`)."""
@@ -79,6 +84,11 @@ class Codec:
         if found is None:
             self.faults[coding.message.name] += 1
         return found
+
+    def _coding(self, name: str) -> _Coding:
+        if name not in self._codings:
+            raise ValueError(f"there is no message {name!r} on this bus")
+        return self._codings[name]
 
 
 class _Coding:
@@ -92,10 +102,13 @@ class _Coding:
         self._entry = entry
         self._sequence = 255
 
-    def frame(self, values: Mapping[str, Value]) -> Frame:
+    def raw(self, values: Mapping[str, Value]) -> dict[str, int]:
         if values.keys() != self._own.keys():
             self._refuse_fields(values)
-        raw = {name: self._raw(slot, values[name]) for name, slot in self._own.items()}
+        return {name: self._raw(slot, values[name]) for name, slot in self._own.items()}
+
+    def frame(self, values: Mapping[str, Value]) -> Frame:
+        raw = self.raw(values)
         if not self.message.guarded:
             return Frame(self.message.id, self._packed(raw))
         self._sequence = (self._sequence + 1) % 256
