@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Sequence
 from math import copysign, dist, sqrt
+from pathlib import Path
 
 import dronecan
 import pytest
+from can_hub import Raw, running
 from dronecan.transport import Frame as Part
 from dronecan.transport import Transfer, TransferManager
 from mmrs_auv.testing import pool_sheet
@@ -18,7 +22,7 @@ from mmrs_auv.vessel.control.foreign import drives_of
 from mmrs_auv.vessel.control.sensors import Sensors
 from mmrs_auv.vessel.hosting import Rehearsal
 from mmrs_auv.vessel.movement.movement import Movement
-from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.sheet import Sheet, to_json
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 
@@ -141,6 +145,39 @@ def test_a_thruster_that_does_not_turn_is_found_out() -> None:
     craft.go_to(3.0, 1.0, 2.0)
     run.run(10.0)
     assert actuators._watch.working == [number != 2 for number in range(6)]
+
+
+def test_the_process_of_the_actuator_controller_takes_drives_by_name(tmp_path: Path) -> None:
+    file = tmp_path / "sheet.json"
+    file.write_text(to_json(pool_sheet()))
+    with running() as hub, Raw(hub.port) as heard:
+        words = [
+            "actuators",
+            "--sheet",
+            str(file),
+            "--channel",
+            f"can0@127.0.0.1:{hub.port}",
+            "--drives",
+            DRIVES,
+        ]
+        process = subprocess.Popen([sys.executable, "-m", "mmrs_auv.vessel", *words], stderr=subprocess.PIPE)
+        try:
+            ids = {heard.word().split()[2] for _ in range(40)}
+        finally:
+            process.terminate()
+            _, told = process.communicate(timeout=20)
+    assert process.returncode == 0, told
+    assert "08040607" in ids  # RawCommand of node 7
+    assert not {each for each in ids if len(each) == 3 and each.startswith("1")}
+
+
+def test_a_process_with_drives_that_are_none_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "sheet.json"
+    file.write_text(to_json(pool_sheet()))
+    words = ["actuators", "--sheet", str(file), "--interface", "virtual", "--drives", "no.such:thing"]
+    done = subprocess.run([sys.executable, "-m", "mmrs_auv.vessel", *words], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "actuators: drives no.such:thing: No module named 'no'\n"
 
 
 @pytest.mark.parametrize(
