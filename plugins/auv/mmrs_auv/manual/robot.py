@@ -125,9 +125,8 @@ class ManualRobot:
             if action.is_a(DEVICE_ACTION):
                 self._action = action
             else:
-                self._live.say(
-                    " ".join([action.name, *(f"{key}={value}" for key, value in action.parameters)])
-                )
+                said = (action.name, *(f"{key}={value}" for key, value in action.parameters))
+                self._live.say(" ".join(filter(None, said)))
 
     def finished(self, now: float) -> bool:
         """Return whether what was begun last has finished."""
