@@ -6,7 +6,15 @@ from collections.abc import Sequence
 
 import pytest
 from mmrs_auv.testing import pool_sheet
-from mmrs_auv.vessel.hosting import Rehearsal, WireFault, clock_frame, clock_time, serve
+from mmrs_auv.vessel.hosting import (
+    LAG,
+    SEEN_BASE,
+    Rehearsal,
+    WireFault,
+    clock_frame,
+    clock_time,
+    serve,
+)
 from mmrs_auv.vessel.instruments import instruments_of
 from mmrs_auv.vessel.wire.frame import Frame
 
@@ -128,7 +136,7 @@ def test_other_frames_tell_no_time() -> None:
 
 
 def test_a_node_by_the_bus_ticks_when_it_is_told_so() -> None:
-    stop, node = threading.Event(), Talker("node", (7,), 0.05)
+    stop, node = threading.Event(), Talker("Sensors", (7,), 0.05)
     wire = Wire([clock_frame(number * 0.01) for number in range(21)])
     host = threading.Thread(target=serve, args=(node, wire, "bus", stop))
     host.start()
@@ -137,7 +145,7 @@ def test_a_node_by_the_bus_ticks_when_it_is_told_so() -> None:
     stop.set()
     host.join(5.0)
     assert node.ticks == pytest.approx([0.0, 0.05, 0.1, 0.15, 0.2])
-    assert [frame.id for frame in wire.sent] == [7] * 5
+    assert [frame.id for frame in wire.sent if not frame.extended] == [7] * 5
 
 
 def test_who_leads_tells_time_before_each_tick_and_goes_faster_than_real_time() -> None:
@@ -151,6 +159,52 @@ def test_who_leads_tells_time_before_each_tick_and_goes_faster_than_real_time() 
     told = [clock_time(frame) for frame in wire.sent if frame.id == 1]
     assert told[:20] == pytest.approx([0.1 * number for number in range(20)])
     assert node.heard[0][1] == 9
+
+
+class Follower(Wire):
+    """A port to whom leads; another host follows time with a delay of so many ticks, and dies at one."""
+
+    def __init__(self, behind: int, dies: int) -> None:
+        super().__init__()
+        self._behind, self._dies = behind, dies
+        self._told: list[Frame] = []
+        self._said = 0
+
+    def send(self, frame: Frame) -> None:
+        super().send(frame)
+        if frame.id == 1 and len(self._told) < self._dies:
+            self._told.append(frame)
+
+    def receive(self, timeout: float) -> Frame | None:
+        if self._said < len(self._told) - self._behind:
+            self._said += 1
+            return Frame(SEEN_BASE + 1, self._told[self._said - 1].data, True)
+        return super().receive(timeout)
+
+
+@pytest.mark.parametrize(("behind", "least", "most"), [(0, 30, 2000), (LAG + 1, 3, 8)])
+def test_time_waits_for_who_follows_it(behind: int, least: int, most: int) -> None:
+    stop, node = threading.Event(), Talker("Vehicle", (), 0.05)
+    wire = Follower(behind, 10_000)
+    host = threading.Thread(target=serve, args=(node, wire, "lead", stop), kwargs={"speedup": 100.0})
+    host.start()
+    stop.wait(0.6)
+    stop.set()
+    host.join(5.0)
+    assert least <= len(node.ticks) <= most
+
+
+def test_time_goes_on_without_who_is_gone() -> None:
+    stop, node = threading.Event(), Talker("Vehicle", (), 0.05)
+    host = threading.Thread(
+        target=serve, args=(node, Follower(0, 5), "lead", stop), kwargs={"speedup": 100.0}
+    )
+    host.start()
+    while len(node.ticks) < 50:
+        stop.wait(0.05)
+    stop.set()
+    host.join(5.0)
+    assert node.ticks[-1] == pytest.approx(0.05 * (len(node.ticks) - 1))
 
 
 def test_a_node_in_real_time_ticks_at_its_period() -> None:

@@ -10,12 +10,24 @@ from random import Random
 from typing import Literal, Protocol
 
 from .node import Node
-from .wire.catalogue import CLOCK_ID
+from .wire.catalogue import CLOCK_ID, NODES
 from .wire.frame import Frame
 
 MICROSECONDS = 1_000_000
 CATCH_UP = 5
 """Ticks that a node in real time may be late before it lets them go."""
+
+SEEN_BASE = 0x18FF0000
+"""Extended identifiers by which hosts that go by the bus say that their node has done what was due at a time.
+
+They concern hosts only: they are in no database, and are not sent in real time.
+"""
+
+LAG = 2
+"""Ticks of who leads by which others may be behind it."""
+
+PATIENCE = 2.0
+"""Seconds of real time for which simulated time waits for a part; it then counts as gone till it is heard."""
 
 Pace = Literal["real", "bus", "lead"]
 
@@ -194,7 +206,8 @@ def serve(
 
     Args:
         clock: "real": ticks by this computer's monotonic clock; "bus": when `Clock` frames say so;
-            "lead": real time times `speedup`, told to all others in `Clock` frames before each tick.
+            "lead": real time times `speedup`, told to all others in `Clock` frames before each tick, and
+            it waits for hosts by "bus" that are more than `LAG` ticks behind.
         late: called with the seconds by which each tick came late (not with "bus").
 
     Raises:
@@ -204,39 +217,66 @@ def serve(
     ended = stop or threading.Event()
     if clock == "bus":
         _serve_by_bus(node, port, ended)
+    elif clock == "lead":
+        _serve_leading(node, port, ended, speedup, late)
     else:
-        _serve_by_clock(node, port, ended, speedup if clock == "lead" else 1.0, clock == "lead", late)
+        _serve_by_clock(node, port, ended, late)
 
 
 def _serve_by_clock(
-    node: Node,
-    port: Port,
-    stop: threading.Event,
-    speedup: float,
-    leads: bool,
-    late: Callable[[float], None] | None,
+    node: Node, port: Port, stop: threading.Event, late: Callable[[float], None] | None
 ) -> None:
     begin = time.monotonic()
     ticks = 0
     while not stop.is_set():
         due = ticks * node.period
-        now = (time.monotonic() - begin) * speedup
+        now = time.monotonic() - begin
         if now < due:
-            if (frame := port.receive((due - now) / speedup)) is not None:
-                node.hear(frame, (time.monotonic() - begin) * speedup)
+            if (frame := port.receive(due - now)) is not None:
+                node.hear(frame, time.monotonic() - begin)
             continue
         if late is not None:
-            late((now - due) / speedup)
-        if now - due > CATCH_UP * node.period and not leads:
+            late(now - due)
+        if now - due > CATCH_UP * node.period:
             ticks = int(now / node.period)
-        moment = due if leads else now
-        if leads:
-            port.send(clock_frame(moment))
-        for frame in node.tick(moment):
-            port.send(frame)
+        for said in node.tick(now):
+            port.send(said)
         ticks += 1
         while (heard := port.receive(0.0)) is not None:
-            node.hear(heard, moment)
+            node.hear(heard, now)
+
+
+def _serve_leading(
+    node: Node, port: Port, stop: threading.Event, speedup: float, late: Callable[[float], None] | None
+) -> None:
+    """Tell time, and let it go on when it may and the others have kept up with it."""
+    begin = time.monotonic()
+    now, ticks = 0.0, 0
+    seen: dict[int, float] = {}
+    while not stop.is_set():
+        due = ticks * node.period
+        on = begin + due / speedup
+        given_up = max(on, time.monotonic()) + PATIENCE
+        while not stop.is_set():
+            while (frame := port.receive(0.0)) is not None:
+                if frame.extended and 0 <= frame.id - SEEN_BASE < len(NODES):
+                    seen[frame.id] = int.from_bytes(frame.data, "little") / 1000.0
+                else:
+                    node.hear(frame, now)
+            real = time.monotonic()
+            behind = [each for each, at in seen.items() if due - at > LAG * node.period + 1e-6]
+            if real >= on and (not behind or real >= given_up):
+                break
+            time.sleep(min(max(on - real, 0.0005), 0.005))
+        for each in behind:
+            del seen[each]
+        if late is not None:
+            late(time.monotonic() - on)
+        now = due
+        port.send(clock_frame(now))
+        for said in node.tick(now):
+            port.send(said)
+        ticks += 1
 
 
 def _serve_by_bus(node: Node, port: Port, stop: threading.Event) -> None:
@@ -257,3 +297,4 @@ def _serve_by_bus(node: Node, port: Port, stop: threading.Event) -> None:
             for said in node.tick(now):
                 port.send(said)
             due = max(due + node.period, now)
+        port.send(Frame(SEEN_BASE + NODES.index(node.name), frame.data, True))
