@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Mapping
 from math import hypot
@@ -162,6 +163,7 @@ def connected(given: BackendInput, live: Live) -> ConnectedRobot:
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
     duties = Duties(given, sheet, Waters(surface), sight)
+    logging.getLogger("can").setLevel(logging.ERROR)
     channel = live.links.get(given.robot.id, "") or options.channel or CHANNEL
     try:
         port = open_port(options.interface, channel, bit_rate=options.bit_rate or None)

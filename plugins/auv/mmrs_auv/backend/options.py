@@ -24,7 +24,7 @@ class Rehearsing:
         current: of the water, metres per second to the north and to the east; None: as the context says.
         bottom: depth of the bottom, metres; 0: a little below the deepest place of the program.
         surroundings: what is around the vehicles instead of all that; None: nothing but water.
-        start: metres by which the vehicle lies off its home, north and east.
+        start: metres north and east of its home at which the vehicle is told to be put into the water.
         heading: of the vehicle at first, degrees.
         objects: ``expected`` takes objects to be where they are expected; ``seen`` looks for them.
         clearance: metres ahead within which sonar must see nothing; 0: it may.

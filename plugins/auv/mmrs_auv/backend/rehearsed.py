@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import cos, dist, hypot, radians, sin, tan
+from random import Random
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.options import Rehearsing, rehearsing
@@ -15,6 +17,7 @@ from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.control.sensors import Sensors
 from mmrs_auv.vessel.hosting import Rehearsal
+from mmrs_auv.vessel.instruments import instruments_of
 from mmrs_auv.vessel.movement.movement import Movement
 from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_auv.vessel.wire.codec import Codec
@@ -56,8 +59,7 @@ class Stage:
 
     def __init__(self, sheet: Sheet, surroundings: Surroundings, options: Rehearsing) -> None:
         """Put the vehicle into the water."""
-        north, east, depth = sheet.home
-        place = (north + options.start[0], east + options.start[1], depth)
+        place = _put_in(sheet, options)
         self.surroundings = surroundings
         self.vehicle = Vehicle(
             sheet, Codec(sheet), surroundings, options.seed, place=place, heading=options.heading
@@ -100,6 +102,13 @@ def _is_in_sight(thing: Thing, north: float, east: float, depth: float, heading:
     if thing.kind == PATH:
         return hypot(along, across) < ABOVE
     return along > 0.0 and abs(across) <= along * tan(radians(WIDTH))
+
+
+def _put_in(sheet: Sheet, options: Rehearsing) -> Vector:
+    """Return where the vehicle truly is at first: near where it was told that it is."""
+    random, sigma = Random(options.seed), instruments_of(sheet).start_noise if options.noise else 0.0
+    north, east, depth = sheet.home
+    return (north + random.gauss(0.0, sigma), east + random.gauss(0.0, sigma), depth)
 
 
 class RehearsedRobot(CanRobot):
@@ -199,6 +208,8 @@ def rehearsed(given: BackendInput) -> RehearsedRobot:
         payload=given.robot.payload,
         density=given.environment.get("waterDensity"),
     )
+    north, east, depth = sheet.home
+    sheet = replace(sheet, home=(north + options.start[0], east + options.start[1], depth))
     return RehearsedRobot(given, sheet, Stage(sheet, _surroundings(given, options), options), options)
 
 
