@@ -7,7 +7,7 @@ from math import hypot
 
 from mmrs_auv.kinds import SEA_WATER, largest_depth
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING
-from mmrs_auv.vessel.refusals import MOST_DEPTH, SheetError, refuse
+from mmrs_auv.vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
 from mmrs_auv.vessel.sheet import Sheet, Thruster, Vector
 from mmrs_core.errors import InfeasibleError, UnsupportedError
 from mmrs_core.scene import Device, Part, Position, RobotType
@@ -66,7 +66,7 @@ def sheet_of(
         mass=_figure(size, "weight"),
         weight_in_water=_figure(size, "weightInWater"),
         drop_weight=_number(size, "dropWeight") or 0.0,
-        speed=capability.speed[1],
+        speed=min(capability.speed[1], MOST_SPEED),
         max_depth=min(largest_depth(robot_type, payload, water), MOST_DEPTH),
         battery=sum(battery.energy for battery in robot_type.batteries),
         home=(home[1], home[0], max(0.0, surface - home[2])),

@@ -76,4 +76,4 @@ class TestRules(RuleConformance):
 
 class TestTargets(TargetConformance):
     plugin = plugin
-    inputs = {"imc": plain("sub"), "moos": plain("sub")}
+    inputs = {"can-python": plain("sub"), "imc": plain("sub"), "moos": plain("sub")}
