@@ -85,8 +85,8 @@ def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
         ),
         MapSymbol(names.YO_YO_TASK, "yo-yo", "#2b7a4b", "∿", ("minDepth", "maxDepth", "pitch")),
         MapSymbol(names.INSPECT_OBJECT_TASK, "inspect", "#a0235d", "◌", ("object", "distance", "views")),
-        MapSymbol(names.ALIGN_TASK, "align", "#4b3f72", "⌖", ("object", "distance", "bearing")),
-        MapSymbol(names.FOLLOW_PIPELINE_TASK, "pipeline run", "#8a4b08", "⇶", ("pipeline", "height")),
+        MapSymbol(names.ALIGN_TASK, "align", "#4b3f72", "⊙", ("object", "distance", "bearing")),
+        MapSymbol(names.FOLLOW_PIPELINE_TASK, "pipeline run", "#8a4b08", "⇒", ("pipeline", "height")),
         MapSymbol(names.SURFACE_TASK, "surface", "#37474f", "⤒", ("duration",)),
     )
 
