@@ -297,4 +297,5 @@ def _serve_by_bus(node: Node, port: Port, stop: threading.Event) -> None:
             for said in node.tick(now):
                 port.send(said)
             due = max(due + node.period, now)
-        port.send(Frame(SEEN_BASE + NODES.index(node.name), frame.data, True))
+        if node.name in NODES:
+            port.send(Frame(SEEN_BASE + NODES.index(node.name), frame.data, True))
