@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import dist, exp, log, pi, sqrt
 
@@ -17,12 +17,12 @@ from .colours import colour_of
 from .confidence import confidence_of
 from .segments import Segment, View, matted, segments_of, view_of
 from .shapes import Disc, Frame, Post, Strip, discs_of, frames_of, strip_of
-from .stereo import disparity
+from .stereo import disparities
 from .water import POOL, Water
 
 _MOST_SEGMENTS = 12
+_MOST_COVERED = 0.4
 _TOLERANCE = 0.25
-_LEAST_ALIKE = 0.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,8 @@ def detect(
     """Return what is seen of what is sought, the surest first.
 
     The front camera sees gates and buoys, the bottom camera paths; things that the picture's edge cuts are
-    left out, since their middle is not known.
+    left out, since their middle is not known. Nothing is seen in pictures that are full of colours: those
+    are not of water.
 
     Args:
         camera: that took pictures of that size.
@@ -92,11 +93,11 @@ def detect(
             raise ValueError(f"picture of {picture.shape}, not of {camera.width}x{camera.height} pixels")
     seen = _Seen(view_of(left), view_of(right), camera, water, tuple(sought))
     mask, segments = segments_of(seen.left)
-    segments = segments[:_MOST_SEGMENTS]
+    if not 0 < len(segments) <= _MOST_SEGMENTS or cv2.countNonZero(mask) > _MOST_COVERED * mask.size:
+        return []
     found: list[Sighting] = []
     if camera.name == FRONT:
-        if segments:
-            found += _best([each for each in map(seen.gate, frames_of(mask)) if each is not None])
+        found += _best([each for each in map(seen.gate, frames_of(mask)) if each is not None])
         found += [each for each in map(seen.buoy, _discs(segments, camera)) if each is not None]
     if camera.name == BOTTOM:
         found += [each for each in map(seen.path, _strips(segments, camera)) if each is not None]
@@ -125,6 +126,14 @@ def _best(found: Sequence[Sighting]) -> list[Sighting]:
     return kept
 
 
+def _surest(found: Iterable[Sighting | None]) -> Sighting | None:
+    return max((each for each in found if each is not None), key=lambda each: each.score, default=None)
+
+
+def _between(one: Vector, other: Vector) -> Vector:
+    return (one[0] + other[0]) / 2.0, (one[1] + other[1]) / 2.0, (one[2] + other[2]) / 2.0
+
+
 @dataclass(frozen=True, slots=True)
 class _Seen:
     """A pair of pictures."""
@@ -138,50 +147,52 @@ class _Seen:
     def buoy(self, disc: Disc) -> Sighting | None:
         margin = round(0.4 * disc.radius) + 2
         column, row, area = matted(self.left.hue, disc.segment)
-        ranged = self._point(column, row, _box(disc.segment, margin))
-        if ranged is None:
-            return None
-        point, alike = ranged
-        size = 2.0 * sqrt(area / pi) * point[2] / self.camera.focal
-        return self._sighting(BUOY, self._mean(disc.segment), point, size, disc.fit * alike)
+        across = 2.0 * sqrt(area / pi)
+        return self._ranged(BUOY, disc.segment, (column, row), margin, across, disc.fit)
 
     def path(self, strip: Strip) -> Sighting | None:
-        ranged = self._point(strip.column, strip.row, _box(strip.segment, 4))
-        if ranged is None:
-            return None
-        point, alike = ranged
-        size = strip.length * point[2] / self.camera.focal
-        return self._sighting(PATH, self._mean(strip.segment), point, size, strip.fit * alike)
+        return self._ranged(PATH, strip.segment, (strip.column, strip.row), 4, strip.length, strip.fit)
 
     def gate(self, frame: Frame) -> Sighting | None:
-        one, other = self._top(frame.left), self._top(frame.right)
-        if one is None or other is None:
-            return None
-        point = (
-            (one[0][0] + other[0][0]) / 2.0,
-            (one[0][1] + other[0][1]) / 2.0,
-            (one[0][2] + other[0][2]) / 2.0,
-        )
         pixels = np.concatenate([self._along(post) for post in (frame.left, frame.right)])
-        fit = frame.fit * min(one[1], other[1])
-        return self._sighting(GATE, np.median(pixels, axis=0), point, dist(one[0], other[0]), fit)
+        pixel: Numbers = np.median(pixels, axis=0)
+        return _surest(
+            self._sighting(GATE, pixel, _between(one, other), dist(one, other), frame.fit * min(alike, like))
+            for one, alike in self._tops(frame.left)
+            for other, like in self._tops(frame.right)
+        )
 
-    def _top(self, post: Post) -> tuple[Vector, float] | None:
-        """Return where the top of a post is."""
+    def _ranged(
+        self,
+        kind: str,
+        segment: Segment,
+        middle: tuple[float, float],
+        margin: int,
+        across: float,
+        fit: float,
+    ) -> Sighting | None:
+        """Return what a region is, at the range at which it fits best."""
+        pixel = self._mean(segment)
+        return _surest(
+            self._sighting(kind, pixel, point, across * point[2] / self.camera.focal, fit * alike)
+            for point, alike in self._points(middle, _box(segment, margin))
+        )
+
+    def _tops(self, post: Post) -> list[tuple[Vector, float]]:
+        """Return where the top of a post may be."""
         across = round(max(7.0, 1.5 * post.width))
         down = round(max(8.0, min(24.0, (post.foot[1] - post.top[1]) / 2.0)))
         column, row = round(post.top[0]), round(post.top[1])
         above = round(post.width / 2.0) + 3
-        box = (column - across, row - above, column + across + 1, row + down)
-        return self._point(post.top[0], post.top[1], box)
+        return self._points(post.top, (column - across, row - above, column + across + 1, row + down))
 
-    def _point(
-        self, column: float, row: float, box: tuple[int, int, int, int]
-    ) -> tuple[Vector, float] | None:
-        found = disparity(self.left.hue, self.right.hue, self.camera, box)
-        if found is None or found[1] < _LEAST_ALIKE:
-            return None
-        return self.camera.point(column, row, found[0]), found[1]
+    def _points(
+        self, middle: tuple[float, float], box: tuple[int, int, int, int]
+    ) -> list[tuple[Vector, float]]:
+        return [
+            (self.camera.point(*middle, shift), alike)
+            for shift, alike in disparities(self.left.hue, self.right.hue, self.camera, box)
+        ]
 
     def _mean(self, segment: Segment) -> Numbers:
         """Return the colour of the middle of a region, where its edges do not mix with what is behind."""
@@ -214,7 +225,7 @@ class _Seen:
             return None
         best = max(each[0] for each in fits)
         matches = tuple(each for _, each in fits)
-        score = fit * best * min(1.0, 2.0 * margin)
+        score = float(fit * best * min(1.0, 2.0 * margin))
         return Sighting(kind, colour, size, point, score, confidence_of(kind, score), matches)
 
 

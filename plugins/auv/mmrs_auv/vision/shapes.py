@@ -89,7 +89,11 @@ def disc_of(segment: Segment) -> Disc | None:
     moments = cv2.moments(segment.mask, binaryImage=True)
     middle = (moments["m10"] / moments["m00"], moments["m01"] / moments["m00"])
     return Disc(
-        segment.left + middle[0], segment.top + middle[1], sqrt(segment.area / pi), both / either, segment
+        segment.left + middle[0],
+        segment.top + middle[1],
+        sqrt(segment.area / pi),
+        float(both / either),
+        segment,
     )
 
 

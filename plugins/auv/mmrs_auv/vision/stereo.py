@@ -10,35 +10,49 @@ from .cameras import Camera, Numbers
 NEAREST = 0.5
 """Metres within which nothing is ranged."""
 
+LEAST_ALIKE = 0.6
+"""Correlation of what counts as the same thing."""
+
 _ROWS, _LEAST = 1, 1.5
+_MOST, _NEARLY, _APART = 4, 0.15, 5
 
 
-def disparity(
+def disparities(
     left: Numbers, right: Numbers, camera: Camera, box: tuple[int, int, int, int]
-) -> tuple[float, float] | None:
-    """Return by how many columns a part of the left picture is further left in the right one, and how alike.
+) -> list[tuple[float, float]]:
+    """Return by how many columns a part of the left picture may be further left in the right one.
+
+    There is more than one where several things look the same; none where nothing is alike.
 
     Args:
         left: shares of colours, as of `segments.View`; right: of the other eye.
         box: columns and rows of the part: left, top, right, bottom, ends excluded.
 
     Returns:
-        Columns, finer than one, and the correlation, at most 1; None where nothing is alike.
+        Columns, finer than one, and the correlation, at most 1; the most alike first.
     """
     height, width = left.shape[:2]
     first, top = max(0, box[0]), max(_ROWS, box[1])
     last, bottom = min(width, box[2]), min(height - _ROWS, box[3])
     if last - first < 3 or bottom - top < 3:
-        return None
+        return []
     farthest = int(camera.focal * camera.baseline / NEAREST)
     begin = max(0, first - farthest)
     strip = right[top - _ROWS : bottom + _ROWS, begin:last]
-    alike = cv2.matchTemplate(strip, left[top:bottom, first:last], cv2.TM_CCOEFF_NORMED)
-    _, score, _, (column, row) = cv2.minMaxLoc(alike)
-    found = first - begin - column - _finer(alike[row], column)
-    if not np.isfinite(score) or found < _LEAST:
-        return None
-    return float(found), float(score)
+    table = cv2.matchTemplate(strip, left[top:bottom, first:last], cv2.TM_CCOEFF_NORMED)
+    alike = np.nan_to_num(np.max(table, axis=0), nan=-1.0, posinf=-1.0, neginf=-1.0)
+    whole = alike.copy()
+    found: list[tuple[float, float]] = []
+    for _ in range(_MOST):
+        column = int(np.argmax(alike))
+        score = float(alike[column])
+        if not LEAST_ALIKE <= score <= 1.001 or (found and score < found[0][1] - _NEARLY):
+            break
+        shift = first - begin - column - _finer(whole, column)
+        if shift >= _LEAST:
+            found.append((float(shift), min(1.0, score)))
+        alike[max(0, column - _APART) : column + _APART + 1] = -1.0
+    return found
 
 
 def _finer(alike: Numbers, column: int) -> float:
