@@ -53,8 +53,11 @@ from .vehicles.vehicle import Vehicle
 
 GLANCE_SECONDS = 0.2
 
-Vehicles = Callable[[Robot, Options, Callable[[], None]], Vehicle]
-"""What makes the vehicle of a robot that is reached otherwise than by MAVLink; its guard comes last."""
+Vehicles = Callable[[Robot, Options, Callable[[], None], BlackBox], Vehicle]
+"""What makes the vehicle of a robot that is reached otherwise than by MAVLink.
+
+It calls the guard in every wait, and writes where it is into the black box.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +269,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     guard = guarding(watch, obedience)
     others = None if options.dry else shared.vehicles
     link = None if options.dry or others is not None else _link(robot, shared, guard, stack)
-    vehicle = _vehicle(robot, options, guard, link) if others is None else others(robot, options, guard)
+    vehicle = _vehicle(robot, options, guard, link) if others is None else others(robot, options, guard, box)
     desk = Desk(
         clock=options.clock,
         slots=shared.slots,

@@ -20,6 +20,7 @@ from mmrs_core.flight.main import main as run
 from mmrs_core.flight.objects import Locator
 from mmrs_core.flight.options import Options
 from mmrs_core.flight.program import Robot
+from mmrs_core.flight.records.blackbox import BlackBox
 
 FAREWELL = 0.5
 """Real seconds in which the last goal is still repeated."""
@@ -50,7 +51,7 @@ def main(
     channels = _channels(parser, [robot.id for robot in robots], given.can)
     with ExitStack() as stack:
 
-        def vehicle(robot: Robot, options: Options, guard: Callable[[], None]) -> CanVehicle:
+        def vehicle(robot: Robot, options: Options, guard: Callable[[], None], box: BlackBox) -> CanVehicle:
             sheet = from_json(sheets[robot.id].read_text(encoding="utf-8"))
             channel = channels[robot.id]
             try:
@@ -67,7 +68,7 @@ def main(
 
             stack.callback(let_go)
             patience = options.reach.patience
-            return CanVehicle(robot, sheet, connection.craft, options.clock, guard, patience=patience)
+            return CanVehicle(robot, sheet, connection.craft, options.clock, guard, box, patience=patience)
 
         return run(robots, conditions, locators, rest, vehicles=vehicle)
 

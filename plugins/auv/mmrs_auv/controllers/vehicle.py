@@ -25,6 +25,8 @@ from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import DEVICE_SILENT, Fault, Refused
 from mmrs_core.flight.program import Local, Look, Place, Robot
+from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.records.recording import FIX_SECONDS, fix
 from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
@@ -53,10 +55,12 @@ class CanVehicle:
         craft: Craft,
         clock: Clock,
         guard: Callable[[], None],
+        box: BlackBox,
         *,
         patience: float = 30.0,
     ) -> None:
         """Tell it nothing yet; `patience`: real seconds to wait for its first sign."""
+        self._box, self._fixed = box, -inf
         self._robot, self._sheet, self._craft, self._clock = robot, sheet, craft, clock
         self._guard, self._patience = guard, patience
         self._helm = Helm(craft)
@@ -228,7 +232,11 @@ class CanVehicle:
     def _check(self) -> None:
         """Obey orders; raise what goes wrong, each event once."""
         self._guard()
-        found = self._helm.failure(self._clock.now())
+        now = self._clock.now()
+        if now - self._fixed >= FIX_SECONDS:
+            self._fixed = now
+            fix(self._box, self.state())
+        found = self._helm.failure(now)
         if found is None:
             return
         if self._is_borne(found):
