@@ -118,9 +118,16 @@ def test_thrust_is_zero_in_time_and_the_vehicle_surfaces(
     assert rig.afloat
 
 
-@pytest.mark.parametrize("sheet", [FLOATS, SINKS], ids=["floats", "sinks"])
 @pytest.mark.parametrize(
-    "cause", [cut, corrupt, kill("Actuators")], ids=["cut", "corrupt", "actuators killed"]
+    ("cause", "sheet"),
+    [
+        pytest.param(cut, SINKS, id="cut, sinks"),
+        pytest.param(corrupt, FLOATS, id="corrupt, floats"),
+        pytest.param(kill("Actuators"), FLOATS, id="actuators killed, floats"),
+        pytest.param(cut, FLOATS, id="cut, floats", marks=pytest.mark.thorough),
+        pytest.param(corrupt, SINKS, id="corrupt, sinks", marks=pytest.mark.thorough),
+        pytest.param(kill("Actuators"), SINKS, id="actuators killed, sinks", marks=pytest.mark.thorough),
+    ],
 )
 def test_drives_stop_by_themselves_when_no_command_reaches_them(
     sheet: Sheet, cause: Callable[[Rig], None]
