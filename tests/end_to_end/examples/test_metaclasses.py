@@ -7,7 +7,16 @@ import pytest
 from mmrs_core.languages.element import descendants, metaclass_of
 
 BEGIN, END = "<!-- metaclasses: begin -->\n", "<!-- metaclasses: end -->\n"
-MISSIONS = ("carbon-dioxide", "pool", "mixed-team", "solar-park", "drone-and-rover", "outfall")
+MISSIONS = (
+    "carbon-dioxide",
+    "pool",
+    "mixed-team",
+    "solar-park",
+    "drone-and-rover",
+    "outfall",
+    "pool-course",
+    "two-auv-survey",
+)
 LANGUAGES = (
     "urn:mmrs:mission:1.0",
     "urn:mmrs:context:1.0",

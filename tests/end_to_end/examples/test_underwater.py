@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import cos, pi, sin
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -33,8 +35,14 @@ def dived(taken, contributions, name, folder, **options):
 
 def random_start(seed: int) -> dict[str, str]:
     """Return where a dive begins, in what current, and with which noise."""
-    north, east = ((seed * 7) % 11 - 5) / 5.0, ((seed * 5) % 9 - 4) / 4.0
-    return {"seed": str(seed), "start": f"{north},{east}", "heading": str(seed * 36)}
+    random = Random(seed)
+    away, towards = random.uniform(0.0, 0.15), random.uniform(0.0, 2.0 * pi)
+    return {
+        "seed": str(seed),
+        "start": f"{random.uniform(-1.0, 1.0)},{random.uniform(-1.0, 1.0)}",
+        "heading": str(random.uniform(0.0, 360.0)),
+        "current": f"{away * cos(towards)},{away * sin(towards)}",
+    }
 
 
 def completes(taken, contributions, folder: Path, seed: int) -> None:

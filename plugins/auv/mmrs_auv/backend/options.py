@@ -21,9 +21,11 @@ class Rehearsing:
     Attributes:
         seed: of instruments' noise and bias.
         noise: whether there is any.
-        current: of the water, metres per second to the north and to the east; None: as the context says.
+        current: of the water, metres per second to the north and to the east; None: as the surroundings, or
+            the context, say.
         bottom: depth of the bottom, metres; 0: a little below the deepest place of the program.
-        surroundings: what is around the vehicles instead of all that; None: nothing but water.
+        surroundings: what is around the vehicles; it says how deep the bottom is, and whether there is
+            noise. None: nothing but water.
         start: metres north and east of its home at which the vehicle is told to be put into the water.
         heading: of the vehicle at first, degrees.
         objects: ``expected`` takes objects to be where they are expected; ``seen`` looks for them.

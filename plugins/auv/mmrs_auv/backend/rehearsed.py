@@ -214,8 +214,8 @@ def rehearsed(given: BackendInput) -> RehearsedRobot:
 
 
 def _surroundings(given: BackendInput, options: Rehearsing) -> Surroundings:
-    if options.surroundings is not None:
-        return options.surroundings
+    if (around := options.surroundings) is not None:
+        return around if options.current is None else replace(around, current=options.current)
     current = options.current if options.current is not None else _current(given.environment)
     return Surroundings(
         current=current, bottom=options.bottom or _deepest(given) + BELOW, noise=options.noise
