@@ -12,19 +12,25 @@ _LIKE_A_PROPELLER = 1.5  # power by thrust, of an ideal propeller at rest
 
 
 def watts_of(thruster: Thruster, thrust: float) -> float:
-    """Return what a thruster draws at a thrust, newtons.
+    """Return what a thruster draws at a thrust, newtons; see `curve_of`."""
+    watts, newtons, exponent = curve_of(thruster)
+    drawn: float = watts * (abs(thrust) / newtons) ** exponent
+    return drawn
+
+
+def curve_of(thruster: Thruster) -> tuple[float, float, float]:
+    """Return watts, newtons and exponent of what a thruster draws: watts * (thrust / newtons) ** exponent.
 
     The curve is the power law through what its type says of operating and of peak thrust; through the former,
     with the exponent 3/2 of an ideal propeller at rest, if peak thrust or power is no more than that.
     """
     operating, most = thruster.operating_thrust, thruster.max_thrust
     if not (operating > 0.0 and thruster.operating_power > 0.0):
-        return 0.0 if most <= 0.0 else thruster.max_power * (abs(thrust) / most) ** _LIKE_A_PROPELLER
+        return (thruster.max_power, most, _LIKE_A_PROPELLER) if most > 0.0 else (0.0, 1.0, 1.0)
     exponent = _LIKE_A_PROPELLER
     if most > operating and thruster.max_power > thruster.operating_power:
         exponent = log(thruster.max_power / thruster.operating_power) / log(most / operating)
-    watts: float = thruster.operating_power * (abs(thrust) / operating) ** exponent
-    return watts
+    return thruster.operating_power, operating, exponent
 
 
 class Propulsion:
