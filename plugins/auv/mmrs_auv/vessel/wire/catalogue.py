@@ -195,6 +195,11 @@ def by_id(named: Mapping[str, Kind]) -> dict[int, Kind]:
     return {ids[name]: each for name, each in named.items()}
 
 
+def depth_step(max_depth: float) -> float:
+    """Return how many metres a step of a goal's depth is, for a vehicle that dives so deep."""
+    return max(1, ceil(max_depth * 100.0 / 65535.0)) / 100.0
+
+
 def messages_of(sheet: Sheet) -> tuple[Message, ...]:
     """Return all messages of a vehicle, by identifier.
 
@@ -208,7 +213,7 @@ def messages_of(sheet: Sheet) -> tuple[Message, ...]:
         for message in (_command(number, thruster), _status(number, thruster))
     ]
     common = [each for each in COMMON if each.id != GOAL_POSE_ID]
-    pose = _goal_pose(max(1, ceil(sheet.max_depth * 100.0 / 65535.0)) / 100.0)
+    pose = _goal_pose(depth_step(sheet.max_depth))
     return tuple(sorted((*common, pose, *BEATS, *own), key=lambda message: message.id))
 
 
