@@ -76,4 +76,10 @@ class TestRules(RuleConformance):
 
 class TestTargets(TargetConformance):
     plugin = plugin
-    inputs = {"ada": plain("sub"), "can-c": plain("sub"), "can-python": plain("sub"), "imc": plain("sub"), "moos": plain("sub")}
+    inputs = {
+        "ada": plain("sub"),
+        "can-c": plain("sub"),
+        "can-python": plain("sub"),
+        "imc": plain("sub"),
+        "moos": plain("sub"),
+    }
