@@ -28,7 +28,8 @@ class Rehearsing:
             noise. None: nothing but water.
         start: metres north and east of its home at which the vehicle is told to be put into the water.
         heading: of the vehicle at first, degrees.
-        objects: ``expected`` takes objects to be where they are expected; ``seen`` looks for them.
+        objects: ``expected`` takes objects to be where they are expected; ``seen`` looks for them as
+            eyes that never err, ``cameras`` in pictures of the simulated water.
         clearance: metres ahead within which sonar must see nothing; 0: it may.
     """
 
@@ -163,7 +164,7 @@ _VALUES: Mapping[str, Callable[[str], object]] = {
     "current": pair,
     "start": pair,
     "surroundings": _surroundings,
-    "objects": _one_of("expected", "seen"),
+    "objects": _one_of("expected", "seen", "cameras"),
     "interface": str,
     "channel": str,
     "bit-rate": _whole,

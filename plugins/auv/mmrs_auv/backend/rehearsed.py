@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from math import cos, dist, hypot, radians, sin, tan
 from random import Random
 
@@ -16,6 +17,7 @@ from mmrs_auv.vessel.body.surroundings import PATH, Surroundings, Thing
 from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.control.sensors import Sensors
+from mmrs_auv.vessel.eyes import Detections, to_datagram
 from mmrs_auv.vessel.hosting import Rehearsal
 from mmrs_auv.vessel.instruments import instruments_of
 from mmrs_auv.vessel.movement.movement import Movement
@@ -24,6 +26,7 @@ from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import RobotState, Sample
+from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Position
 
 PACE = 0.2
@@ -37,6 +40,9 @@ SAMPLE = 1.0
 
 LONGEST_RESPONSE = 1800.0
 """Simulated seconds after which a vehicle counts as stopped, wherever it is."""
+
+PICTURES = 0.5
+"""Simulated seconds from one look of simulated cameras to the next."""
 
 LONGEST_SILENCE = 60.0
 """Simulated seconds after which a vehicle that is not heard is left alone; its own parts bring it up."""
@@ -68,15 +74,20 @@ class Stage:
         self.sheet = sheet
         parts = (Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet)))
         self.rehearsal = Rehearsal([self.vehicle, *parts, self.craft])
+        self._cameras = Cameras(self, options.seed) if options.objects == "cameras" else None
 
     def advance(self, time: float) -> None:
         """Let time go by until then."""
         left = time - self.rehearsal.now
         if left > 0.0:
             self.rehearsal.run(left)
+        if self._cameras is not None:
+            self._cameras.look()
 
     def sees(self, name: str) -> Vector | None:
         """Return where an object is, if cameras see it now, as far as the vehicle knows its own place."""
+        if self._cameras is not None:
+            return self._cameras.found.place(name)
         truth, state = self.vehicle.truth, self.craft.state()
         for thing in self.surroundings.things:
             if thing.name == name and _is_in_sight(
@@ -92,6 +103,43 @@ class Stage:
     def in_sight(self) -> frozenset[str]:
         """Return the names of what cameras see now."""
         return frozenset(each.name for each in self.surroundings.things if self.sees(each.name) is not None)
+
+
+class Cameras:
+    """Pictures of the simulated water, and what is found in them.
+
+    Attributes:
+        found: the detections.
+    """
+
+    def __init__(self, stage: Stage, seed: int) -> None:
+        """Open its eyes.
+
+        Raises:
+            UnsupportedError: there is no OpenCV.
+        """
+        if find_spec("cv2") is None:
+            raise UnsupportedError("option 'objects': cameras need OpenCV; pip install 'mmrs-auv[vision]'")
+        from mmrs_auv.vision.node import Eyes
+
+        self._stage, self._eyes = stage, Eyes(stage.sheet, stage.surroundings, seed)
+        self.found = Detections(clock=lambda: stage.rehearsal.now)
+        self.found.close()  # nothing comes over the network here
+        self._due = 0.0
+
+    def look(self) -> None:
+        """Take pictures, if it is time to."""
+        from mmrs_auv.vision.cameras import Pose
+
+        now = self._stage.rehearsal.now
+        if now < self._due:
+            return
+        self._due = now + PICTURES
+        truth, state = self._stage.vehicle.truth, self._stage.craft.state()
+        pose = Pose(truth.north, truth.east, truth.depth, truth.roll, truth.pitch, truth.heading)
+        believed = Pose(state.north, state.east, state.depth, state.roll, state.pitch, state.heading)
+        for each in self._eyes.look(now, pose, believed):
+            self.found.take(to_datagram(each))
 
 
 def _is_in_sight(thing: Thing, north: float, east: float, depth: float, heading: float) -> bool:
@@ -125,7 +173,7 @@ class RehearsedRobot(CanRobot):
         self.notes: list[str] = []
         self._samples: list[Sample] = []
         self._seen: set[str] = set()
-        sight = stage.sees if options.objects == "seen" else None
+        sight = stage.sees if options.objects in ("seen", "cameras") else None
         duties = Duties(given, sheet, Waters(given.program.frame.surface), sight)
         duties.charged = self._charge
         super().__init__(given, sheet, stage.craft, duties, _Nobody(), clearance=options.clearance)

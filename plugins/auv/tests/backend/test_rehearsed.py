@@ -138,6 +138,16 @@ def test_objects_are_gone_to_where_they_are_seen(tmp_path: Path) -> None:
     assert far.fault == "OBJECT_NOT_FOUND"
 
 
+def test_objects_are_found_in_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("cv2")
+    target = Target((5.0, 0.0, -1.5), BUOY_NAME, 1.5)
+    go = replace(swim("buoy", 0.0, 0.0, 0.0), target=target, distance=1.0)
+    around = buoy_at(tmp_path, 5.8)
+    found = rehearse(dive(go), tmp_path / "a", objects="cameras", surroundings=around, heading="90")
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert at(found.robots["naiad"])[0] == pytest.approx(4.8, abs=0.6)
+
+
 def test_choices_know_what_was_seen(tmp_path: Path) -> None:
     ways = {1: Transition(1, 2, condition="sees", otherwise=3), 2: Transition(2, 3)}
     sees = Condition("sees", lambda state: BUOY_NAME in state.detected)
