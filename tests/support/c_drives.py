@@ -155,7 +155,7 @@ def happenings(sheet: Sheet, seed: int, seconds: float, *, emergencies: bool = T
         if emergencies and at > seconds * 70 and random.random() < 0.004:
             emergency = codec.encode("Emergency", Reason="LEAK", Release=random.random() < 0.5)
             compared.hear(at, _changed(emergency, random))
-        if at % 5 == 0:
+        if random.random() < (0.02 if at % 5 else 0.9):
             compared.tick(at)
     return compared
 

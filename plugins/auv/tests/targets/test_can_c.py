@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mmrs_auv.targets.can_c.target import CAN_C
 from mmrs_auv.targets.can_c.words import block, number
+from mmrs_auv.vessel.wire.check import check_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet, sheets, thruster
@@ -99,6 +100,17 @@ def test_an_emergency_stops_all_for_good_and_drops_the_weight_once(three):
     assert sum(each.count("r") for each in lines) == 1
     assert "o 0 -9" in lines[4]
     assert all("o 0 0" in each for each in lines[5:])
+
+
+def test_an_emergency_for_no_reason_that_is_known_stops_nothing(three):
+    compared, codec = Compared(sheet(3)), Codec(sheet(3))
+    sound = codec.encode("Emergency", Reason="LEAK", Release=True)
+    data = bytes([200, *sound.data[1:-1]])
+    for at in range(0, 100, 5):
+        compared.hear(at, codec.encode("Thruster0Command", Thrust=-9.0, Enable=True))
+        compared.hear(at, Frame(sound.id, data + bytes([check_of(sound.id, data)])))
+    agree(three, compared)
+    assert "o 0 -9" in told(three, compared.script)[-1]
 
 
 def test_any_thruster_may_have_any_name(tmp_path):
