@@ -35,7 +35,7 @@ def pair() -> Program:
     sample = use("ctd", "Sample")
     told = feedback("done", ("by", 'it "is"'))
     first = robot_program(
-        'Caßtor "1"',
+        "Caßtor '1'",
         [swim("a", 2.0, 1.0, 1.0, after=(sample, told, notify(("Pollux", "go"))))],
         home=(0.0, 0.0, -0.5),
         type_name="Pool AUV",
@@ -100,7 +100,7 @@ def test_each_robot_has_its_sheet(tmp_path: Path) -> None:
     folder = generated(pair(), tmp_path)
     sheet = from_json((folder / "robot_Pollux.json").read_text(encoding="utf-8"))
     assert (sheet.robot, sheet.home) == ("Pollux", (5.0, 0.0, 0.5))
-    assert "command=" not in (folder / "robot_Castor.py").read_text(encoding="utf-8")
+    assert "command=" not in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
 
 
 def test_a_vehicle_that_is_not_there_ends_the_program(tmp_path: Path) -> None:
