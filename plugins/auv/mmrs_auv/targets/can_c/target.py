@@ -18,13 +18,15 @@ from mmrs_auv.vessel.refusals import MOST_POWER
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import messages_of
 from mmrs_auv.vessel.wire.layout import layout_of
-from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 
 AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "Makefile")
 ASKS = ("what sets the thrust of each motor, tells of its faults, and lets go of the drop weight",)
+KNOWN = frozenset({*MOVES, (BEHAVIOUR, "Recharge")})
+"""Moves in which thrusters do nothing but what they are told."""
 
 CAPABILITIES = {
     "Behaviour.robots": "a folder each",
@@ -76,7 +78,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
         except UnsupportedError as error:
             yield from (f"robot '{robot.id}': {each}" for each in error.elements or (str(error),))
         for move in robot.moves:
-            if move.metaclasses[0] not in MOVES:
+            if move.metaclasses[0] not in KNOWN:
                 yield f"robot '{robot.id}', move '{move.id}': {move.kind} is not known to this target"
 
 
