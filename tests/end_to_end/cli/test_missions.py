@@ -52,7 +52,9 @@ def test_a_demonstration_tells_itself_as_one_object(mmrs, tmp_path):
 
 def test_examples_are_listed(mmrs):
     out = mmrs("demo", "--list")[1]
-    assert [line.split()[0] for line in out.splitlines()] == sorted(EXAMPLES)
+    assert [line.split()[0] for line in out.splitlines()] == sorted(
+        (*EXAMPLES, "pool-course", "two-auv-survey")
+    )
 
 
 def test_an_unknown_example_is_told_with_the_known_ones(mmrs, tmp_path):
