@@ -15,6 +15,7 @@ import pluggy
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
@@ -86,6 +87,11 @@ def mmrs_targets() -> Iterable[Target]:  # type: ignore[empty-body]
 @hookspec
 def mmrs_backends() -> Iterable[BackendFactory]:  # type: ignore[empty-body]
     """Contribute what the interpreter can drive; names are unique over all plug-ins."""
+
+
+@hookspec
+def mmrs_codecs() -> Iterable[Codec]:  # type: ignore[empty-body]
+    """Contribute how thrusters on a CAN bus are told what to do; names are unique over all plug-ins."""
 
 
 @hookspec

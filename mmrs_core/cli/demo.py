@@ -33,10 +33,10 @@ def demo(
         return _list_examples(json)
     folder = example_folder(example)
 
-    from mmrs_core.cli.demonstration import demonstrate
+    from mmrs_core.cli.demonstration import demonstrate, manner_of
     from mmrs_core.cli.journey import Journey, Workshop
 
-    made = demonstrate(Journey(Workshop(settings_of(call)), folder), out)
+    made = demonstrate(Journey(Workshop(settings_of(call)), folder), out, manner_of(folder))
     if json:
         say_json(made.summary())
     else:
@@ -52,6 +52,7 @@ def example_folder(name: str) -> Path:
         UnreadableError: if there is none of that name.
     """
     known = examples()
+    known |= {also: folder for folder in known.values() if (also := also_called(folder))}
     if name not in known:
         raise UnreadableError(f"{name}: no such example; there are {', '.join(known)}")
     return known[name]
@@ -66,11 +67,19 @@ def examples() -> dict[str, Path]:
     }
 
 
+def also_called(folder: Path) -> str:
+    """Return a shorter name of an example; empty: it has none."""
+    from mmrs_core.cli.demonstration import manner_of
+
+    return manner_of(folder).also
+
+
 def _list_examples(json: bool) -> int:
     found = examples()
     if json:
         say_json({"examples": found})
     else:
         for name, folder in found.items():
-            say(f"{name}  ({folder})")
+            also = also_called(folder)
+            say(f"{name}{f' or {also}' if also else ''}  ({folder})")
     return 0

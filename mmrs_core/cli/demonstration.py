@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mmrs_core.behaviour.log import read_logs
@@ -13,16 +14,54 @@ from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
 from mmrs_core.cli.planned import require_sound, require_writable
 from mmrs_core.cli.preview.command import picture_of, write_pictures
-from mmrs_core.cli.simulation import fly, run_lines, succeeded, write_logs
+from mmrs_core.cli.simulation import Chosen, fly, run_lines, succeeded, write_logs
 from mmrs_core.cli.verdict_words import verdict_table
 from mmrs_core.contributions.targets import GeneratedFile
-from mmrs_core.errors import UnsupportedError
+from mmrs_core.errors import UnreadableError, UnsupportedError
 from mmrs_core.generation.writing import write
 from mmrs_core.pipeline import render, save
 from mmrs_core.runtime.run import Run
 
 _MOST_REASONS = 3
 TARGETS = ("mavlink-python", "qgc-plan")
+MANNER = "demo.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Manner:
+    """How an example is shown, as the file demo.toml beside its mission says.
+
+    Attributes:
+        also: a shorter name of it; may be empty.
+        backend: what moves the robots, in simulated time.
+        options: of the backend.
+        targets: what is generated.
+    """
+
+    also: str = ""
+    backend: str = "simulation"
+    options: Mapping[str, str] = field(default_factory=dict)
+    targets: tuple[str, ...] = TARGETS
+
+
+def manner_of(folder: Path) -> Manner:
+    """Return how an example is shown; as usual where it does not say. ``{folder}`` is its own folder.
+
+    Raises:
+        UnreadableError: its file cannot be read.
+    """
+    file = folder / MANNER
+    if not file.is_file():
+        return Manner()
+    try:
+        found = tomllib.loads(file.read_text(encoding="utf-8"))
+        options = {
+            key: str(value).replace("{folder}", str(folder)) for key, value in found["options"].items()
+        }
+        targets = tuple(map(str, found.get("targets", TARGETS)))
+        return Manner(str(found.get("also", "")), str(found["backend"]), options, targets)
+    except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+        raise UnreadableError(f"{file}: cannot be used: {error}") from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +71,7 @@ class Demonstration:
     Attributes:
         files: (what, path, how many files) in the order in which they were made.
         left_out: by target, what it cannot express: its files go without, and its manifest says so.
+        backend: what moved the robots.
     """
 
     journey: Journey
@@ -40,6 +80,7 @@ class Demonstration:
     folder: Path
     files: tuple[tuple[str, Path, int], ...]
     left_out: Mapping[str, tuple[str, ...]]
+    backend: str = "simulation"
 
     @property
     def _generated(self) -> frozenset[str]:
@@ -57,7 +98,8 @@ class Demonstration:
         yield from verdict_table(self.journey.verdicts)
         outcome, *details = run_lines(self.run)
         judged = "the logs replay" if self.replayed.accepted else "the logs do not replay"
-        yield f"simulated: {outcome}; {judged}"
+        backend = "" if self.backend == "simulation" else f" by {self.backend}"
+        yield f"simulated{backend}: {outcome}; {judged}"
         if not succeeded(self.run):
             yield from details
         for target in sorted(set(self.left_out) - self._generated):
@@ -79,7 +121,7 @@ class Demonstration:
         }
 
 
-def demonstrate(journey: Journey, folder: Path) -> Demonstration:
+def demonstrate(journey: Journey, folder: Path, manner: Manner = Manner()) -> Demonstration:
     """Take a mission through all stages and leave everything that they make in a folder.
 
     Raises:
@@ -94,7 +136,7 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
     save(journey.transformed[0], behaviour, workshop.contributions)
     files: list[tuple[str, Path, int]] = [("what each robot does, move by move", behaviour, 1)]
     left_out: dict[str, tuple[str, ...]] = {}
-    for target in TARGETS:
+    for target in manner.targets:
         rendered, left_out[target] = _rendered(journey, target)
         if not rendered:
             continue
@@ -105,13 +147,13 @@ def demonstrate(journey: Journey, folder: Path) -> Demonstration:
             else ""
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
-    run = fly(workshop, program, place, {})
+    run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options))
     logs = write_logs(run, program, folder / "logs", place.types)
     files.append(("what each robot did", folder / "logs", len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / "logs"]))
-    return Demonstration(journey, run, replayed, folder, tuple(files), left_out)
+    return Demonstration(journey, run, replayed, folder, tuple(files), left_out, manner.backend)
 
 
 def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:

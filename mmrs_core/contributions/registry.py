@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import CORE_COMMANDS, Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
@@ -42,6 +43,7 @@ _SHOWN: Mapping[str, Callable[[Any], object]] = {
     "device_actions": lambda wiring: wiring.property,
     "targets": lambda target: target.name,
     "backends": lambda backend: backend.name,
+    "codecs": lambda codec: codec.name,
     "conditions": lambda condition: condition.identifier,
     "map_symbols": lambda symbol: "#//".join(symbol.metaclass),
     "commands": lambda command: command.name,
@@ -141,6 +143,11 @@ class Contributions:
     def backends(self) -> Mapping[str, BackendFactory]:
         """Return what can execute behaviours, by name."""
         return self._by("backends", lambda backend: backend.name)
+
+    @cached_property
+    def codecs(self) -> Mapping[str, Codec]:
+        """Return how thrusters on a CAN bus are told what to do, by name."""
+        return self._by("codecs", lambda codec: codec.name)
 
     @cached_property
     def conditions(self) -> Mapping[str, Condition]:

@@ -38,6 +38,7 @@ class MoveSpec:
         object_tolerance: how far from `target` the object may be, metres; None where unknown.
         distance: metres from the target at the end.
         look: orientation; None: the way the robot goes.
+        facing: whether `look` means the object, wherever it is found, and not the place where it is expected.
         speed: metres per second; None: by the travel mode.
         before, after: device actions before and after the movement; their `at` does not matter.
     """
@@ -49,6 +50,7 @@ class MoveSpec:
     object_tolerance: float | None = None
     distance: float = 0.0
     look: Look | None = None
+    facing: bool = False
     speed: float | None = None
     before: tuple[ActionAt, ...] = ()
     after: tuple[ActionAt, ...] = ()

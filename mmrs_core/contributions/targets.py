@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.rules import MoveKind, RobotKind
@@ -71,10 +72,11 @@ class FileSpec:
     Attributes:
         path: relative to the folder of the output, with forward slashes, nothing but ASCII.
         template: name in the target's folder of templates. One that ends in ``.jinja`` is rendered,
-            any other is copied as it is.
+            any other is copied as it is; empty where the file has `data`.
         source: a file outside that folder that is copied instead of the template; None: the template.
         view: what the template sees.
         trace: which step serves which move and task, for the manifest.
+        data: what the file holds, where it is no text; None: what the template makes.
         once, asks: as in `GeneratedFile`.
     """
 
@@ -84,6 +86,7 @@ class FileSpec:
     trace: tuple[TracedStep, ...] = ()
     once: bool = False
     source: Path | None = None
+    data: bytes | None = None
     asks: tuple[str, ...] = ()
 
 
@@ -106,6 +109,8 @@ class Target:
         capabilities: how elements of the Behaviour Language are expressed, in a few words each, by the
             element as the table of capabilities names it, or by how its name begins: the longest
             counts. What is expressed, and what is not, is found by trying.
+        tried_with: the kind of robot that it is tried with: ``copter``, or ``sub`` where it is for
+            nothing that flies.
     """
 
     name: str
@@ -115,3 +120,4 @@ class Target:
     refusals: Callable[[TargetInput], Iterable[str]]
     filters: Mapping[str, Callable[[object], str]] = field(default_factory=dict)
     capabilities: Mapping[str, str] = field(default_factory=dict)
+    tried_with: Literal["copter", "sub"] = "copter"

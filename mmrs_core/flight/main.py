@@ -21,7 +21,7 @@ from .options import Options, options_of, parser_for
 from .program import Robot
 from .records.log import read
 from .screen import bear_all_characters, say
-from .session import Shared, run_robot
+from .session import Shared, Vehicles, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
 from .steps.resuming import slots_of
@@ -32,6 +32,8 @@ def main(
     conditions: Mapping[str, Condition] | None = None,
     locators: Mapping[str, Locator] | None = None,
     arguments: Sequence[str] | None = None,
+    *,
+    vehicles: Vehicles | None = None,
 ) -> int:
     """Run the programs of robots, each in a thread of its own, and return the exit code.
 
@@ -40,6 +42,7 @@ def main(
         conditions: what decides Choices, by identifier.
         locators: what finds objects, by description.
         arguments: as on the command line; None: those of this process.
+        vehicles: what makes vehicles that are reached otherwise than by MAVLink.
     """
     bear_all_characters()
     parser = parser_for(robots)
@@ -64,6 +67,7 @@ def main(
             ),
             stop=stop,
             abandon=abandon,
+            vehicles=vehicles,
         )
         stack.callback(rehearsal.close)
         rehearsal.start()

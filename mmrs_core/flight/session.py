@@ -44,6 +44,12 @@ from .vehicles.vehicle import Vehicle
 
 GLANCE_SECONDS = 0.2
 
+Vehicles = Callable[[Robot, Options, Callable[[], None], BlackBox], Vehicle]
+"""What makes the vehicle of a robot that is reached otherwise than by MAVLink.
+
+It calls the guard in every wait, and writes where it is into the black box.
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class Shared:
@@ -51,6 +57,7 @@ class Shared:
 
     Attributes:
         stop: set when they are to stop. abandon: set when even vehicles that others have are to be left.
+        vehicles: None: vehicles that speak MAVLink.
     """
 
     options: Options
@@ -62,6 +69,7 @@ class Shared:
     crews: Crews
     stop: threading.Event
     abandon: threading.Event
+    vehicles: Vehicles | None = None
 
 
 def run_robot(robot: Robot, shared: Shared) -> int:
@@ -261,8 +269,9 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
 
     stack.callback(obedience.close, "its program has ended")
     guard = guarding(watch, obedience)
-    link = None if options.dry else _link(robot, shared, guard, stack)
-    vehicle = _vehicle(robot, options, guard, link)
+    others = None if options.dry else shared.vehicles
+    link = None if options.dry or others is not None else _link(robot, shared, guard, stack)
+    vehicle = _vehicle(robot, options, guard, link) if others is None else others(robot, options, guard, box)
     desk = Desk(
         clock=options.clock,
         slots=shared.slots,

@@ -85,6 +85,8 @@ class Press:
 
     def content(self, spec: FileSpec) -> tuple[bytes, tuple[Served, ...]]:
         """Return what a file holds, and which of its lines serve which steps."""
+        if spec.data is not None:
+            return spec.data, ()
         if spec.source is not None:
             return (self._instead_of(spec.path) or spec.source).read_bytes(), ()
         if not spec.template.endswith(RENDERED):

@@ -14,6 +14,7 @@ DISTRIBUTIONS = MappingProxyType(
     {
         "urn:mmrs:multicopter": "mmrs-multicopter",
         "urn:mmrs:auv": "mmrs-auv",
+        "urn:mmrs:auv-tasks": "mmrs-auv",
         "urn:mmrs:survey": "mmrs-survey",
         "urn:mmrs:solar": "mmrs-solar",
         "urn:mmrs:rover": "mmrs-rover",

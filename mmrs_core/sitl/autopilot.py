@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 from math import atan2, cos, degrees, radians, remainder, sin, sqrt
+from typing import TYPE_CHECKING
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -21,6 +22,9 @@ from mmrs_core.sitl.gusts import Gusts
 from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
 from mmrs_core.sitl.settings import PX4, Settings
+
+if TYPE_CHECKING:
+    from mmrs_core.sitl.sticks import Sticks
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 """Of the ellipsoid of WGS 84: metres, and its flatness."""
@@ -60,6 +64,7 @@ class Autopilot:
         home: latitude, longitude and metres above the sea. settled: whether somebody has told it its home.
         heard: when the ground station that it knows was last heard; None: never.
         steered: when the last set-points came, oldest first.
+        sticks: of the pilot, where somebody has moved them.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -102,6 +107,7 @@ class Autopilot:
         self.crumbs: list[Vector] = [(0.0, 0.0, 0.0)]
         self.heard: float | None = None
         self.steered: list[float] = []
+        self.sticks: Sticks | None = None
         self.grounded_since = self.time
         self.home = (*self.degrees(), self.settings.altitude + self.body.position[2])
         self.settled = False

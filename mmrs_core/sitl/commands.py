@@ -11,6 +11,7 @@ from mmrs_core.sitl.body import Vector
 from mmrs_core.sitl.failsafes import outside_fence
 from mmrs_core.sitl.items import MISSION
 from mmrs_core.sitl.missions import jump
+from mmrs_core.sitl.modes import BLIND
 from mmrs_core.sitl.settings import PX4
 
 ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
@@ -51,7 +52,8 @@ def complaint(pilot: Autopilot) -> str:
     """Return why it does not let itself be armed; empty if it does."""
     if pilot.unfit:
         return pilot.unfit
-    if not pilot.located or pilot.uptime < pilot.settings.ready:
+    by_hand = pilot.settings.kind == "sub" and pilot.mode_name in BLIND
+    if not (pilot.located or by_hand) or pilot.uptime < pilot.settings.ready:
         return "Need Position Estimate"
     fenced = pilot.settings.firmware != PX4 and pilot.parameters["FENCE_ENABLE"]
     return "vehicle outside Polygon fence" if fenced and outside_fence(pilot) else ""

@@ -9,7 +9,9 @@ from mmrs_core.sitl.autopilot import Autopilot, bearing
 from mmrs_core.sitl.body import Vector
 from mmrs_core.sitl.items import RALLY
 from mmrs_core.sitl.missions import fly_mission
+from mmrs_core.sitl.modes import MANUAL
 from mmrs_core.sitl.settings import PX4
+from mmrs_core.sitl.sticks import go_by_hand
 
 NEAR, CLIMBED = 1.0, 0.3
 FINAL_HEIGHT = 10.0
@@ -23,7 +25,10 @@ GROUND = 0.05
 
 def decide(pilot: Autopilot, seconds: float) -> None:
     """Give the body of an armed vehicle its next target."""
-    _PILOTS.get(pilot.mode_name, _hold)(pilot, seconds)
+    if pilot.settings.kind == "sub" and pilot.mode_name in MANUAL:
+        go_by_hand(pilot, seconds)
+    else:
+        _PILOTS.get(pilot.mode_name, _hold)(pilot, seconds)
 
 
 def begin_return(pilot: Autopilot) -> None:

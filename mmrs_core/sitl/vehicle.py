@@ -22,6 +22,7 @@ from mmrs_core.sitl.radio import COMPONENT, Radio
 from mmrs_core.sitl.routing import Router
 from mmrs_core.sitl.settings import PX4, Settings
 from mmrs_core.sitl.simulation import advance
+from mmrs_core.sitl.sticks import sticks_of
 from mmrs_core.sitl.stored import Transfers
 from mmrs_core.sitl.streams import Streams
 from mmrs_core.sitl.transfers import MissionProtocol
@@ -259,6 +260,10 @@ class SimulatedVehicle:
     def _steer_locally(self, message: Message) -> None:
         steer(self.autopilot, (message.x, message.y, -message.z), _heading(message))
 
+    def _take_sticks(self, message: Message) -> None:
+        if message.target in (0, self.autopilot.settings.system):
+            self.autopilot.sticks = sticks_of(message, self.autopilot.time)
+
     def _synchronise(self, message: Message) -> None:
         if message.tc1 == 0:
             now = telemetry.milliseconds(self.autopilot) * 1_000_000
@@ -299,5 +304,6 @@ _HANDLERS: Mapping[str, Callable[[SimulatedVehicle, Message], None]] = {
     "MISSION_SET_CURRENT": SimulatedVehicle._current,
     "SET_POSITION_TARGET_GLOBAL_INT": SimulatedVehicle._steer_globally,
     "SET_POSITION_TARGET_LOCAL_NED": SimulatedVehicle._steer_locally,
+    "MANUAL_CONTROL": SimulatedVehicle._take_sticks,
     "TIMESYNC": SimulatedVehicle._synchronise,
 }

@@ -135,7 +135,7 @@ class _Assembly:
     def _heading(self, spec: MoveSpec) -> bl.Heading:
         look = spec.look
         assert look is not None
-        target = self._coordinates.at(look.at)
+        target = self._target(spec, look.at) if spec.facing else self._coordinates.at(look.at)
         return bl.Heading(target=target, angle=look.angle_degrees, deviceId=look.device or None)
 
     def _action(self, deed: Deed) -> bl.Action:

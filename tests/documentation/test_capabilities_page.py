@@ -1,14 +1,20 @@
-"""The page about capabilities is what trying gives; `--update-golden` writes it anew."""
+"""The pages about capabilities are what trying gives; `--update-golden` writes them anew."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from mmrs_auv.targets.can_c.target import CAN_C
+from mmrs_auv.targets.imc.target import IMC
+from mmrs_auv.targets.moos.target import MOOS
+
 from mmrs_core.cli.pages.capabilities_page import page_of
+from mmrs_core.generation.capabilities.judging import capabilities_of
 from mmrs_core.pipeline import capabilities
 from mmrs_core.plugins import load_plugins
 
 PAGE = Path(__file__).parents[2] / "docs" / "capabilities.md"
+UNDER_WATER = PAGE.with_name("capabilities-underwater.md")
 
 
 def test_the_page_is_current(update_golden):
@@ -18,3 +24,13 @@ def test_the_page_is_current(update_golden):
     if update_golden:
         PAGE.write_text(made, encoding="utf-8", newline="\n")
     assert PAGE.read_text(encoding="utf-8") == made
+
+
+def test_the_page_about_plans_for_underwater_vehicles_is_current(update_golden):
+    targets = (CAN_C, IMC, MOOS)
+    tables = {target.name: capabilities_of(target) for target in targets}
+    page = page_of(tables, {target.name: target.description for target in targets})
+    made = page.replace("# Capabilities of the targets\n", "# Capabilities: underwater vehicles\n", 1)
+    if update_golden:
+        UNDER_WATER.write_text(made, encoding="utf-8", newline="\n")
+    assert UNDER_WATER.read_text(encoding="utf-8") == made

@@ -58,6 +58,7 @@ def test_every_field_of_what_is_declared_is_told():
     from mmrs_core.contributions import (
         backends,
         checks,
+        codecs,
         commands,
         constraints,
         execution,
@@ -80,6 +81,7 @@ def test_every_field_of_what_is_declared_is_told():
         "mmrs_device_actions": wiring.DeviceWiring,
         "mmrs_targets": targets.Target,
         "mmrs_backends": backends.BackendFactory,
+        "mmrs_codecs": codecs.Codec,
         "mmrs_conditions": execution.Condition,
         "mmrs_map_symbols": symbols.MapSymbol,
         "mmrs_commands": commands.Command,

@@ -10,7 +10,13 @@ from mmrs_core.cli.pages.languages_page import pages, write_pages
 from mmrs_core.languages.registry import MetamodelSource, registry_with
 
 ROOT = Path(__file__).parents[2]
-PLUGINS = ("auv", "multicopter", "rover", "solar", "survey")
+PLUGINS = {
+    "auv": ("auv", "auv-tasks"),
+    "multicopter": ("multicopter",),
+    "rover": ("rover",),
+    "solar": ("solar",),
+    "survey": ("survey",),
+}
 
 
 @pytest.fixture(scope="module")
@@ -18,11 +24,12 @@ def registry():
     """Return the core's languages and those of the plug-ins in this checkout, as when all are installed."""
     return registry_with(
         MetamodelSource(
-            f"urn:mmrs:{name}:1.0",
-            ROOT / "plugins" / name / f"mmrs_{name}" / "metamodels" / f"{name}.ecore",
+            f"urn:mmrs:{language}:1.0",
+            ROOT / "plugins" / name / f"mmrs_{name}" / "metamodels" / f"{language}.ecore",
             f"mmrs-{name}",
         )
-        for name in PLUGINS
+        for name, languages in PLUGINS.items()
+        for language in languages
     )
 
 

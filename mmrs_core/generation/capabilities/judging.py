@@ -11,6 +11,7 @@ from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.capabilities import actions, behaviours, moves, policies
 from mmrs_core.generation.capabilities.probes import Probe
+from mmrs_core.generation.capabilities.water import under_water
 from mmrs_core.generation.environment import environment_of
 from mmrs_core.generation.render import Press
 from mmrs_core.scene import Metaclasses
@@ -64,7 +65,12 @@ def probes(more_moves: Iterable[Metaclasses] = ()) -> tuple[Probe, ...]:
 def capabilities_of(target: Target, tried: Iterable[Probe] | None = None) -> tuple[Capability, ...]:
     """Return what a target does with each element; by default with each that `probes` gives."""
     trial = Trial(target)
-    return tuple(trial.judged(probe) for probe in (probes() if tried is None else tried))
+    return tuple(trial.judged(probe) for probe in suited(probes() if tried is None else tried, target))
+
+
+def suited(tried: Iterable[Probe], target: Target) -> tuple[Probe, ...]:
+    """Return the probes as they are tried with a target: with drones, or with underwater vehicles."""
+    return tuple(under_water(probe) if target.tried_with == "sub" else probe for probe in tried)
 
 
 class Trial:

@@ -114,13 +114,37 @@ def kind_of(vehicle: str, **properties: str) -> RobotType:
         half_diagonal=0.5,
         max_payload=1.0,
         capabilities=(
-            Capability(0.0, 1200.0, (0.5, 8.0), 2.5, 2.5, 2.0, 90.0),
-            Capability(1.0, 900.0, (0.5, 4.0), 2.5, 2.5, 2.0, 90.0),
+            Capability(0.0, 1200.0, (0.5, 8.0), 2.5, 2.5, 2.0, 90.0, _moving(vehicle)),
+            Capability(1.0, 900.0, (0.5, 4.0), 2.5, 2.5, 2.0, 90.0, _moving(vehicle)),
         ),
         batteries=(Battery(200_000.0, 3600.0),),
         devices={"device": device},
-        part=Part((metaclasses[0],), {}),
+        part=Part((metaclasses[0],), {"size": SIZE} if vehicle == "sub" else {}),
     )
+
+
+def _moving(vehicle: str) -> Part:
+    """Return how a vehicle moves; one under water has thrusters."""
+    if vehicle != "sub":
+        return Part((), {})
+    pushes = {"T1": (0.3, 0.2, 1.0, 0.0), "T2": (0.3, -0.2, 1.0, 0.0), "T3": (0.3, 0.0, 0.0, 1.0)}
+    pushes["T4"] = (-0.3, 0.0, 0.0, 1.0)
+    return Part(
+        (*KINDS["sub"][1],), {"thrusters": tuple(_thruster(id, *each) for id, each in pushes.items())}
+    )
+
+
+def _thruster(id: str, forward: float, starboard: float, ahead: float, down: float) -> Part:
+    place = {"forward": forward, "starboard": starboard, "pushForward": ahead, "pushDown": down}
+    mounting = Part(((AUV, "Mounting"),), place)
+    figures = {"operatingThrust": 20.0, "maxThrust": 40.0, "operatingPower": 90.0, "maxPower": 250.0}
+    return Part(((AUV, "Thruster"),), {"id": id, "maxDepth": 100.0, "mounting": mounting, **figures})
+
+
+SIZE = Part(
+    ((AUV, "InWaterSize"),),
+    {"length": 0.8, "width": 0.5, "height": 0.4, "weight": 30.0, "weightInWater": -0.3},
+)
 
 
 def given(*robots: RobotProgram, type: RobotType | None = None, frame: Frame = EARTH) -> TargetInput:

@@ -10,6 +10,7 @@ from mmrs_core.behaviour.program import Move
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import degrees_of
+from mmrs_core.mavlink.plans.diving import height_in
 from mmrs_core.mavlink.vehicles import MANNERS, PX4, autopilot_of
 from mmrs_core.scene import Position
 
@@ -74,7 +75,7 @@ def rows_of(context: RobotContext, sortie: Sequence[Item]) -> tuple[Row, ...]:
 def _row(number: int, item: Item, context: RobotContext, degrees: Iterator[tuple[float, float]]) -> Row:
     place: tuple[float, ...] = ()
     if item.position is not None:
-        place = (*next(degrees), context.height(item.position))
+        place = (*next(degrees), height_in(context, item.position))
     filled = [0.0] * (PARAMETERS - len(place) - len(item.params))
     if autopilot_of(context.type) == PX4:
         filled = _as_px4_has_it(item, filled, context)

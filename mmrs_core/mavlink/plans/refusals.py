@@ -12,10 +12,11 @@ from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
 from mmrs_core.mavlink.earth import sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
+from mmrs_core.mavlink.plans.diving import above_water
 from mmrs_core.mavlink.plans.flight import flown
 from mmrs_core.mavlink.plans.px4 import unknown_in
 from mmrs_core.mavlink.safety import explicit, policies_of
-from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of
+from mmrs_core.mavlink.vehicles import PX4, autopilot_fault, autopilot_of, vehicle_class
 from mmrs_core.scene import Policy
 
 
@@ -25,12 +26,13 @@ def refusals(input: TargetInput) -> Iterator[str]:
         yield "behaviour: is local, its origin has no latitude and longitude"
     for robot in input.program.robots:
         yield from _of_robot(robot, input)
+        yield from above_water(robot, input)
 
 
 def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     if robot.home is None:
         yield homeless(robot)
-    elif sea_level_of(robot.home, input.program.frame) is None:
+    elif sea_level_of(robot.home, input.program.frame) is None and not _dives(robot, input):
         yield (
             f"robot '{robot.id}': the height of its home above mean sea level is not known; give altitudes"
             " above mean sea level, or the geoid separation"
@@ -64,6 +66,11 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
             )
         for policy in transition.policies if transition is not None else ():
             yield f"{context.label(move)}: {_described(explicit(policy))}"
+
+
+def _dives(robot: RobotProgram, input: TargetInput) -> bool:
+    """Return whether a robot's heights count from the surface, wherever that is above the sea."""
+    return vehicle_class(robot, input.types.get(robot.type_name)).dives
 
 
 def _coming_round(robot: RobotProgram, context: RobotContext) -> Iterator[str]:

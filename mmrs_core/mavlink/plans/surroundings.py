@@ -14,6 +14,7 @@ from mmrs_core.mavlink.context import RobotContext, context_of, require_home
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
 from mmrs_core.mavlink.escapes import escapes_of
 from mmrs_core.mavlink.fencing import fences_of
+from mmrs_core.mavlink.plans.diving import zero_of
 from mmrs_core.mavlink.plans.flight import sorties_of
 from mmrs_core.mavlink.plans.items import Item, Row, rows_of
 from mmrs_core.scene import Point
@@ -78,7 +79,7 @@ def _mission(context: RobotContext, input: TargetInput, stem: str, sortie: Seque
 def _home(robot: RobotProgram, context: RobotContext) -> Spot:
     home = require_home(robot)
     ((latitude, longitude),) = degrees_of([(home[0], home[1])], context.frame)
-    return (latitude, longitude, sea_level_of(home, context.frame) or 0.0)
+    return (latitude, longitude, sea_level_of(zero_of(context, home), context.frame) or 0.0)
 
 
 def _rally(context: RobotContext, points: Sequence[Point], sortie: Sequence[Item]) -> tuple[Spot, ...]:

@@ -11,7 +11,7 @@ import pytest
 
 from mmrs_core.contributions.targets import Target, TargetInput
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes, suited
 from mmrs_core.generation.manifest import manifest_in
 from mmrs_core.generation.render import render
 from mmrs_core.testing.conformance.declared import Conformance, declared
@@ -48,11 +48,13 @@ class TargetConformance(Conformance):
         assert "\n" not in target.description
 
     def test_it_writes_files_that_can_be_read(self, target: Target) -> None:
-        """There is something beside the manifest, and all of it is text in UTF-8."""
-        files = render(target, self._input(target))
+        """There is something beside the manifest, and all that templates make is text in UTF-8."""
+        given = self._input(target)
+        files = render(target, given)
         assert len(files) > 1
+        binary = {spec.path for spec in target.files(given) if spec.data is not None}
         for file in files:
-            file.content.decode("utf-8")
+            assert file.path in binary or file.content.decode("utf-8")
 
     def test_equal_behaviours_make_equal_files(
         self, target: Target, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
@@ -94,7 +96,7 @@ class TargetConformance(Conformance):
 
     def test_it_refuses_what_its_table_of_capabilities_says_and_nothing_else(self, target: Target) -> None:
         """A refusal is about something that the behaviour without it is not refused for."""
-        for probe, row in zip(probes(), capabilities_of(target), strict=True):
+        for probe, row in zip(suited(probes(), target), capabilities_of(target), strict=True):
             refused = row.verdict in ("lossy", "refused")
             assert bool(tuple(target.refusals(probe.given))) is refused, row.element
 

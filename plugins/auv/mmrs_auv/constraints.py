@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_auv.depths import too_deep
+from mmrs_auv.equipment_checks import EQUIPMENT_CONSTRAINTS
 from mmrs_auv.kinds import GRAVITY
+from mmrs_auv.mounting_checks import MOUNTING_CONSTRAINTS
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
+from mmrs_auv.task_checks import TASK_CONSTRAINTS
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, is_kind, label_of
@@ -228,4 +231,7 @@ CONSTRAINTS = (
         "trim the vehicle to be nearly neutral, or correct the thrust",
         Severity.WARNING,
     ),
+    *MOUNTING_CONSTRAINTS,
+    *EQUIPMENT_CONSTRAINTS,
+    *TASK_CONSTRAINTS,
 )

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from math import inf
 
 from mmrs_auv.kinds import ATMOSPHERE, GRAVITY, SEA_WATER
-from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_auv.names import AUV_MOVEMENT, FOLLOW_PIPELINE_TASK, YO_YO_TASK
 from mmrs_core.contributions.constraints import Finding
 from mmrs_core.languages.element import Element, is_kind, label_of
-from mmrs_core.languages.grounding.coordinates import ground_of
+from mmrs_core.languages.grounding.coordinates import Ground, ground_of
 from mmrs_core.languages.grounding.heights import heights_of_task
 from mmrs_core.languages.grounding.values import child, children, number, text
 from mmrs_core.languages.modelset import ModelSet
@@ -26,13 +26,25 @@ def too_deep(mission: Element, models: ModelSet) -> Iterator[Finding]:
     deepest = max((limit for limit in limits if limit is not None), default=inf)
     ground = ground_of(mission, models.context)
     for task in children(mission, "tasks"):
-        heights = heights_of_task(task, ground)
-        depth = ground.frame.surface - min(heights, default=inf)
+        depth = _deepest(task, ground)
         if depth > deepest + 1e-6:
             yield Finding(
                 task,
                 f"task '{label_of(task)}' is {depth:g} m deep, the team's vehicles bear {deepest:.1f} m",
             )
+
+
+def _deepest(task: Element, ground: Ground) -> float:
+    """Return how deep a task leads, metres below the surface; -inf where that is not known."""
+    lowest = number(task, "maxDepth") if is_kind(task, *YO_YO_TASK) else None
+    if lowest is not None:
+        return lowest
+    heights = heights_of_task(task, ground)
+    if is_kind(task, *FOLLOW_PIPELINE_TASK):
+        pipeline, above = child(task, "pipeline"), number(task, "height") or 0.0
+        points = children(pipeline, "points")
+        heights = tuple(ground.positions[each][2] + above for each in points if each in ground.positions)
+    return ground.frame.surface - min(heights, default=inf)
 
 
 def _limit(robot_type: Element | None, models: ModelSet) -> float | None:

@@ -6,3 +6,14 @@ AUV = "urn:mmrs:auv:1.0"
 IN_WATER_SIZE = (AUV, "InWaterSize")
 AUV_MOVEMENT = (AUV, "AUVMovement")
 THRUSTER = (AUV, "Thruster")
+MOUNTING = (AUV, "Mounting")
+
+AUV_TASKS = "urn:mmrs:auv-tasks:1.0"
+PIPELINE = (AUV_TASKS, "Pipeline")
+RECORDING = (AUV_TASKS, "Recording")
+DEPTH_HOLD_SURVEY_TASK = (AUV_TASKS, "DepthHoldSurveyTask")
+YO_YO_TASK = (AUV_TASKS, "YoYoTask")
+INSPECT_OBJECT_TASK = (AUV_TASKS, "InspectObjectTask")
+ALIGN_TASK = (AUV_TASKS, "AlignTask")
+FOLLOW_PIPELINE_TASK = (AUV_TASKS, "FollowPipelineTask")
+SURFACE_TASK = (AUV_TASKS, "SurfaceTask")

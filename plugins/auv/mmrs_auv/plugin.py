@@ -1,24 +1,30 @@
-"""What this plug-in contributes: the metamodel, how underwater vehicles move, what must hold."""
+"""What this plug-in contributes: metamodels, how underwater vehicles move, what they do, what must hold."""
 
 from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
 
-from mmrs_auv.names import AUV, AUV_MOVEMENT
+from mmrs_auv import names
+from mmrs_core.contributions.backends import BackendFactory
+from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.fixes import Fix
-from mmrs_core.contributions.rules import RobotKind
+from mmrs_core.contributions.rules import RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
+from mmrs_core.contributions.targets import Target
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.languages.registry import MetamodelSource
 
 
 @hookimpl
 def mmrs_metamodels() -> tuple[MetamodelSource, ...]:
-    """Contribute underwater vehicles to the Robot Language."""
-    ecore = Path(str(files("mmrs_auv"))) / "metamodels" / "auv.ecore"
-    return (MetamodelSource(AUV, ecore, "mmrs-auv"),)
+    """Contribute underwater vehicles to the Robot Language, and what they do to the mission layer."""
+    folder = Path(str(files("mmrs_auv"))) / "metamodels"
+    return (
+        MetamodelSource(names.AUV, folder / "auv.ecore", "mmrs-auv"),
+        MetamodelSource(names.AUV_TASKS, folder / "auv-tasks.ecore", "mmrs-auv"),
+    )
 
 
 @hookimpl
@@ -31,7 +37,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
-    """Contribute what mends thrusters whose figures are exchanged."""
+    """Contribute what mends figures that are exchanged, and overlaps in per cent."""
     from mmrs_auv.fixes import FIXES
 
     return FIXES
@@ -46,6 +52,61 @@ def mmrs_robot_kinds() -> tuple[RobotKind, ...]:
 
 
 @hookimpl
+def mmrs_rules() -> tuple[Rule, ...]:
+    """Contribute what tasks under water are made of."""
+    from mmrs_auv.tasks.objects import OBJECT_RULES
+    from mmrs_auv.tasks.pipelines import PIPELINE_RULE
+    from mmrs_auv.tasks.profiles import YO_YO_RULE
+    from mmrs_auv.tasks.surfacing import SURFACE_RULE
+    from mmrs_auv.tasks.surveys import SURVEY_RULE
+
+    return (SURVEY_RULE, YO_YO_RULE, *OBJECT_RULES, PIPELINE_RULE, SURFACE_RULE)
+
+
+@hookimpl
+def mmrs_targets() -> tuple[Target, ...]:
+    """Contribute what can be generated for underwater vehicles: what runs them, and plans for others'."""
+    from mmrs_auv.targets.ada.target import ADA
+    from mmrs_auv.targets.can_c.target import CAN_C
+    from mmrs_auv.targets.can_python.target import CAN_PYTHON
+    from mmrs_auv.targets.imc.target import IMC
+    from mmrs_auv.targets.moos.target import MOOS
+
+    return (ADA, CAN_C, CAN_PYTHON, IMC, MOOS)
+
+
+@hookimpl
 def mmrs_map_symbols() -> tuple[MapSymbol, ...]:
-    """Contribute how the movement of underwater vehicles looks on maps."""
-    return (MapSymbol(AUV_MOVEMENT, "underwater vehicle", "#0b7a75", "⚓", ("payloadWeight", "lifetime")),)
+    """Contribute how underwater vehicles, their tasks and pipelines look on maps."""
+    return (
+        MapSymbol(names.AUV_MOVEMENT, "underwater vehicle", "#0b7a75", "⚓", ("payloadWeight", "lifetime")),
+        MapSymbol(names.PIPELINE, "pipeline", "#6b4f1d", "═", ("diameter",)),
+        MapSymbol(
+            names.DEPTH_HOLD_SURVEY_TASK, "sonar survey", "#1c5d99", "☰", ("depth", "swath", "overlap")
+        ),
+        MapSymbol(names.YO_YO_TASK, "yo-yo", "#2b7a4b", "∿", ("minDepth", "maxDepth", "pitch")),
+        MapSymbol(names.INSPECT_OBJECT_TASK, "inspect", "#a0235d", "◌", ("object", "distance", "views")),
+        MapSymbol(names.ALIGN_TASK, "align", "#4b3f72", "⊙", ("object", "distance", "bearing")),
+        MapSymbol(names.FOLLOW_PIPELINE_TASK, "pipeline run", "#8a4b08", "⇒", ("pipeline", "height")),
+        MapSymbol(names.SURFACE_TASK, "surface", "#37474f", "⤒", ("duration",)),
+    )
+
+
+@hookimpl
+def mmrs_backends() -> tuple[BackendFactory, ...]:
+    """Contribute what drives underwater vehicles: over their buses, or by a pilot's sticks."""
+    from mmrs_auv.backend import CAN, CAN_SIM
+    from mmrs_auv.manual import ARDUSUB_MANUAL
+
+    return (CAN, CAN_SIM, ARDUSUB_MANUAL)
+
+
+@hookimpl
+def mmrs_commands() -> tuple[Command, ...]:
+    """Contribute what concerns the CAN buses of vehicles, and vehicles that are simulated on them."""
+    said = "CAN buses of vehicles: database (DBC), a hub for one machine, what is said, how busy."
+    rehearse = "Simulated underwater vehicles to rehearse on, each on a CAN bus of its own."
+    return (
+        Command("can", said, "mmrs_auv.commands.can:main"),
+        Command("auv", rehearse, "mmrs_auv.commands.auv:main"),
+    )

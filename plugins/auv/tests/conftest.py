@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 
 import pytest
 from mmrs_auv import plugin
 from mmrs_auv.names import AUV_MOVEMENT
 
+from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import Registry, registry_with
 from mmrs_core.scene import Part, Robot, Scene
 from mmrs_core.testing.models import sample_tasks
@@ -43,3 +45,12 @@ def lake() -> Callable[..., Scene]:
         return sample_scene(surface=surface, environment=environment)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def project_types() -> list[object]:
+    """Return the types of underwater vehicle of the examples."""
+    examples = Path(__file__).parents[3] / "examples"
+    files = (examples / "pool/robots/pool-auv.xmi", examples / "mixed-team/robots/inspection-auv.xmi")
+    known = registry_with(plugin.mmrs_metamodels())
+    return [root for file in files for root in read_model(file, known).roots]

@@ -1,11 +1,18 @@
 from __future__ import annotations
 
 from mmrs_auv import plugin
-from mmrs_auv.names import AUV_MOVEMENT
+from mmrs_auv.names import AUV_MOVEMENT, PIPELINE
 
-from mmrs_core.scene import Part
-from mmrs_core.testing.conformance import MetamodelConformance, PluginConformance, RobotKindConformance
-from mmrs_core.testing.scenes import sample_robot, sample_scene, sample_type
+from mmrs_core.generation.capabilities.probes import plain
+from mmrs_core.scene import Kinematics, Part
+from mmrs_core.testing.conformance import (
+    MetamodelConformance,
+    PluginConformance,
+    RobotKindConformance,
+    RuleConformance,
+    TargetConformance,
+)
+from mmrs_core.testing.scenes import sample_device, sample_robot, sample_scene, sample_type
 
 MOVEMENT = Part((AUV_MOVEMENT,), {"thrusters": (Part((), {"maxDepth": 50.0}),)})
 DIVER = sample_type(name="Diver", movement=MOVEMENT, speed=(0.0, 2.0), climb_rate=0.5)
@@ -25,3 +32,54 @@ class TestRobotKinds(RobotKindConformance):
     plugin = plugin
     robots = {"auv": sample_robot(DIVER, home=(0.0, 0.0, -3.0), kinematics=None)}
     scene = LAKE
+
+
+SONAR = sample_device("sonar", "Record", properties={"sonar.swath": "8.0"})
+CAMERA = sample_device("camera", "TakePicture")
+SWIMMER = Kinematics(1.0, 0.0, 2.0, 0.5, 0.5, floor=-50.0, ceiling=0.0)
+SHELL = ((10.0, 10.0, 0.0), (40.0, 10.0, 0.0), (40.0, 25.0, 0.0), (10.0, 25.0, 0.0))
+LINE = ((10.0, 0.0, -5.0), (60.0, 0.0, -5.0), (60.0, 60.0, -6.0))
+BUOY = {"point": (30.0, 20.0, -4.0), "object": "buoy", "distance": 3.0}
+RECORDING = {"deviceId": "sonar", "startAction": "Record", "stopAction": None, "speed": 0.8}
+PIPE = Part((PIPELINE,), {"name": "outfall", "points": LINE, "diameter": 0.4})
+
+
+class TestRules(RuleConformance):
+    plugin = plugin
+    robot = sample_robot(
+        sample_type(name="Diver", movement=MOVEMENT, devices={"sonar": SONAR, "camera": CAMERA}),
+        home=(0.0, 0.0, -1.0),
+        kinematics=SWIMMER,
+    )
+    elements = (PIPE,)
+    tasks = {
+        "depth_hold_survey": {
+            "initialPosition": (5.0, 5.0, 0.0),
+            "shell": SHELL,
+            "depth": 6.0,
+            "overlap": 0.1,
+            **RECORDING,
+        },
+        "yo_yo": {
+            "initialPosition": (5.0, 0.0, 0.0),
+            "points": LINE,
+            "minDepth": 2.0,
+            "maxDepth": 8.0,
+            "pitch": 20.0,
+        },
+        "inspect_object": {**BUOY, "views": 6, "actionName": "TakePicture", "duration": 2.0},
+        "align": {**BUOY, "tolerance": 1.0, "bearing": 90.0, "actionName": "TakePicture", "duration": 5.0},
+        "follow_pipeline": {"pipeline": "outfall", "height": 1.5, "offset": 1.0, **RECORDING},
+        "surface_fix": {"point": (30.0, 20.0, -4.0), "duration": 20.0},
+    }
+
+
+class TestTargets(TargetConformance):
+    plugin = plugin
+    inputs = {
+        "ada": plain("sub"),
+        "can-c": plain("sub"),
+        "can-python": plain("sub"),
+        "imc": plain("sub"),
+        "moos": plain("sub"),
+    }

@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 from mmrs_auv import plugin
 from mmrs_auv.constraints import CONSTRAINTS
-from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
+from mmrs_auv.names import AUV_MOVEMENT, AUV_TASKS, IN_WATER_SIZE, MOUNTING, THRUSTER
 
 from mmrs_core.languages import context as ctx
+from mmrs_core.languages import mission as mml
 from mmrs_core.testing.conformance import Case, ConstraintConformance
 from mmrs_core.testing.models import breaches, sample_mission, sample_tasks, sample_visit
 
@@ -52,6 +53,60 @@ def lake():
     return ctx.Context(name="lake", surfaceHeight=-3.0, environment=ctx.Environment(waterDensity=1000.0))
 
 
+def mounted(registry, degrees, place=(0.0, 0.0, 0.0), push=(1.0, 0.0, 0.0), **features):
+    names = ("forward", "starboard", "down", "pushForward", "pushStarboard", "pushDown")
+    mounting = registry.create(*MOUNTING, **dict(zip(names, (*place, *push), strict=True)))
+    return thruster(registry, degrees, mounting=mounting, **features)
+
+
+def twins(registry, other=(-0.2, 0.1, 0.0), push=(1.0, 0.0, 0.0)):
+    port = mounted(registry, ("SURGE", "YAW"), (-0.2, -0.1, 0.0))
+    starboard = mounted(registry, ("SURGE", "YAW"), other, push, id="T2")
+    return vehicle(registry, port, starboard)
+
+
+def at(east, north, up=0.0):
+    return mml.RelativeCoordinate(x=east, y=north, z=up)
+
+
+SHELL = ((0.0, 0.0), (50.0, 0.0), (50.0, 50.0))
+
+
+def survey(registry, **features):
+    whole = {"initialPosition": at(0.0, 0.0), "shell": [at(*each) for each in SHELL], "depth": 5.0}
+    return asked(registry, "DepthHoldSurveyTask", **{**whole, "swath": 4.0, **features})
+
+
+def yo_yo(registry, **features):
+    whole = {"initialPosition": at(0.0, 0.0), "points": [at(0.0, 0.0), at(90.0, 0.0)], "minDepth": 2.0}
+    return asked(registry, "YoYoTask", **{**whole, "maxDepth": 8.0, **features})
+
+
+def asked(registry, metaclass, **features):
+    return sample_mission(registry.create(AUV_TASKS, metaclass, name="it", **features), robot_type="Diver")
+
+
+def sonar(registry, **properties):
+    made = [
+        registry.create(ROBOT_LANGUAGE, "Property", name=key.replace("_", "."), value=said)
+        for key, said in properties.items()
+    ]
+    return vehicle(registry, devices=[registry.create(ROBOT_LANGUAGE, "Device", id="sonar", properties=made)])
+
+
+def pipelines(registry, *names):
+    points = [(at(0.0, 0.0), at(50.0, 0.0)) for _ in names]
+    made = [
+        registry.create(AUV_TASKS, "Pipeline", name=name, points=list(ends))
+        for name, ends in zip(names, points, strict=True)
+    ]
+    return [ctx.Context(name="lake", elements=made)]
+
+
+def fix(registry):
+    return asked(registry, "SurfaceTask", point=at(5.0, 5.0, -2.0))
+
+
 CASES = {
     "AUV001": Case(
         lambda r: [vehicle(r, thruster(r, ("YAW", "HEAVE")))],
@@ -93,6 +148,57 @@ CASES = {
         lambda r: [vehicle(r, size=size(r, weightInWater=-3.0))],
         lambda r: [vehicle(r, size=size(r, weightInWater=-2.0))],
     ),
+    "AUV014": Case(
+        lambda r: [vehicle(r, mounted(r, ("SURGE",), push=(0.0, 0.0, 0.0)))],
+        lambda r: [vehicle(r, mounted(r, ("SURGE",)))],
+    ),
+    "AUV015": Case(
+        lambda r: [vehicle(r, mounted(r, ("SURGE", "HEAVE")))],
+        lambda r: [vehicle(r, mounted(r, ("SURGE", "HEAVE"), push=(1.0, 0.0, 0.1)))],
+    ),
+    "AUV016": Case(
+        lambda r: [vehicle(r, mounted(r, ("SURGE",), (0.0, 0.1, 0.0)))],
+        lambda r: [twins(r)],
+    ),
+    "AUV017": Case(
+        lambda r: [vehicle(r, mounted(r, ("SURGE",)), thruster(r, id="T2"))],
+        lambda r: [vehicle(r, mounted(r, ("SURGE",)), mounted(r, ("SURGE",), id="T2"))],
+    ),
+    "AUV018": Case(
+        lambda r: [vehicle(r, mounted(r, ("SURGE",), (-200.0, 0.0, 0.0)))],
+        lambda r: [vehicle(r, mounted(r, ("SURGE",), (-0.2, 0.0, 0.0)))],
+    ),
+    "AUV019": Case(
+        lambda r: [vehicle(r, size=size(r, weightInWater=1.0, dropWeight=0.9))],
+        lambda r: [vehicle(r, size=size(r, weightInWater=1.0, dropWeight=1.0))],
+    ),
+    "AUV020": Case(
+        lambda r: [vehicle(r, size=size(r, dropWeight=20.1))],
+        lambda r: [vehicle(r, size=size(r, dropWeight=20.0))],
+    ),
+    "AUV021": Case(
+        lambda r: [sonar(r, sonar_aperture="120 deg")],
+        lambda r: [sonar(r, sonar_aperture="120", sensor_kind="sonar")],
+    ),
+    "AUV022": Case(
+        lambda r: [sonar(r, sonar_aperture="120"), survey(r, swath=None)],
+        lambda r: [sonar(r, sonar_aperture="120"), survey(r, swath=None, bottomDepth=8.0)],
+    ),
+    "AUV023": Case(lambda r: [survey(r, overlap=20.0)], lambda r: [survey(r, overlap=0.2)]),
+    "AUV024": Case(lambda r: [survey(r, bottomDepth=5.0)], lambda r: [survey(r, bottomDepth=5.1)]),
+    "AUV025": Case(
+        lambda r: [yo_yo(r, minDepth=8.0, maxDepth=2.0)],
+        lambda r: [yo_yo(r, minDepth=2.0, maxDepth=8.0)],
+    ),
+    "AUV026": Case(lambda r: [yo_yo(r, pitch=90.0)], lambda r: [yo_yo(r, pitch=30.0)]),
+    "AUV027": Case(lambda r: [survey(r, swath=0.0)], lambda r: [survey(r, swath=0.5)]),
+    "AUV028": Case(lambda r: [survey(r, depth=-5.0)], lambda r: [survey(r, depth=0.0)]),
+    "AUV029": Case(
+        lambda r: [survey(r, stopAction="Stop")],
+        lambda r: [survey(r, startAction="Start", stopAction="Stop")],
+    ),
+    "AUV030": Case(lambda r: pipelines(r, "outfall", ""), lambda r: pipelines(r, "outfall", "inlet")),
+    "AUV031": Case(lambda r: [vehicle(r), fix(r)], lambda r: [vehicle(r, gps=True), fix(r)]),
 }
 BY_CODE = {constraint.code: constraint for constraint in CONSTRAINTS}
 
@@ -118,3 +224,49 @@ def test_a_plain_robot_breaks_no_constraint_of_underwater_vehicles(registry):
 def test_the_hull_counts_for_the_depth_of_tasks(registry):
     models = [vehicle(registry, maxOperatingPressure=200_000.0), mission(registry, 12.0), lake()]
     assert "the team's vehicles bear 10.1 m" in breaches(BY_CODE["AUV004"], models)[0]
+
+
+def found(code, *models):
+    return breaches(BY_CODE[code], models)
+
+
+def test_two_thrusters_side_by_side_neither_dive_nor_pitch_the_vehicle(registry):
+    lift = [
+        mounted(registry, ("HEAVE", "ROLL", "PITCH"), (0.0, y, 0.0), (0.0, 0.0, 1.0)) for y in (-0.1, 0.1)
+    ]
+    messages = found("AUV015", vehicle(registry, *lift))
+    assert [message.split(" lists ")[1].split(",")[0] for message in messages] == ["PITCH", "PITCH"]
+    assert found("AUV016", vehicle(registry, *lift)) == []
+
+
+def test_a_thruster_above_the_centre_pitches_the_vehicle_as_it_pushes(registry):
+    above = mounted(registry, ("SURGE", "PITCH"), (0.0, 0.0, -0.1))
+    assert len(found("AUV016", vehicle(registry, above))) == 2
+
+
+def test_where_the_mounting_of_one_thruster_is_not_known_nothing_is_said_of_all(registry):
+    assert (
+        found("AUV016", vehicle(registry, mounted(registry, ("SURGE",), (0.0, 0.1, 0.0)), thruster(registry)))
+        == []
+    )
+
+
+@pytest.mark.parametrize("code", ["AUV014", "AUV015", "AUV016", "AUV017", "AUV018"])
+def test_the_mountings_of_the_examples_are_sound(code, registry, project_types):
+    assert found(code, *project_types) == []
+
+
+def test_a_yo_yo_is_as_deep_as_its_lower_turning_points(registry):
+    deep = yo_yo(registry, maxDepth=51.0)
+    assert "is 51 m deep" in found("AUV004", vehicle(registry), deep)[0]
+    assert found("AUV004", vehicle(registry), yo_yo(registry, maxDepth=50.0)) == []
+
+
+def test_a_pipeline_is_as_deep_as_its_lowest_point_less_the_height_above_it(registry):
+    pipe = registry.create(
+        AUV_TASKS, "Pipeline", name="outfall", points=[at(0.0, 0.0, -5.0), at(9.0, 0.0, -52.0)]
+    )
+    place = ctx.Context(name="lake", elements=[pipe])
+    for height, breached in ((1.9, 1), (2.0, 0)):
+        follow = asked(registry, "FollowPipelineTask", pipeline=pipe, height=height)
+        assert len(found("AUV004", vehicle(registry), follow, place)) == breached

@@ -25,6 +25,8 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
             'operatingPower="150.0" maxPower="350.0"',
             'operatingPower="350.0" maxPower="150.0"',
         ),
+        ("outfall", "mission.xmi", 'overlap="0.2"', 'overlap="20"'),
+        ("outfall", "mission.xmi", 'minDepth="2.0" maxDepth="14.0"', 'minDepth="14.0" maxDepth="2.0"'),
     ],
 )
 def test_a_figure_that_can_only_be_meant_in_one_way_is_mended(project, file, right, wrong, tmp_path):

@@ -12,7 +12,7 @@ from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.resources import shipped
 
-EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "pool", "solar-park")
+EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "outfall", "pool", "solar-park")
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,16 @@ from mmrs_core import pipeline
 from mmrs_core.languages.reading import read_model
 from mmrs_core.resources import shipped
 
-MISSIONS = ("carbon-dioxide", "pool", "mixed-team", "solar-park", "drone-and-rover")
+MISSIONS = (
+    "carbon-dioxide",
+    "pool",
+    "mixed-team",
+    "solar-park",
+    "drone-and-rover",
+    "outfall",
+    "pool-course",
+    "two-auv-survey",
+)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,16 @@ import pytest
 from mmrs_core.languages.element import descendants, metaclass_of
 
 BEGIN, END = "<!-- metaclasses: begin -->\n", "<!-- metaclasses: end -->\n"
-MISSIONS = ("carbon-dioxide", "pool", "mixed-team", "solar-park", "drone-and-rover")
+MISSIONS = (
+    "carbon-dioxide",
+    "pool",
+    "mixed-team",
+    "solar-park",
+    "drone-and-rover",
+    "outfall",
+    "pool-course",
+    "two-auv-survey",
+)
 LANGUAGES = (
     "urn:mmrs:mission:1.0",
     "urn:mmrs:context:1.0",
@@ -15,6 +24,7 @@ LANGUAGES = (
     "urn:mmrs:behaviour:1.0",
     "urn:mmrs:multicopter:1.0",
     "urn:mmrs:auv:1.0",
+    "urn:mmrs:auv-tasks:1.0",
     "urn:mmrs:rover:1.0",
     "urn:mmrs:survey:1.0",
     "urn:mmrs:solar:1.0",

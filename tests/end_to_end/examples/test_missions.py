@@ -14,7 +14,7 @@ from mmrs_core.contributions.execution import Condition
 from mmrs_core.runtime.run import simulate
 from mmrs_core.scene import Serve, Step
 
-JUSTIFIED_UNKNOWNS = {"Objects in the pool": {"range"}}
+JUSTIFIED_UNKNOWNS = {name: {"range"} for name in ("Objects in the pool", "Outfall", "Course", "Two fields")}
 
 
 def test_it_is_valid_without_a_warning(example):
@@ -138,6 +138,9 @@ def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
         ("mixed-team", {"multicopter", "auv", "plain_robot"}),
         ("solar-park", {"multicopter"}),
         ("drone-and-rover", {"multicopter", "rover"}),
+        ("outfall", {"auv"}),
+        ("pool-course", {"auv"}),
+        ("two-auv-survey", {"auv"}),
     ],
 )
 def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):

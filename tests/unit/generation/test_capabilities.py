@@ -11,7 +11,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.cli import run
 from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.generation.capabilities.judging import capabilities_of, probes
+from mmrs_core.generation.capabilities.judging import capabilities_of, probes, suited
 from mmrs_core.generation.capabilities.probes import MOVE, MULTICOPTER
 from mmrs_core.generation.render import render
 from mmrs_core.mavlink.targets import TARGETS
@@ -184,6 +184,22 @@ def test_moves_that_plugins_have_added_get_a_row(cards):
     spiral = (("urn:kites:1.0", "Spiral"), MOVE)
     row = next(row for row in capabilities_of(cards, probes([spiral])) if "Spiral" in row.element)
     assert (row.group, row.element) == ("move of a plug-in", "Spiral (urn:kites:1.0)")
+
+
+def test_a_target_for_what_dives_is_tried_with_underwater_vehicles(cards):
+    def refusals(given):
+        for robot in given.program.robots:
+            yield from (each.kind for each in robot.moves if each.metaclasses[0][0] == MULTICOPTER)
+
+    flown = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals))}
+    swum = {row.element: row for row in capabilities_of(replace(cards, refusals=refusals, tried_with="sub"))}
+    assert list(swum) == list(flown)
+    assert (flown["Robot.id"].verdict, swum["Robot.id"].verdict) == ("lossy", "no difference")
+    assert {name for name, row in swum.items() if row.verdict == "lossy"} >= {"TakeOff", "Robot: a copter"}
+    (probe,) = (
+        each for each in suited(PROBES, replace(cards, tried_with="sub")) if each.element == "GoTo.speed"
+    )
+    assert [each.target.position[2] for each in probe.given.program.robots[0].moves if each.target] == [-20.0]
 
 
 def test_a_target_that_writes_nothing_even_with_losses_refuses(cards):

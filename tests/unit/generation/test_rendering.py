@@ -42,6 +42,11 @@ def test_a_template_without_the_ending_is_copied(target):
     assert files[0].content == b"{{ as it is }}"
 
 
+def test_a_file_that_is_no_text_is_written_as_it_is(target):
+    binary = replace(target, files=lambda given: [FileSpec("a.bin", "", data=b"\xff\x00{{ who }}")])
+    assert render(binary, target_input(two_drones()))[0].content == b"\xff\x00{{ who }}"
+
+
 @pytest.mark.parametrize("template", ["bare.jinja", "joined.jinja"])
 def test_a_value_without_a_filter_is_an_error(target, template):
     with pytest.raises(InternalError, match="without a filter"):

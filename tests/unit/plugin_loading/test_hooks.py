@@ -10,6 +10,7 @@ from mmrs_core import hookspecs, plugins
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import BackendFactory
 from mmrs_core.contributions.checks import Check
+from mmrs_core.contributions.codecs import Codec
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
@@ -114,6 +115,11 @@ def test_hook_mmrs_targets(tmp_path):
 def test_hook_mmrs_backends():
     backend = BackendFactory("kite", "drives kites", unused)
     assert contributions_with("mmrs_backends", backend).backends["kite"] == backend
+
+
+def test_hook_mmrs_codecs():
+    codec = Codec("whistle", "whistles at thrusters", unused)
+    assert contributions_with("mmrs_codecs", codec).codecs["whistle"] == codec
 
 
 def test_hook_mmrs_conditions():

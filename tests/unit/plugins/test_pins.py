@@ -7,12 +7,14 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[3]
-OURS = {"mmrs-core", "mmrs-multicopter", "mmrs-auv", "mmrs-survey", "mmrs-rover"}
+PLUGINS = {"multicopter": "", "auv": "[vision]", "survey": "", "rover": "", "solar": "", "dronecan": ""}
+OURS = {"mmrs-core", *(f"mmrs-{name}" for name in PLUGINS)}
 
 
 def needed():
     """Return the distributions that a development set-up installs, by name, with their versions."""
-    pending = [Requirement("mmrs-core[dev]"), *(Requirement(name) for name in sorted(OURS))]
+    plugins = (Requirement(f"mmrs-{name}{extras}") for name, extras in PLUGINS.items())
+    pending = [Requirement("mmrs-core[dev]"), *plugins]
     found, seen = {}, set()
     while pending:
         requirement = pending.pop()
@@ -44,8 +46,9 @@ def test_every_version_that_is_installed_is_pinned():
 
 
 def test_the_requirements_name_the_core_and_every_plugin_and_no_address():
-    plugins = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/pyproject.toml"))
-    wanted = ["-c constraints.txt", "-e .[dev]", *(f"-e plugins/{name}" for name in plugins)]
+    assert {path.parent.name for path in (ROOT / "plugins").glob("*/pyproject.toml")} == PLUGINS.keys()
+    plugins = (f"-e plugins/{name}{extras}" for name, extras in PLUGINS.items())
+    wanted = ["-c constraints.txt", "-e .[dev]", *plugins]
     assert sorted(lines("requirements-dev.txt")) == sorted(wanted)
     assert not any(
         "://" in line for file in ("requirements-dev.txt", "constraints.txt") for line in lines(file)

@@ -1,0 +1,214 @@
+"""The decision centre of a vehicle on its bus, in real time."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Mapping
+from math import hypot
+
+from mmrs_auv.backend.duties_of import Duties, Waters
+from mmrs_auv.backend.options import Connecting, connecting
+from mmrs_auv.backend.robot import CanRobot
+from mmrs_auv.sheets import sheet_of
+from mmrs_auv.vessel.api import Connection
+from mmrs_auv.vessel.eyes import Detections
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.ports import CHANNEL, Port, open_port
+from mmrs_core.behaviour.log import log_name
+from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_core.runtime.clock import RealClock
+
+FIX = 0.2
+"""Seconds between two places in the black box."""
+
+FAREWELL = 0.5
+"""Real seconds in which the last goal is still repeated."""
+
+
+class Keeper:
+    """Keeps a black box, where there is one."""
+
+    def __init__(self, box: BlackBox | None, place: Callable[[RobotState], Mapping[str, float]]) -> None:
+        """Keep what a robot tells; `place`: where it is, as black boxes have it."""
+        self._box, self._place = box, place
+        self._fixed = float("-inf")
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something."""
+        if self._box is not None:
+            self._box.write(kind, **content)
+
+    def seen(self, state: RobotState) -> None:
+        """Keep where the robot is, now and then."""
+        if state.time - self._fixed >= FIX and state.charge is not None:
+            self._fixed = state.time
+            self.note(
+                "fix",
+                {
+                    "place": self._place(state),
+                    "speed": round(state.speed, 3),
+                    "heading": round(state.heading, 2),
+                    "energy": state.charge,
+                    "mode": "",
+                    "armed": None,
+                },
+            )
+
+    def close(self) -> None:
+        """Close the box."""
+        if self._box is not None:
+            self._box.close()
+
+
+class ConnectedRobot(CanRobot):
+    """A vehicle on a bus of its own; a thread repeats its goals and hears it."""
+
+    def __init__(
+        self,
+        given: BackendInput,
+        sheet: Sheet,
+        reached: tuple[Port, Connection],
+        duties: Duties,
+        keeper: Keeper,
+        options: Connecting,
+        clock: RealClock,
+        eyes: Detections | None,
+    ) -> None:
+        """Say nothing but that nothing is to move, until the robot is to get ready."""
+        self._port, self._connection = reached
+        super().__init__(given, sheet, self._connection.craft, duties, keeper, clearance=options.clearance)
+        self._kept, self._options, self._clock, self._eyes = keeper, options, clock, eyes
+        self._until = float("inf")
+        self._met = False
+
+    def prepare(self, now: float) -> None:
+        """Begin to wait until the vehicle is heard and knows where it is."""
+        self._until = now + self._options.patience * self._clock.speedup
+        self._kept.note("start", {"plan": self._given.program.fingerprint, "link": "can", "vehicle": "sub"})
+        self._prepared(now)
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong; a bus that is gone is a lost link.
+
+        Raises:
+            LinkLostError: it is.
+        """
+        if self._connection.failure is not None:
+            raise LinkLostError(str(self._connection.failure))
+        if not self._met:
+            return self._unmet(now)
+        return super().fault(now)
+
+    def next_event(self, now: float) -> float | None:
+        """Return nothing: vehicles are looked at all the time."""
+        return None
+
+    def close(self) -> None:
+        """Let the last goal be heard, and fall silent; the vehicle then holds, and comes up."""
+        time.sleep(FAREWELL)
+        self._connection.close()
+        self._port.close()
+        if self._eyes is not None:
+            self._eyes.close()
+        self._kept.close()
+
+    def _unmet(self, now: float) -> Fault | None:
+        """Return why the vehicle does not get ready, if it does not."""
+        state = self._connection.craft.state()
+        self._met = self._helm.done(now)
+        if self._met:
+            return self._astray(state.north, state.east)
+        if now < self._until:
+            return None
+        if state.age > self._options.patience:
+            return Fault("LINK_LOST", "no vehicle is heard on its bus")
+        return Fault("POSITION_LOST", "the vehicle does not know where it is")
+
+    def _astray(self, north: float, east: float) -> Fault | None:
+        """Return that the vehicle is not where its program begins; one that goes on may be anywhere."""
+        live = self._given.live
+        home = self._sheet.home
+        away = hypot(north - home[0], east - home[1])
+        if (live is not None and live.resumed) or away <= self._options.home_tolerance:
+            return None
+        return Fault("REFUSED", f"the vehicle is {away:.0f} m from its home: bring it home before it begins")
+
+    def _detected(self) -> frozenset[str]:
+        return frozenset() if self._eyes is None else self._eyes.seen()
+
+
+def connected(given: BackendInput, live: Live) -> ConnectedRobot:
+    """Return a robot on its bus.
+
+    Raises:
+        LinkLostError: there is no bus, or the port for detections is taken.
+        UnsupportedError: its type lacks data, an option is unknown, or it cannot do what its program holds.
+    """
+    options = connecting(given.options)
+    clock = live.clock
+    assert isinstance(clock, RealClock)
+    surface = given.program.frame.surface
+    sheet = sheet_of(
+        given.type,
+        given.robot.id,
+        home=given.robot.home or (0.0, 0.0, surface),
+        surface=surface,
+        payload=given.robot.payload,
+        density=given.environment.get("waterDensity"),
+    )
+    eyes = _eyes(given, options)
+    sight = None if eyes is None or options.objects == "expected" else eyes.place
+    duties = Duties(given, sheet, Waters(surface), sight)
+    logging.getLogger("can").setLevel(logging.ERROR)
+    channel = live.links.get(given.robot.id, "") or options.channel or CHANNEL
+    try:
+        port = open_port(options.interface, channel, bit_rate=options.bit_rate or None)
+    except OSError as error:
+        raise LinkLostError(f"robot '{given.robot.id}': {channel}: {error}") from error
+    paced = options.clock or ("bus" if clock.speedup != 1.0 else "real")
+    connection = Connection(sheet, port, "bus" if paced == "bus" else "real")
+    return ConnectedRobot(
+        given, sheet, (port, connection), duties, _keeper(given, live, clock), options, clock, eyes
+    )
+
+
+def _eyes(given: BackendInput, options: Connecting) -> Detections | None:
+    sought = [
+        f"move '{move.id}': object {move.target.description!r}"
+        for move in given.robot.moves
+        if move.target is not None and move.target.description is not None
+    ]
+    if not options.detections:
+        if sought and options.objects != "expected":
+            raise UnsupportedError(
+                f"robot '{given.robot.id}': nobody looks for objects: --backend-option detections=PORT, or "
+                "objects=expected",
+                sought,
+            )
+        return None
+    try:
+        return Detections(port=options.detections)
+    except OSError as error:
+        raise LinkLostError(f"robot '{given.robot.id}': {error}") from error
+
+
+def _keeper(given: BackendInput, live: Live, clock: RealClock) -> Keeper:
+    home = given.robot.home or (0.0, 0.0, 0.0)
+    surface = given.program.frame.surface
+
+    def place(state: RobotState) -> Mapping[str, float]:
+        east, north, up = state.position
+        return {
+            "north": round(north - home[1], 3),
+            "east": round(east - home[0], 3),
+            "height": round(up - surface, 3),
+        }
+
+    if live.folder is None:
+        return Keeper(None, place)
+    path = black_box_path(live.folder / log_name(given.robot.id))
+    return Keeper(BlackBox(path, live.run, given.robot.id, clock.now, say=live.say), place)

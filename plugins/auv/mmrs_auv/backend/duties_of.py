@@ -1,0 +1,169 @@
+"""From moves and actions of a behaviour to what a decision centre has its vehicle do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from mmrs_auv.sheets import action_number
+from mmrs_auv.vessel.decision.duties import (
+    NO_PROGRESS,
+    Charge,
+    Duty,
+    Face,
+    FailureError,
+    Finish,
+    Look,
+    Ready,
+    Seek,
+    Sight,
+    Stay,
+    Travel,
+    Use,
+)
+from mmrs_auv.vessel.sheet import Sheet, Vector
+from mmrs_core.behaviour.policies import patience
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
+from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
+from mmrs_core.scene import Position
+
+START, STOP, HEAD_TO, GO_TO, RECHARGE = (
+    (BEHAVIOUR, name) for name in ("Start", "Stop", "HeadTo", "GoTo", "Recharge")
+)
+ANSWER = 30.0
+"""Seconds that a device may take beyond what its action takes, where no policy says."""
+
+
+class Waters:
+    """The local frame of a behaviour and the world of a vehicle: north, east and down from the surface."""
+
+    def __init__(self, surface: float) -> None:
+        """Lay it; `surface`: height of the water surface above the origin, metres."""
+        self._surface = surface
+
+    def below(self, position: Position) -> Vector:
+        """Return metres north, east and below the surface."""
+        east, north, up = position
+        return (north, east, self._surface - up)
+
+    def above(self, place: Vector) -> Position:
+        """Return metres east, north and up of the origin."""
+        north, east, depth = place
+        return (east, north, self._surface - depth)
+
+
+class Duties:
+    """Knows what a robot's moves and actions are to its vehicle."""
+
+    def __init__(self, given: BackendInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
+        """Know them; without a `sight`, objects are where they are expected.
+
+        Raises:
+            UnsupportedError: moves or actions are of kinds that nobody knows; lists all of them.
+        """
+        self._given, self._sheet, self._waters, self._sight = given, sheet, waters, sight
+        self._kinds = move_kinds_of(given)
+        self._kinematics = kinematics_of(given)
+        self.charged: Callable[[], None] = lambda: None
+        strange = tuple(self._strange())
+        if strange:
+            raise UnsupportedError(
+                f"robot '{given.robot.id}': what no underwater vehicle does, or nobody has told", strange
+            )
+
+    def movement(self, move: Move, here: Position, *, through: bool) -> Duty:
+        """Return what a move is; `through`: it need not stop at the end."""
+        if move.is_a(START):
+            return Ready()
+        if move.is_a(STOP):
+            return Finish(floats=self._sheet.weight_in_water < 0.0)
+        kind = self._kinds[move.id]
+        path = self.path(move, here)
+        shortest, _ = kind.seconds(move, path, self._kinematics, self._given.robot.travel_mode)
+        if move.is_a(RECHARGE):
+            return Charge(shortest, self.charged)
+        if len(path) > 1 and move.is_a(GO_TO) and self._is_sought(move):
+            return self._seek(move, here)
+        if len(path) > 1:
+            return self._travel(move, path, through)
+        if move.heading is not None and (look := self._look(move.heading)) is not None:
+            return Face(look)
+        return Stay(shortest)
+
+    def action(self, action: Action) -> Duty | None:
+        """Return what a device does; None where it does not have that action."""
+        number = action_number(self._given.type, action.device, action.name)
+        if not action.is_a(DEVICE_ACTION):
+            return Stay(0.0)
+        if number is None:
+            return None
+        seconds = self._given.type.devices[action.device].actions[action.name].duration
+        after = patience("DEVICE_SILENT", (*self._given.robot.policies, *self._given.policies))
+        return Use(
+            action.device, number, parameter_of(action), seconds + (ANSWER if after is None else after)
+        )
+
+    def path(self, move: Move, here: Position) -> tuple[Position, ...]:
+        """Return the positions that a move passes, the current one first."""
+        return self._kinds[move.id].path(move, here, self._given.robot.home) or (here,)
+
+    def way(self, path: tuple[Position, ...]) -> Travel:
+        """Return the way along a path whose first position is where the vehicle is."""
+        return Travel([self._waters.below(each) for each in path[1:]], self._kinematics.cruise)
+
+    def _travel(self, move: Move, path: tuple[Position, ...], through: bool) -> Travel:
+        points = [self._waters.below(each) for each in path[1:]]
+        look = self._look(move.heading) if move.heading is not None else None
+        return Travel(points, self._speed(move), look, through=through)
+
+    def _seek(self, move: Move, here: Position) -> Duty:
+        target = move.target
+        assert target is not None
+        assert target.position is not None
+        assert self._sight is not None
+        kind, home = self._kinds[move.id], self._given.robot.home
+
+        def way(place: Vector, found: bool) -> Duty:
+            aimed = replace(move, target=replace(target, position=self._waters.above(place)))
+            path = kind.path(aimed, here, home)
+            if path is None:
+                raise FailureError(NO_PROGRESS, f"no way to {place}")
+            look = aimed.heading
+            if look is not None and found and look.target.description == target.description:
+                look = replace(look, target=aimed.target or look.target)
+            return self._travel(replace(aimed, heading=look), path, through=False)
+
+        expected = self._waters.below(target.position)
+        return Seek(target.description or "", expected, target.tolerance, self._sight, way)
+
+    def _is_sought(self, move: Move) -> bool:
+        return self._sight is not None and move.target is not None and move.target.description is not None
+
+    def _speed(self, move: Move) -> float:
+        return min(move.speed or self._kinematics.cruise, self._sheet.speed)
+
+    def _look(self, heading: Heading) -> Look | None:
+        if heading.target.position is None:
+            return None
+        north, east, _ = self._waters.below(heading.target.position)
+        return Look(north, east, heading.angle_degrees)
+
+    def _strange(self) -> Iterator[str]:
+        for move in self._given.robot.moves:
+            kind = self._kinds[move.id]
+            if kind.leaves in ("airborne", "grounded") or kind.needs == {"airborne"}:
+                yield f"move '{move.id}': {move.kind}"
+            elif move.is_a(GO_TO) and (move.target is None or move.target.position is None):
+                yield f"move '{move.id}': nobody says where its object is expected"
+
+
+def parameter_of(action: Action) -> float:
+    """Return the number that goes with an action: that of its first parameter that is one, else 0."""
+    for _, text in action.parameters:
+        try:
+            return float(text)
+        except ValueError:
+            continue
+    return 0.0

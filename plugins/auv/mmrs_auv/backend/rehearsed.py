@@ -1,0 +1,291 @@
+"""A vehicle that exists only here: its body, its drives and its whole control layer on a rehearsed bus."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from importlib.util import find_spec
+from math import cos, dist, hypot, radians, sin, tan
+from random import Random
+
+from mmrs_auv.backend.duties_of import Duties, Waters
+from mmrs_auv.backend.options import Rehearsing, rehearsing
+from mmrs_auv.backend.robot import CanRobot
+from mmrs_auv.sheets import sheet_of
+from mmrs_auv.vessel.api import Craft
+from mmrs_auv.vessel.body.surroundings import PATH, Surroundings, Thing
+from mmrs_auv.vessel.body.vehicle import Vehicle
+from mmrs_auv.vessel.control.actuators import Actuators
+from mmrs_auv.vessel.control.sensors import Sensors
+from mmrs_auv.vessel.eyes import Detections, to_datagram
+from mmrs_auv.vessel.hosting import Rehearsal
+from mmrs_auv.vessel.instruments import instruments_of
+from mmrs_auv.vessel.movement.movement import Movement
+from mmrs_auv.vessel.sheet import Sheet, Vector
+from mmrs_auv.vessel.wire.codec import Codec
+from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.execution import RobotState, Sample
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.scene import Position
+
+PACE = 0.2
+"""Simulated seconds between two looks at a vehicle."""
+
+TICK = 2e-6
+"""Simulated seconds by which the clocks of run and bus may differ; buses count microseconds."""
+
+SAMPLE = 1.0
+"""Simulated seconds between two points of a vehicle's way."""
+
+LONGEST_RESPONSE = 1800.0
+"""Simulated seconds after which a vehicle counts as stopped, wherever it is."""
+
+PICTURES = 0.5
+"""Simulated seconds from one look of simulated cameras to the next."""
+
+LONGEST_SILENCE = 60.0
+"""Simulated seconds after which a vehicle that is not heard is left alone; its own parts bring it up."""
+
+BELOW = 5.0
+"""Metres from the deepest place of a program to the bottom, where nobody says how deep that is."""
+
+FARTHEST_SEEN, WIDTH, ABOVE = 6.0, 50.0, 3.0
+"""What simulated cameras see: metres ahead, degrees to each side of the bow, metres below."""
+
+
+class Stage:
+    """A vehicle and its control layer in simulated time.
+
+    Attributes:
+        vehicle: simulated; faults may be set on it.
+        craft: what the decision centre commands.
+        rehearsal: hosts all of them.
+    """
+
+    def __init__(self, sheet: Sheet, surroundings: Surroundings, options: Rehearsing) -> None:
+        """Put the vehicle into the water."""
+        place = _put_in(sheet, options)
+        self.surroundings = surroundings
+        self.vehicle = Vehicle(
+            sheet, Codec(sheet), surroundings, options.seed, place=place, heading=options.heading
+        )
+        self.craft = Craft(sheet, Codec(sheet))
+        self.sheet = sheet
+        parts = (Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet)))
+        self.rehearsal = Rehearsal([self.vehicle, *parts, self.craft])
+        self._cameras = Cameras(self, options.seed) if options.objects == "cameras" else None
+
+    def advance(self, time: float) -> None:
+        """Let time go by until then."""
+        left = time - self.rehearsal.now
+        if left > 0.0:
+            self.rehearsal.run(left)
+        if self._cameras is not None:
+            self._cameras.look()
+
+    def sees(self, name: str) -> Vector | None:
+        """Return where an object is, if cameras see it now, as far as the vehicle knows its own place."""
+        if self._cameras is not None:
+            return self._cameras.found.place(name)
+        truth, state = self.vehicle.truth, self.craft.state()
+        for thing in self.surroundings.things:
+            if thing.name == name and _is_in_sight(
+                thing, truth.north, truth.east, truth.depth, truth.heading
+            ):
+                return (
+                    state.north + thing.north - truth.north,
+                    state.east + thing.east - truth.east,
+                    state.depth + thing.depth - truth.depth,
+                )
+        return None
+
+    def in_sight(self) -> frozenset[str]:
+        """Return the names of what cameras see now."""
+        return frozenset(each.name for each in self.surroundings.things if self.sees(each.name) is not None)
+
+
+class Cameras:
+    """Pictures of the simulated water, and what is found in them.
+
+    Attributes:
+        found: the detections.
+    """
+
+    def __init__(self, stage: Stage, seed: int) -> None:
+        """Open its eyes.
+
+        Raises:
+            UnsupportedError: there is no OpenCV.
+        """
+        if find_spec("cv2") is None:
+            raise UnsupportedError("option 'objects': cameras need OpenCV; pip install 'mmrs-auv[vision]'")
+        from mmrs_auv.vision.node import Eyes
+
+        self._stage, self._eyes = stage, Eyes(stage.sheet, stage.surroundings, seed)
+        self.found = Detections(clock=lambda: stage.rehearsal.now)
+        self.found.close()  # nothing comes over the network here
+        self._due = 0.0
+
+    def look(self) -> None:
+        """Take pictures, if it is time to."""
+        from mmrs_auv.vision.cameras import Pose
+
+        now = self._stage.rehearsal.now
+        if now < self._due:
+            return
+        self._due = now + PICTURES
+        truth, state = self._stage.vehicle.truth, self._stage.craft.state()
+        pose = Pose(truth.north, truth.east, truth.depth, truth.roll, truth.pitch, truth.heading)
+        believed = Pose(state.north, state.east, state.depth, state.roll, state.pitch, state.heading)
+        for each in self._eyes.look(now, pose, believed):
+            self.found.take(to_datagram(each))
+
+
+def _is_in_sight(thing: Thing, north: float, east: float, depth: float, heading: float) -> bool:
+    if dist((thing.north, thing.east, thing.depth), (north, east, depth)) > FARTHEST_SEEN:
+        return False
+    ahead, bow = (thing.north - north, thing.east - east), radians(heading)
+    along, across = ahead[0] * cos(bow) + ahead[1] * sin(bow), ahead[1] * cos(bow) - ahead[0] * sin(bow)
+    if thing.kind == PATH:
+        return hypot(along, across) < ABOVE
+    return along > 0.0 and abs(across) <= along * tan(radians(WIDTH))
+
+
+def _put_in(sheet: Sheet, options: Rehearsing) -> Vector:
+    """Return where the vehicle truly is at first: near where it was told that it is."""
+    random, sigma = Random(options.seed), instruments_of(sheet).start_noise if options.noise else 0.0
+    north, east, depth = sheet.home
+    return (north + random.gauss(0.0, sigma), east + random.gauss(0.0, sigma), depth)
+
+
+class RehearsedRobot(CanRobot):
+    """A simulated vehicle; it goes on as the run's time does.
+
+    Attributes:
+        notes: what was taken for granted.
+        stage: the vehicle and its control layer.
+    """
+
+    def __init__(self, given: BackendInput, sheet: Sheet, stage: Stage, options: Rehearsing) -> None:
+        """Begin at home."""
+        self.stage = stage
+        self.notes: list[str] = []
+        self._samples: list[Sample] = []
+        self._seen: set[str] = set()
+        sight = stage.sees if options.objects in ("seen", "cameras") else None
+        duties = Duties(given, sheet, Waters(given.program.frame.surface), sight)
+        duties.charged = self._charge
+        super().__init__(given, sheet, stage.craft, duties, _Nobody(), clearance=options.clearance)
+        if sight is None:
+            self.notes += [f"move '{id}': object taken to be where it is expected" for id in _objects(given)]
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement."""
+        self._look(now)
+        super().begin(move, now, through=through)
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin a device or feedback action."""
+        self._look(now)
+        super().act(action, now)
+
+    def next_event(self, now: float) -> float | None:
+        """Return when to look again."""
+        return now + PACE
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Do what a response says, to its end: nobody asks again in simulated time."""
+        if self._response == response:
+            return
+        super().stop(now, response)
+        until = self.stage.rehearsal.now + LONGEST_RESPONSE
+        while not self._helm.done(self._now) and self.stage.rehearsal.now < until:
+            if self.stage.craft.state().silent > LONGEST_SILENCE:
+                return
+            self._look(self._now + PACE)
+
+    def track(self) -> tuple[Sample, ...]:
+        """Return the way that the vehicle has come, as it truly was."""
+        return tuple(self._samples)
+
+    def _look(self, now: float) -> None:
+        while now - self.stage.rehearsal.now > TICK:
+            self.stage.advance(min(now, self.stage.rehearsal.now + SAMPLE))
+            self._sample()
+        self._seen |= self.stage.in_sight()
+        super()._look(now)
+
+    def _sample(self) -> None:
+        truth = self.stage.vehicle.truth
+        east, north, up = self._waters.above((truth.north, truth.east, truth.depth))
+        time = self.stage.rehearsal.now
+        if not self._samples or time >= self._samples[-1].time + SAMPLE:
+            self._samples.append(Sample(time, east, north, up, self.stage.vehicle.charge))
+
+    def _detected(self) -> frozenset[str]:
+        return frozenset(self._seen)
+
+    def _charge(self) -> None:
+        self.stage.vehicle.charge = self._sheet.battery
+
+
+class _Nobody:
+    """Keeps nothing: simulated runs have black boxes of their own."""
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        pass
+
+    def seen(self, state: RobotState) -> None:
+        pass
+
+
+def rehearsed(given: BackendInput) -> RehearsedRobot:
+    """Return a simulated vehicle at its home.
+
+    Raises:
+        UnsupportedError: its type lacks data, an option is unknown, or it cannot do what its program holds.
+    """
+    options = rehearsing(given.options)
+    home: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
+    sheet = sheet_of(
+        given.type,
+        given.robot.id,
+        home=home,
+        surface=given.program.frame.surface,
+        payload=given.robot.payload,
+        density=given.environment.get("waterDensity"),
+    )
+    north, east, depth = sheet.home
+    sheet = replace(sheet, home=(north + options.start[0], east + options.start[1], depth))
+    return RehearsedRobot(given, sheet, Stage(sheet, _surroundings(given, options), options), options)
+
+
+def _surroundings(given: BackendInput, options: Rehearsing) -> Surroundings:
+    if (around := options.surroundings) is not None:
+        return around if options.current is None else replace(around, current=options.current)
+    current = options.current if options.current is not None else _current(given.environment)
+    return Surroundings(
+        current=current, bottom=options.bottom or _deepest(given) + BELOW, noise=options.noise
+    )
+
+
+def _deepest(given: BackendInput) -> float:
+    surface = given.program.frame.surface
+    targets = [move.target.position for move in given.robot.moves if move.target is not None]
+    return max((surface - place[2] for place in targets if place is not None), default=0.0)
+
+
+def _current(environment: Mapping[str, float]) -> tuple[float, float]:
+    """Return the context's current; it names the direction that water flows to."""
+    speed = environment.get("currentSpeed", 0.0)
+    towards = radians(environment.get("currentDirection", 0.0))
+    return (speed * cos(towards), speed * sin(towards))
+
+
+def _objects(given: BackendInput) -> Sequence[str]:
+    return [
+        move.id
+        for move in given.robot.moves
+        if move.target is not None and move.target.description is not None
+    ]

@@ -1,0 +1,296 @@
+"""One underwater vehicle as the interpreter drives it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import hypot
+from typing import Protocol
+
+from mmrs_auv.backend.duties_of import Duties, Waters
+from mmrs_auv.vessel.api import Craft, State
+from mmrs_auv.vessel.decision.duties import Duty, FailureError, Ready, Stay, Surface
+from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
+from mmrs_auv.vessel.movement.abilities import abilities_of
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_core.behaviour.policies import AFTER, patience, response_to
+from mmrs_core.behaviour.program import Action, Move
+from mmrs_core.contributions.backends import BackendInput
+from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.flight.policies import NOTHING
+from mmrs_core.runtime.escape import Escapes
+from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
+from mmrs_core.scene import Position
+
+STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
+EMPTY = 0.001
+"""Part of the battery with which nothing works any more."""
+
+
+class Keeper(Protocol):
+    """What a robot's black box keeps, and who else sees where it is."""
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something; raises nothing."""
+        ...
+
+    def seen(self, state: RobotState) -> None:
+        """See where the robot is."""
+        ...
+
+
+class CanRobot:
+    """Has a craft do what moves and actions say, and looks after it; nothing waits."""
+
+    def __init__(
+        self,
+        given: BackendInput,
+        sheet: Sheet,
+        craft: Craft,
+        duties: Duties,
+        keeper: Keeper,
+        *,
+        clearance: float = 0.0,
+    ) -> None:
+        """Drive a craft; `clearance`: metres ahead within which sonar must see nothing."""
+        self._given, self._sheet, self._craft, self._duties = given, sheet, craft, duties
+        self._keeper = keeper
+        self._waters = Waters(given.program.frame.surface)
+        self._helm = Helm(craft)
+        self._policies = (*given.robot.policies, *given.policies)
+        self._watch = Watch(craft, given.program.reserve, self._after, clearance)
+        self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
+        self._afloat = float(abilities_of(sheet).afloat)
+        self._response, self._instead = "", ""
+        self._silent_device: Fault | None = None
+        self._now = 0.0
+        self._place: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
+
+    def begin(self, move: Move, now: float, *, through: bool = False) -> None:
+        """Begin a movement."""
+        self._silent_device = None
+        self._helm.watch = self._watch
+        self._helm.begin(self._duties.movement(move, self._here(), through=through), now)
+
+    def act(self, action: Action, now: float) -> None:
+        """Begin a device or feedback action."""
+        self._silent_device = None
+        duty = self._duties.action(action)
+        if duty is None:
+            self._silent_device = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
+            return
+        if not action.is_a(DEVICE_ACTION):
+            self.note("reported", {"name": action.name, **dict(action.parameters)})
+        self._helm.begin(duty, now)
+
+    def finished(self, now: float) -> bool:
+        """Return whether what was begun last has finished."""
+        self._look(now)
+        return self._silent_device is None and self._helm.done(now)
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong up to now."""
+        self._look(now)
+        found = self._helm.failure(now)
+        if found is None or (self._response and found.event != CRASHED and not self._hinders(found)):
+            return self._silent_device
+        return self._fault(found)
+
+    def bear(self, now: float) -> bool:
+        """Go on although something went wrong that policies say to bear."""
+        if self._silent_device is not None:
+            self._silent_device = None
+            self._helm.begin(Stay(0.0), now)
+            return True
+        found = self._helm.failure(now)
+        if found is None:
+            return True
+        self.note("decision", {"what": found.event, "why": found.reason, "response": "CONTINUE"})
+        self._helm.bear(found.event)
+        return True
+
+    def wait(self, now: float) -> None:
+        """Hold the pose: the last goal stays in force."""
+        self._look(now)
+
+    def state(self, now: float) -> RobotState:
+        """Return what the vehicle has told last."""
+        self._look(now)
+        return self._state(now, self._craft.state())
+
+    def stop(self, now: float, response: str = "HOLD") -> None:
+        """Do what a response says, or come up where that cannot be done."""
+        self._look(now)
+        state = self._craft.state()
+        self._response, self._instead = response, ""
+        lost = state.position_lost and response in FINDS
+        if (state.emergency is not None or lost) and response not in RESTS:
+            why = "without its place" if lost else f"after {state.emergency}"
+            self._instead = "" if response in ("SURFACE", "LAND") else f"{why}, it comes up"
+            response = "SURFACE"
+        self._helm.resume(now)
+        self._helm.begin(self._answer(response), now)
+
+    def pause(self, now: float) -> None:
+        """Begin to halt."""
+        self._helm.pause(now)
+
+    def resume(self, now: float) -> None:
+        """Go on."""
+        self._helm.resume(now)
+
+    def paused(self, now: float) -> bool:
+        """Return whether the vehicle has halted."""
+        self._look(now)
+        return self._helm.halted
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the vehicle does what it was told by `stop`: its goal is in force."""
+        state = self._craft.state()
+        return self.reachable(now) and (
+            state.progress != "NONE" or self._response in RESTS or self._at_rest()
+        )
+
+    def watched(self, now: float) -> bool:
+        """Return whether the vehicle holds by thrust, or is out of reach, so that somebody must stay."""
+        return self._response in STAYS and not self._is_up()
+
+    def undone(self, now: float) -> str:
+        """Return why it has stopped without doing what it was told."""
+        return self._instead
+
+    def reachable(self, now: float) -> bool:
+        """Return whether the bus is heard."""
+        return self._craft.state().silent <= SILENT
+
+    def known(self, now: float) -> bool:
+        """Return whether the vehicle on the bus is the robot's, as far as its bus says."""
+        return self._craft.state().age < 1.0
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Go straight back to where the last of the moves ended."""
+        self._response = ""
+        place = self._ended_at(passed)
+        self._helm.watch = self._watch
+        self._helm.begin(self._duties.way((self._here(), place)), now)
+
+    def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
+        """Return why it cannot go on."""
+        state = self._craft.state()
+        if state.silent > SILENT:
+            return "its vehicle is not heard"
+        return f"its dive was given up: {state.emergency}" if state.emergency is not None else ""
+
+    def moves(self, now: float) -> bool:
+        """Return whether the vehicle may move by thrust at any moment."""
+        return self.reachable(now) and not self._is_up()
+
+    def told(self) -> Mapping[str, object]:
+        """Return what the vehicle has told last."""
+        state = self._craft.state()
+        if not state.age < 60.0:
+            return {}
+        return {
+            "mode": state.progress.lower(),
+            "place": {"north": state.north, "east": state.east, "height": -state.depth},
+            "heading": round(state.heading, 2),
+            "speed": round(hypot(state.surge, state.sway, state.heave), 3),
+            "energy": state.charge,
+        }
+
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something in the black box."""
+        self._keeper.note(kind, content)
+
+    def _prepared(self, now: float) -> None:
+        """Wait until the vehicle knows where it is; nothing moves."""
+        self._helm.begin(Ready(), now)
+
+    def _answer(self, response: str) -> Duty:
+        if response in STAYS:
+            return Stay(0.0, hold=True)
+        if response in RESTS:
+            return _Idle()
+        if response in FINDS:
+            path = self._escapes.clear(response, self._here())
+            return _Then(self._duties.way(path), Surface(self._afloat))
+        return Surface(self._afloat)
+
+    def _look(self, now: float) -> None:
+        self._now = max(self._now, now)
+        self._keeper.seen(self._state(now, self._craft.state()))
+
+    def _state(self, now: float, known: State) -> RobotState:
+        if known.age < 60.0:
+            self._place = self._waters.above((known.north, known.east, known.depth))
+        speed = hypot(known.surge, known.sway, known.heave)
+        energy = None if known.charge is None else known.charge * self._sheet.battery
+        return RobotState(
+            now, self._place, speed, known.heading, energy, known.charge, detected=self._detected()
+        )
+
+    def _detected(self) -> frozenset[str]:
+        """Return what was detected so far."""
+        return frozenset()
+
+    def _here(self) -> Position:
+        return self._state(self._now, self._craft.state()).position
+
+    def _fault(self, found: FailureError) -> Fault:
+        if found.event == CRASHED:
+            return Fault(CRASHED, found.reason, "SURFACE")
+        borne = response_to(found.event, self._policies) == "CONTINUE"
+        if found.event == LINK_LOST and borne:
+            # That policy is about radio; nobody controls a vehicle whose own bus is silent.
+            return Fault(LINK_LOST, found.reason, "SURFACE")
+        return Fault(found.event, found.reason)
+
+    def _after(self, event: str) -> float:
+        if event == LINK_LOST and response_to(event, self._policies) == "CONTINUE":
+            return AFTER[LINK_LOST]
+        return patience(event, self._policies) or 0.0
+
+    def _hinders(self, found: FailureError) -> bool:
+        """Return whether something keeps the vehicle from the response that it was told."""
+        return found.event in (LINK_LOST, POSITION_LOST) and self._response in FINDS
+
+    def _at_rest(self) -> bool:
+        return self._helm.done(self._now)
+
+    def _is_up(self) -> bool:
+        state = self._craft.state()
+        return state.age < 60.0 and state.depth < self._afloat + 0.15
+
+    def _ended_at(self, passed: Sequence[str]) -> Position:
+        moves = {move.id: move for move in self._given.robot.moves}
+        place = self._given.robot.home or self._place
+        for id in passed:
+            path = self._duties.path(moves[id], place)
+            place = path[-1] if path else place
+        return place
+
+
+class _Idle:
+    def begin(self, craft: Craft, now: float) -> None:
+        craft.idle()
+
+    def done(self, craft: Craft, now: float) -> bool:
+        return True
+
+
+class _Then:
+    """One duty, then another."""
+
+    def __init__(self, first: Duty, second: Duty) -> None:
+        self._duty, self._second = first, second
+
+    def begin(self, craft: Craft, now: float) -> None:
+        self._duty.begin(craft, now)
+
+    def done(self, craft: Craft, now: float) -> bool:
+        if not self._duty.done(craft, now):
+            return False
+        if self._duty is self._second:
+            return True
+        self._duty = self._second
+        self._duty.begin(craft, now)
+        return False

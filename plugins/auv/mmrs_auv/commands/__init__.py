@@ -1,0 +1,1 @@
+"""Commands that this plug-in adds to the command line."""

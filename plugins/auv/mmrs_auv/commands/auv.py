@@ -1,0 +1,105 @@
+"""``mmrs auv``: simulated underwater vehicles to rehearse on."""
+
+from __future__ import annotations
+
+import signal
+import tempfile
+import time
+from contextlib import ExitStack
+from math import inf
+from pathlib import Path
+from shlex import quote
+from types import FrameType
+from typing import Annotated
+
+import typer
+from typer.main import get_command
+
+from mmrs_core.cli.output import say
+from mmrs_core.errors import UnreadableError
+
+FIRST_PORT = 29_600
+
+app = typer.Typer(rich_markup_mode=None, no_args_is_help=True, add_completion=False)
+
+
+def main(arguments: list[str]) -> int:
+    """Run ``mmrs auv`` with what follows it; return the exit code."""
+    result = get_command(app)(args=arguments, prog_name="mmrs auv", standalone_mode=False)
+    return result if isinstance(result, int) else 0
+
+
+@app.callback(help="Simulated underwater vehicles to rehearse on.")
+def auv() -> None:
+    """Leave the help to the application; without this, one command alone would lose its name."""
+
+
+@app.command("sitl")
+def sitl(
+    path: Annotated[Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Whose vehicles are simulated.")],
+    port: Annotated[
+        int, typer.Option("--port", min=1, max=65_000, help="Of the first vehicle's hub; then counted up.")
+    ] = FIRST_PORT,
+    speedup: Annotated[
+        float, typer.Option("--speedup", min=0.1, max=20.0, help="Seconds of theirs in a second.")
+    ] = 1.0,
+    surroundings: Annotated[
+        Path | None, typer.Option("--surroundings", metavar="FILE", help="What is around them, as JSON.")
+    ] = None,
+    current: Annotated[
+        str, typer.Option("--current", metavar="NORTH,EAST", help="Of the water, metres a second.")
+    ] = "0,0",
+    bottom: Annotated[float, typer.Option("--bottom", min=1.0, help="Its depth, metres.")] = 30.0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of instruments' noise and bias.")] = 0,
+    seconds: Annotated[
+        float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
+    ] = 0.0,
+) -> int:
+    """Start a simulated body and a control layer for each vehicle of a mission, each on a bus of its own.
+
+    It prints the arguments with which mmrs run reaches them.
+
+    Example: mmrs auv sitl examples/pool-course --speedup 2
+    """
+    from mmrs_auv.backend.options import pair
+    from mmrs_auv.commands.modelled import sheets_in
+    from mmrs_auv.rehearsal import Berth, keep
+    from mmrs_auv.vessel.body.surroundings import Surroundings, from_json
+
+    try:
+        around = Surroundings(current=pair(current), bottom=bottom)
+        if surroundings is not None:
+            around = from_json(surroundings.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+    except OSError as error:
+        raise UnreadableError(f"{surroundings}: {error.strerror}") from error
+    stopped: list[int] = []
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        stopped.append(number)
+
+    sheets = sheets_in(path)
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            stack.callback(signal.signal, number, signal.signal(number, stop))
+        berths = {}
+        for count, (robot, sheet) in enumerate(sheets.items()):
+            berths[robot] = stack.enter_context(
+                Berth(
+                    sheet,
+                    folder / str(count),
+                    port=port + count,
+                    surroundings=around,
+                    seed=seed + count,
+                    speedup=speedup,
+                )
+            )
+        words = ["--backend", "can", "--backend-option", "clock=bus"]
+        for robot, berth in berths.items():
+            words += ["--connect", f"{robot}={berth.channel}"]
+        words += ["--speedup", f"{speedup:g}"] if speedup != 1.0 else []
+        say(" ".join(map(quote, words)))
+        keep(berths, time.monotonic() + (seconds or inf), stopped)
+    return 0

@@ -1,0 +1,116 @@
+"""Runs a hub until it is to end, and does what is typed meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from typing import TextIO
+
+from mmrs_auv.vessel.wire.frame import Frame
+from mmrs_auv.vessel.wire.hub import Hub, Troubles, log_line
+from mmrs_core.errors import LinkLostError
+
+ORDERS = "loss PART, delay SECONDS, corruption PART, cut, mend, quit"
+
+
+def run_hub(
+    host: str,
+    port: int,
+    troubles: Troubles,
+    seed: int,
+    log: TextIO | None,
+    seconds: float,
+    say: Callable[[str], None],
+) -> Hub:
+    """Run a hub; return it when it has ended.
+
+    Args:
+        seconds: after which it ends by itself; 0: when it is told to, or interrupted.
+        say: is told where it listens, and what comes of lines that are typed.
+
+    Raises:
+        LinkLostError: it cannot listen there.
+    """
+    hub = Hub(troubles, seed, _logging(log, say))
+    asyncio.run(_run(hub, host, port, troubles, seconds, say))
+    return hub
+
+
+def _logging(log: TextIO | None, say: Callable[[str], None]) -> Callable[[float, str, Frame], None] | None:
+    """Return what writes a frame to the log; it ends, and says so once, where that cannot be written."""
+    if log is None:
+        return None
+    failed = False
+
+    def write(now: float, channel: str, frame: Frame) -> None:
+        nonlocal failed
+        if failed:
+            return
+        try:
+            log.write(log_line(now, channel, frame))
+        except OSError as error:
+            failed = True
+            say(f"no log from here on: {error.strerror}")
+
+    return write
+
+
+async def _run(
+    hub: Hub, host: str, port: int, usual: Troubles, seconds: float, say: Callable[[str], None]
+) -> None:
+    loop, ended = asyncio.get_running_loop(), asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, ended.set)
+    try:
+        found = await hub.start(host, port)
+    except OSError as error:
+        raise LinkLostError(f"no hub at {host}:{port}: {error.strerror or error}") from error
+    say(f"hub at {host}:{found}; python-can: interface=socketcand host={host} port={found} channel=can0")
+
+    def order(line: str) -> None:
+        if line == "quit":
+            ended.set()
+        elif line:
+            say(_done(hub, usual, line))
+
+    _listen(lambda line: loop.call_soon_threadsafe(order, line.strip()))
+    with suppress(TimeoutError):
+        await asyncio.wait_for(ended.wait(), seconds or None)
+    await hub.stop()
+
+
+def _done(hub: Hub, usual: Troubles, line: str) -> str:
+    """Return what came of a line that somebody typed."""
+    try:
+        match line.split():
+            case ["cut"]:
+                hub.troubles = replace(hub.troubles, loss=1.0)
+            case ["mend"]:
+                hub.troubles = usual
+            case ["loss" | "delay" | "corruption" as what, value]:
+                hub.troubles = replace(hub.troubles, **{what: float(value)})
+            case _:
+                return f"{line}: expected {ORDERS}"
+    except ValueError as error:
+        return f"{line}: {error}"
+    now = hub.troubles
+    return f"loss {now.loss:g}, delay {now.delay:g} s, corruption {now.corruption:g}"
+
+
+def _listen(heard: Callable[[str], object]) -> None:
+    """Have every line that is typed heard."""
+
+    def read() -> None:
+        with suppress(OSError, RuntimeError):  # in the background of a terminal, or when the hub has ended
+            for line in sys.stdin:
+                heard(line)
+
+    if hasattr(signal, "SIGTTIN"):
+        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
+    if sys.stdin is not None and not sys.stdin.closed:
+        threading.Thread(target=read, name="typed lines", daemon=True).start()

@@ -1,0 +1,68 @@
+"""The vehicles of a project or a behaviour."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmrs_auv.sheets import is_vehicle, sheet_of
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_core.cli.behaviours import is_behaviour, load_behaviour
+from mmrs_core.cli.journey import Journey, Workshop
+from mmrs_core.cli.settings import Settings
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.languages.modelset import model_in
+from mmrs_core.scene import Position, RobotType
+
+
+@dataclass(frozen=True, slots=True)
+class _Member:
+    """A robot of a mission or behaviour, and where it is in the water."""
+
+    name: str
+    type: RobotType | None
+    home: Position | None
+    payload: float
+    surface: float
+    density: float | None
+
+
+def sheets_in(path: Path) -> Mapping[str, Sheet]:
+    """Return the data of the underwater vehicles of a project or a behaviour, by robot.
+
+    Raises:
+        UnreadableError, InvalidModelError: the models cannot be read, or are not valid.
+        UnsupportedError: there is no underwater vehicle, or data of one are missing; lists which.
+    """
+    found = {}
+    for member in _members(path):
+        if member.type is not None and is_vehicle(member.type):
+            found[member.name] = sheet_of(
+                member.type,
+                member.name,
+                home=member.home or (0.0, 0.0, member.surface),
+                surface=member.surface,
+                payload=member.payload,
+                density=member.density,
+            )
+    if not found:
+        raise UnsupportedError(f"{path}: no underwater vehicle")
+    return found
+
+
+def _members(path: Path) -> Iterator[_Member]:
+    workshop = Workshop(Settings())
+    file = model_in(path, "behaviour") if path.is_dir() else path
+    if file is not None and file.is_file() and is_behaviour(workshop, file):
+        loaded = load_behaviour(workshop, file)
+        surface = loaded.program.frame.surface
+        density = (loaded.place.environment or {}).get("waterDensity")
+        for robot in loaded.program.robots:
+            kind = loaded.place.types.get(robot.type_name)
+            yield _Member(robot.id, kind, robot.home, robot.payload, surface, density)
+        return
+    scene = Journey(workshop, path).grounded
+    density = scene.environment.get("waterDensity")
+    for each in scene.robots:
+        yield _Member(each.name, each.type, each.home, each.payload, scene.frame.surface, density)

@@ -1,0 +1,59 @@
+"""The vehicle that a command is about: from a file of its data, or from models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mmrs_auv.vessel.refusals import SheetError, refuse
+from mmrs_auv.vessel.sheet import Sheet, from_json
+from mmrs_core.errors import UnreadableError, UnsupportedError
+
+Vehicle = Annotated[
+    Path,
+    typer.Argument(metavar="VEHICLE", help="A vehicle's data (*.json), or a PROJECT or BEHAVIOUR with one."),
+]
+RobotName = Annotated[
+    str, typer.Option("--robot", metavar="NAME", help="Which one, if the models have several.")
+]
+
+
+def sheet_in(path: Path, robot: str) -> Sheet:
+    """Return the data of a vehicle that a bus can be made of.
+
+    Raises:
+        UnreadableError: the file cannot be read, or is no vehicle's data.
+        UnsupportedError: no bus can be made of it; lists why.
+    """
+    sheet = _read(path) if path.suffix == ".json" and path.is_file() else _modelled(path, robot)
+    try:
+        refuse(sheet)
+    except SheetError as error:
+        raise UnsupportedError(f"{path}: no bus can be made of this vehicle", error.faults) from error
+    return sheet
+
+
+def _read(path: Path) -> Sheet:
+    try:
+        return from_json(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise UnreadableError(f"{path}: {error}") from error
+
+
+def _modelled(path: Path, robot: str) -> Sheet:
+    """Return the data of a vehicle of a project or a behaviour."""
+    from mmrs_auv.commands.modelled import sheets_in
+
+    sheets = sheets_in(path)
+    there = ", ".join(sorted(sheets))
+    if robot:
+        if robot not in sheets:
+            raise typer.BadParameter(f"--robot {robot}: no such vehicle in {path}; there are {there}")
+        return sheets[robot]
+    if len(sheets) > 1:
+        raise typer.BadParameter(f"which of its vehicles is meant? --robot, one of {there}")
+    return next(iter(sheets.values()))

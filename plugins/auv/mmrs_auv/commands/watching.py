@@ -1,0 +1,95 @@
+"""What is heard on a bus, in words."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.catalogue import messages_of
+from mmrs_auv.vessel.wire.codec import Codec, Received, Value
+from mmrs_auv.vessel.wire.frame import Frame
+from mmrs_auv.vessel.wire.ports import Port
+
+
+class Monitor:
+    """Tells frames of one vehicle's bus, and keeps count of what is not right.
+
+    Attributes:
+        counts: frames by message; ``unknown``: of no message of this vehicle.
+        missed: frames by message that counters tell of but nobody heard.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        """Prepare for a vehicle."""
+        self.counts: Counter[str] = Counter()
+        self.missed: Counter[str] = Counter()
+        self._codec = Codec(sheet)
+        messages = messages_of(sheet)
+        self._units = {(each.name, field.name): field.unit for each in messages for field in each.fields}
+        self._names = {each.id: each.name for each in messages}
+        self._last: dict[str, int] = {}
+
+    @property
+    def faults(self) -> Mapping[str, int]:
+        """Frames by message that cannot be believed."""
+        return self._codec.faults
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of all messages of this vehicle."""
+        return frozenset(self._names.values())
+
+    def summary(self) -> Iterator[str]:
+        """Yield what there is to say at the end."""
+        yield f"{self.counts.total()} frames"
+        if self.counts["unknown"]:
+            yield f"of no message of this vehicle: {self.counts['unknown']}"
+        for what, counts in (("not believed", self.faults), ("missed", self.missed)):
+            if told := ", ".join(f"{count} {name}" for name, count in sorted(counts.items()) if count):
+                yield f"{what}: {told}"
+
+    def name_of(self, frame: Frame) -> str:
+        """Return the name of a frame's message; empty: it is none of this vehicle."""
+        return "" if frame.extended else self._names.get(frame.id, "")
+
+    def line(self, frame: Frame) -> str:
+        """Return what a frame says."""
+        name = self.name_of(frame)
+        self.counts[name or "unknown"] += 1
+        said = self._codec.decode(frame)
+        if said is None:
+            id = f"{frame.id:08X}" if frame.extended else f"{frame.id:03X}"
+            why = "not believed: wrong length, check or value" if name else "no message of this vehicle"
+            return f"{name or id} [{frame.data.hex(' ')}] {why}"
+        self._follow(said)
+        values = " ".join(f"{key}={self._shown(name, key, value)}" for key, value in said.values.items())
+        return f"{name} {values}"
+
+    def _follow(self, said: Received) -> None:
+        if said.sequence is None:
+            return
+        if said.name in self._last:
+            self.missed[said.name] += (said.sequence - self._last[said.name] - 1) % 256
+        self._last[said.name] = said.sequence
+
+    def _shown(self, name: str, field: str, value: Value) -> str:
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, str):
+            return value
+        return f"{value:.10g}{self._units[name, field]}"
+
+
+def heard(port: Port, seconds: float) -> Iterator[tuple[float, Frame]]:
+    """Yield what comes from a bus, with the time since the beginning; seconds 0: for ever.
+
+    Raises:
+        PortError: the bus is gone.
+    """
+    begin = time.monotonic()
+    while not seconds or time.monotonic() - begin < seconds:
+        left = seconds - (time.monotonic() - begin) if seconds else 0.5
+        if (frame := port.receive(min(max(left, 0.0), 0.5))) is not None:
+            yield time.monotonic() - begin, frame

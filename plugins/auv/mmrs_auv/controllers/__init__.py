@@ -1,0 +1,1 @@
+"""What generated controllers of underwater vehicles carry beside the runtime: vehicles on CAN buses."""

@@ -1,0 +1,282 @@
+"""A vehicle on its CAN bus, as the runtime of controllers asks for one: its calls wait."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from math import hypot, inf
+
+from mmrs_auv.vessel.api import Craft
+from mmrs_auv.vessel.decision.duties import (
+    Duty,
+    Face,
+    FailureError,
+    Finish,
+    Ready,
+    Stay,
+    Surface,
+    Travel,
+    Use,
+)
+from mmrs_auv.vessel.decision.duties import Look as Bearing
+from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, Helm, Watch
+from mmrs_auv.vessel.movement.abilities import abilities_of
+from mmrs_auv.vessel.sheet import Sheet, Vector
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import DEVICE_SILENT, Fault, Refused
+from mmrs_core.flight.program import Local, Look, Place, Robot
+from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.records.recording import FIX_SECONDS, fix
+from mmrs_core.flight.services.commands import Unanswered
+from mmrs_core.flight.services.uploads import Uploads
+from mmrs_core.flight.steps.responses import CONTINUE, policy_for
+from mmrs_core.flight.vehicles.modes import GUIDED, HOLD, SURFACE
+from mmrs_core.flight.vehicles.vehicle import State
+
+LOOK_SECONDS = 0.05
+"""Real seconds between two looks at the vehicle."""
+
+BUS_SECONDS = 10.0
+"""Seconds of silence of the bus that end a program although a policy says that links may be lost."""
+
+SILENT = 60.0
+"""Seconds of silence after which nobody waits for a vehicle to come up any more."""
+
+OFF = "off"
+
+
+class CanVehicle:
+    """Has a craft do what the program says, and looks after it in every wait.
+
+    Attributes:
+        start: where its program began: home.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        sheet: Sheet,
+        craft: Craft,
+        clock: Clock,
+        guard: Callable[[], None],
+        box: BlackBox,
+        *,
+        patience: float = 30.0,
+    ) -> None:
+        """Tell it nothing yet; `patience`: real seconds to wait for its first sign."""
+        self._box, self._fixed = box, -inf
+        self._robot, self._sheet, self._craft, self._clock = robot, sheet, craft, clock
+        self._guard, self._patience = guard, patience
+        self.start = robot.home
+        self._helm = Helm(craft)
+        self._watch = Watch(craft, robot.reserve, self._after)
+        self._afloat = float(abilities_of(sheet).afloat)
+        self._mode, self._armed = GUIDED, False
+        self._told: set[str] = set()
+
+    def answer_lost_link(self, response: str, after: float | None = None) -> None:
+        """Do nothing: a vehicle whose decision centre is silent holds, then comes up."""
+
+    def answer_breach(self, response: str) -> None:
+        """Do nothing: there is no fence."""
+
+    def prepare(self, uploads: Uploads) -> None:
+        """Wait until the vehicle knows where it is.
+
+        Raises:
+            Refused: it does not in time.
+        """
+        until = time.monotonic() + self._patience
+        self._helm.begin(Ready(), self._clock.now())
+        while not self._helm.done(self._clock.now()):
+            self._guard()
+            if time.monotonic() > until:
+                heard = self._craft.state().age < inf
+                raise Refused("it does not know where it is" if heard else "no vehicle is heard on its bus")
+            time.sleep(LOOK_SECONDS)
+        self._helm.watch = self._watch
+
+    def take_off(self, height: float) -> None:
+        """Refuse to.
+
+        Raises:
+            Refused: always.
+        """
+        raise Refused("an underwater vehicle does not take off")
+
+    def land(self) -> None:
+        """Come up."""
+        self.surface()
+
+    def go_to(self, place: Place, speed: float | None, look: Look | None, through: bool) -> None:
+        """Go straight to a place; `through`: without a stop there."""
+        pace = speed or self._robot.cruise or 0.0
+        self._move(Travel([self._below(place)], pace, self._bearing(look), through=through))
+
+    def turn(self, look: Look) -> None:
+        """Turn until the front, or a device, points at something."""
+        if (bearing := self._bearing(look)) is not None:
+            self._move(Face(bearing))
+
+    def fly(self, first: int, last: int, reached: Callable[[int], None]) -> None:
+        """Refuse to: nothing is uploaded.
+
+        Raises:
+            Refused: always.
+        """
+        raise Refused("there is no mission on a CAN bus")
+
+    def rest(self, seconds: float) -> None:
+        """Stay for so many seconds: the last goal stays in force."""
+        until = self._clock.now() + seconds
+        while (left := until - self._clock.now()) > 0.0:
+            before = self._clock.now()
+            self._check()
+            until += self._clock.now() - before
+            time.sleep(min(self._clock.real(left), LOOK_SECONDS))
+        self._check()
+
+    def operate(self, number: int, params: tuple[float, ...], *, confirmed: bool = False) -> None:
+        """Have the device of that number, from 1 on, do the action that the first parameter numbers.
+
+        Raises:
+            Unanswered: it does not answer.
+        """
+        device, action = self._sheet.devices[number - 1], int(params[0])
+        seconds = self._sheet.extra.get(f"device{number - 1}.seconds", 0.0)
+        try:
+            self._do(Use(device, action, params[1] if len(params) > 1 else 0.0, seconds + 5.0))
+        except Fault as fault:
+            if fault.event != DEVICE_SILENT:
+                raise
+            raise Unanswered(str(fault)) from fault
+
+    def measure(self, value: str, seconds: float) -> float | None:
+        """Refuse to: values do not come over the bus.
+
+        Raises:
+            Unanswered: always.
+        """
+        raise Unanswered(f"{value}: values do not come over the bus")
+
+    def tell_ground(self, text: str) -> None:
+        """Tell nobody: nobody hears a vehicle under water."""
+
+    def hold(self) -> bool:
+        """Halt and stay by thrust; return that somebody must watch it."""
+        self._armed = True
+        self._do(Stay(0.0, hold=True))
+        self._mode = HOLD
+        return self._craft.state().emergency is None
+
+    def carry_on(self) -> None:
+        """Be ready to move again."""
+        self._mode = GUIDED
+
+    def check(self) -> None:
+        """Do nothing: nobody else can take it."""
+
+    def take_back(self) -> None:
+        """Be ready to move again."""
+        self._mode = GUIDED
+
+    def regain(self) -> None:
+        """Be ready to move again."""
+        self._mode = GUIDED
+
+    def surface(self) -> None:
+        """Come up; nobody waits for a vehicle that is not heard."""
+        self._mode, self._armed = SURFACE, True
+        self._do(Surface(self._afloat), leave=lambda: self._craft.state().silent > SILENT)
+        self._rest_afloat()
+
+    def disarm(self) -> None:
+        """Ask for no thrust."""
+        self._craft.idle()
+        self._mode, self._armed = OFF, False
+
+    def finish(self) -> None:
+        """End the mission: no thrust, unless it would sink."""
+        self._rest_afloat()
+
+    def evidence(self) -> CanVehicle:
+        """Return itself: it says what it is told to do at any time."""
+        return self
+
+    def in_mode(self, mode: str) -> bool:
+        """Return whether it does that."""
+        return self._mode == mode
+
+    def is_off(self) -> bool:
+        """Return whether it asks for no thrust."""
+        return not self._armed
+
+    def bound_for(self, place: Place, speed: float | None) -> bool:
+        """Return whether it goes where it was told."""
+        return self._mode == GUIDED and self._craft.state().progress in ("ACTIVE", "REACHED")
+
+    def state(self) -> State:
+        """Return what it has told last; places are metres from home, heights are above the surface."""
+        known = self._craft.state()
+        home = self._sheet.home
+        place = Local(known.north - home[0], known.east - home[1], -known.depth)
+        speed = hypot(known.surge, known.sway, known.heave)
+        now = self._clock.now()
+        return State(now, place, speed, known.heading, known.charge, self._mode, armed=self._armed)
+
+    def _move(self, duty: Duty) -> None:
+        self._mode, self._armed = GUIDED, True
+        self._do(duty)
+
+    def _do(self, duty: Duty, leave: Callable[[], bool] = lambda: False) -> None:
+        self._helm.begin(duty, self._clock.now())
+        while not self._helm.done(self._clock.now()) and not leave():
+            self._check()
+            time.sleep(LOOK_SECONDS)
+
+    def _check(self) -> None:
+        """Obey orders; raise what goes wrong, each event once."""
+        self._guard()
+        now = self._clock.now()
+        if now - self._fixed >= FIX_SECONDS:
+            self._fixed = now
+            fix(self._box, self.state())
+        found = self._helm.failure(now)
+        if found is None:
+            return
+        if self._is_borne(found):
+            self._helm.bear(found.event)
+            return
+        if found.event in self._told:
+            return
+        if found.event in (CRASHED, LINK_LOST):
+            self._told.add(found.event)
+            raise Fault(found.event, found.reason, "SURFACE" if found.event == CRASHED else "")
+        self._helm.bear(found.event)
+        raise Fault(found.event, found.reason)
+
+    def _is_borne(self, found: FailureError) -> bool:
+        if found.event in (CRASHED, LINK_LOST):
+            return False
+        return policy_for(found.event, self._robot).response == CONTINUE
+
+    def _after(self, event: str) -> float:
+        policy = policy_for(event, self._robot)
+        if event == LINK_LOST and policy.response == CONTINUE:
+            return BUS_SECONDS
+        return policy.after or 0.0
+
+    def _rest_afloat(self) -> None:
+        Finish(floats=self._sheet.weight_in_water < 0.0).begin(self._craft, self._clock.now())
+        self._armed = False
+
+    def _below(self, place: Place) -> Vector:
+        assert isinstance(place, Local)
+        north, east, _ = self._sheet.home
+        return (north + place.north, east + place.east, max(0.0, -place.height))
+
+    def _bearing(self, look: Look | None) -> Bearing | None:
+        if look is None or not isinstance(look.at, Local) or look.gimbal:
+            return None
+        north, east, _ = self._below(look.at)
+        return Bearing(north, east, look.angle + look.mount)

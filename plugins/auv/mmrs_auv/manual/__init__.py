@@ -1,0 +1,30 @@
+"""The backend ardusub-manual: drives ArduSub vehicles by their pilot's sticks, without any position.
+
+The vehicle holds its depth by its pressure sensor (depth hold); heading, depth and the way are steered
+here. Where it is follows from heading, commanded speed and time alone, from its home on: nothing sees
+a current, and the longer the way, the less is known. What has a position flies with backend mavlink.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
+from mmrs_core.errors import UnsupportedError
+
+NAME = "ardusub-manual"
+
+
+def _connect(given: BackendInput) -> Backend:
+    if find_spec("pymavlink") is None:
+        raise UnsupportedError(f"backend '{NAME}': needs pymavlink; pip install 'mmrs-core[mavlink]'")
+    from mmrs_auv.manual.robot import connect
+
+    return connect(given)
+
+
+ARDUSUB_MANUAL = BackendFactory(
+    NAME,
+    "ArduSub vehicles by MANUAL_CONTROL in depth hold: no position needed, the way by dead reckoning",
+    _connect,
+)

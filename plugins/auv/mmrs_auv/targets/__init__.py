@@ -1,0 +1,1 @@
+"""Targets: what code and plans can be generated for underwater vehicles."""

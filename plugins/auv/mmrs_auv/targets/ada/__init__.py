@@ -1,0 +1,1 @@
+"""The target ada: a decision centre in Ada for each underwater vehicle, on its CAN bus."""

@@ -1,0 +1,49 @@
+"""Messages that the decision centre says and hears, as its template sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from mmrs_auv.vessel.wire.catalogue import BEATS, COMMON, MODES, PROGRESS, REASONS, Message
+from mmrs_auv.vessel.wire.layout import layout_of
+
+SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "Emergency", "DecisionBeat")
+HEARD = ("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus")
+
+
+def catalogue() -> Mapping[str, object]:
+    """Return what the template of the catalogue sees."""
+    known = {message.name: message for message in (*COMMON, *BEATS)}
+    messages = [_message(known[name]) for name in (*SPOKEN, *HEARD)]
+    return {"messages": messages, "words": list(_words())}
+
+
+def _message(message: Message) -> Mapping[str, object]:
+    layout = layout_of(message)
+    fields = [
+        {
+            "name": slot.field.name,
+            "start": slot.start,
+            "bits": slot.field.bits,
+            "signed": slot.field.signed,
+            "scale": slot.field.scale,
+            "low": slot.low,
+            "high": slot.high,
+            "least": slot.field.low,
+            "most": slot.field.high,
+        }
+        for slot in layout.slots.values()
+    ]
+    return {
+        "name": message.name,
+        "id": message.id,
+        "length": layout.length,
+        "guarded": message.guarded,
+        "fields": fields,
+    }
+
+
+def _words() -> Iterator[tuple[str, int]]:
+    groups = {"MODE": MODES, "PROGRESS": PROGRESS, "REASON": REASONS, "STATE": ("STARTS", "RUNS")}
+    for group, names in groups.items():
+        yield from ((f"{group}_{name}", number) for number, name in enumerate(names))

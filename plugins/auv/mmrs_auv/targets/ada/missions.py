@@ -1,0 +1,153 @@
+"""What templates see of a robot's behaviour."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+
+from mmrs_auv.backend.duties_of import ANSWER, parameter_of
+from mmrs_auv.kinds import SEA_WATER, largest_depth
+from mmrs_auv.names import IN_WATER_SIZE
+from mmrs_auv.sheets import action_number
+from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY
+from mmrs_auv.targets.moves import MOVES, seconds_of, seconds_of_hold
+from mmrs_auv.vessel.refusals import MOST_DEPTH
+from mmrs_auv.vessel.wire.catalogue import depth_step
+from mmrs_core.behaviour.log import log_name
+from mmrs_core.behaviour.program import Action, Move, Program, Transition
+from mmrs_core.behaviour.semantics import slot_text
+from mmrs_core.contributions.targets import TracedStep
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.scene import Part, Position
+
+KINDS: Mapping[str, str] = {
+    "start": "Starts", "go": "Goes", "hold": "Holds", "turn": "Turns", "stop": "Stops",
+}  # fmt: skip
+
+
+class Mission:
+    """A robot's behaviour as its decision centre holds it."""
+
+    def __init__(self, context: RobotContext, program: Program) -> None:
+        self._context, self._program = context, program
+        robot = context.robot
+        self._tasks = tuple(dict.fromkeys(move.task for move in robot.moves if move.task))
+        self._slots = {slot: number for number, slot in enumerate(robot.slots, start=1)}
+
+    def view(self) -> Mapping[str, object]:
+        """Return what the template of the mission sees."""
+        robot = self._context.robot
+        return {
+            "id": _json(robot.id),
+            "name": robot.id,
+            "mission": self._program.name,
+            "log": log_name(robot.id),
+            "step": self._depth_step(),
+            "reserve": float(self._program.reserve),
+            "floats": self._floats(),
+            "alone": True,
+            "devices": len(self._context.type.devices) if self._context.type else 0,
+            "start": robot.start + 1,
+            "slots": tuple(map(_json, robot.slots)),
+            "tasks": self._tasks,
+            "moves": [self._move(index, move) for index, move in enumerate(robot.moves)],
+        }
+
+    def conditions(self) -> Iterator[tuple[str, tuple[TracedStep, ...]]]:
+        """Yield each condition, and the steps after which it is asked for."""
+        robot = self._context.robot
+        asked: dict[str, list[TracedStep]] = {}
+        for index, transition in robot.transitions.items():
+            if transition.condition is not None:
+                asked.setdefault(transition.condition, []).append(self._trace(robot.moves[index]))
+        yield from ((condition, tuple(steps)) for condition, steps in asked.items())
+
+    def _move(self, index: int, move: Move) -> Mapping[str, object]:
+        transition = self._context.robot.transitions.get(index)
+        return {
+            "kind": KINDS[MOVES[move.metaclasses[0]]],
+            "way": _kind_of_way(transition),
+            "trace": self._trace(move),
+            "features": [*self._features(move), *_way(transition)],
+            "actions": [
+                *(("Before", self._action(each, f"pre:{n}")) for n, each in enumerate(move.before)),
+                *(("After", self._action(each, f"post:{n}")) for n, each in enumerate(move.after)),
+            ],
+            "waits": [self._slots[slot] for slot in transition.waits] if transition is not None else [],
+        }
+
+    def _features(self, move: Move) -> Iterator[tuple[str, object]]:
+        yield "Id", _json(move.id)
+        yield "Name", move.id
+        if move.task:
+            yield "Task_Number", self._tasks.index(move.task) + 1
+        sort = MOVES[move.metaclasses[0]]
+        if sort == "go" and move.target is not None and move.target.position is not None:
+            yield "Target", self._place(move.target.position)
+            yield "Away", float(move.distance)
+            yield "Speed", float(self._context.speed(move) or 0.0)
+        if move.heading is not None and move.heading.target.position is not None:
+            yield "Looks", True
+            yield "Seen", self._place(move.heading.target.position)
+            yield "Angle", float(move.heading.angle_degrees)
+        if sort == "hold":
+            yield "Seconds", seconds_of_hold(move)
+
+    def _place(self, position: Position) -> Position:
+        """Return metres north, east and below the surface."""
+        east, north, up = position
+        return (float(north), float(east), float(self._program.frame.surface - up))
+
+    def _action(self, action: Action, detail: str) -> Mapping[str, object]:
+        told: list[tuple[str, object]] = [("Detail", _json(detail))]
+        if action.is_a(NOTIFY):
+            own = tuple(self._slots[slot] for robot, slot in action.sets if robot == self._context.robot.id)
+            told += [("Slots", _json(slot_text(action))), ("Told", json.dumps(action.sets))]
+            return {"kind": "Notify", "features": [*told, ("Sets", own), ("Active", action.active)]}
+        if action.is_a(DEVICE_ACTION) and self._context.type is not None:
+            type = self._context.type
+            number = action_number(type, action.device, action.name)
+            told += [("Number", list(type.devices).index(action.device)), ("Does", number)]
+            told += [("Parameter", parameter_of(action)), ("Patience", seconds_of(action, type) + ANSWER)]
+            return {"kind": "Device", "features": told}
+        words = " ".join((action.name, *(f"{key}={text}" for key, text in action.parameters)))
+        return {"kind": "Feedback", "features": [*told, ("Words", words)]}
+
+    def _trace(self, move: Move) -> TracedStep:
+        return TracedStep(f"move {move.id}", self._context.robot.id, move.id, move.task, move.rule)
+
+    def _depth_step(self) -> float:
+        """Return metres in a step of a goal's depth on the bus; 0: the type does not say how deep it goes."""
+        type, payload = self._context.type, self._context.robot.payload
+        try:
+            deepest = largest_depth(type, payload, SEA_WATER) if type is not None else None
+        except InfeasibleError:
+            return 0.0
+        return 0.0 if deepest is None else depth_step(min(deepest, MOST_DEPTH))
+
+    def _floats(self) -> bool:
+        size = self._context.type.part.attributes.get("size") if self._context.type is not None else None
+        if not isinstance(size, Part) or not size.is_a(IN_WATER_SIZE):
+            return False
+        weight = size.attributes.get("weightInWater")
+        return isinstance(weight, (int, float)) and weight < 0.0
+
+
+def _kind_of_way(transition: Transition | None) -> str:
+    if transition is None:
+        return "Ends"
+    return "Takes" if transition.otherwise is None else "Chooses"
+
+
+def _way(transition: Transition | None) -> Iterator[tuple[str, object]]:
+    if transition is None:
+        return
+    yield "To", transition.to + 1
+    if transition.otherwise is not None:
+        yield "Otherwise", transition.otherwise + 1
+        yield "Condition", transition.condition or ""
+
+
+def _json(text: str) -> str:
+    return json.dumps(text)

@@ -1,0 +1,90 @@
+"""What the decision centre in Ada cannot do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_auv.sheets import action_number
+from mmrs_auv.targets.moves import MOVES, above_surface
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.scene import Policy
+
+DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction", "Feedback", "Notify"))
+
+NOTICED = frozenset(
+    {"BATTERY_LOW", "POSITION_LOST", "LINK_LOST", "DEVICE_SILENT", "NO_PROGRESS", "PEER_LOST"}
+)
+"""Events after which the vehicle comes up; others are of no peer, since it waits for none."""
+
+
+def refusals(input: TargetInput) -> Iterator[str]:
+    """Yield each thing that the decision centre cannot do, with robot and move."""
+    for robot in input.program.robots:
+        context = context_of(robot, input, geographic=False)
+        if not context.vehicle.dives:
+            yield f"robot '{robot.id}': is no underwater vehicle, and has no bus of one"
+            continue
+        of_type = context.type.policies if context.type is not None else ()
+        policies = dict.fromkeys((*robot.policies, *of_type))
+        yield from (f"robot '{robot.id}': {_described(each)}" for each in policies if not _is_kept(each))
+        for index, move in enumerate(robot.moves):
+            for why in _of_move(move, context):
+                yield f"{context.label(move)}: {why}"
+            transition = robot.transitions.get(index)
+            for policy in transition.policies if transition is not None else ():
+                if not _is_kept(policy):
+                    yield f"{context.label(move)}: {_described(policy)}"
+
+
+def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
+    sort = MOVES.get(move.metaclasses[0])
+    if sort is None:
+        yield f"{move.kind} is not known to this target"
+    if sort == "go":
+        yield from _of_way(move, context)
+    if sort == "turn" and (move.heading is None or move.heading.target.position is None):
+        yield "nobody says where what it turns to is"
+    if move.heading is not None and move.heading.device:
+        yield f"device '{move.heading.device}' is to point somewhere, where only the front can"
+    if sort != "go" and sort != "turn" and move.heading is not None:
+        yield f"heading of a {move.kind}"
+    for action in (*move.before, *move.after):
+        yield from _of_action(action, context)
+
+
+def _of_way(move: Move, context: RobotContext) -> Iterator[str]:
+    target = move.target
+    if target is None or target.position is None:
+        yield "nobody says where its target is"
+        return
+    if target.description is not None:
+        yield f"object '{target.description}', which nobody looks for"
+    if above_surface(target.position, context) > 1e-6:
+        yield f"leads {above_surface(target.position, context):g} m above the surface"
+    if move.heading is not None and move.heading.target.position is None:
+        yield "nobody says where what it faces is"
+    if context.speed(move) is None:
+        yield "its speed is not known, because its robot type is not given"
+
+
+def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
+    if action.is_a(NOTIFY):
+        if any(robot != context.robot.id for robot, _ in action.sets):
+            yield "sets slots of other robots"
+    elif action.is_a(DEVICE_ACTION):
+        known = context.type is not None and action_number(context.type, action.device, action.name)
+        if known is None or known is False:
+            yield f"device '{action.device}' has no action '{action.name}'"
+    elif not action.is_a(FEEDBACK):
+        yield f"action {action.metaclasses[0][1]} is not known to this target"
+
+
+def _is_kept(policy: Policy) -> bool:
+    return policy.response in ("SURFACE", "LAND") and policy.event in NOTICED and policy.after is None
+
+
+def _described(policy: Policy) -> str:
+    after = "" if policy.after is None else f" after {policy.after:g} s"
+    return f"policy {policy.event}{after}: {policy.response}, where this decision centre always comes up"

@@ -1,0 +1,65 @@
+"""The target ada: a decision centre for each underwater vehicle, on its CAN bus.
+
+Each robot has a folder with a GNAT project; what all share lies beside them, in ``common``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_auv.targets.ada import literals
+from mmrs_auv.targets.ada.bus import catalogue
+from mmrs_auv.targets.ada.capabilities import CAPABILITIES
+from mmrs_auv.targets.ada.missions import Mission
+from mmrs_auv.targets.ada.refusals import refusals
+from mmrs_auv.targets.places import templates_of
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.mavlink.context import context_of
+
+TEMPLATES = templates_of("ada")
+OWN = ("decision_centre.gpr", "mission.ads")
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield the sources in ``common`` and those of each robot.
+
+    Raises:
+        UnsupportedError: a robot does something that its decision centre cannot; lists all.
+    """
+    refused = tuple(refusals(input))
+    if refused:
+        raise UnsupportedError("a decision centre in Ada leaves nothing out", refused)
+    for source in sorted(TEMPLATES.glob("*.ad[bs]")):
+        if source.name not in OWN:
+            yield FileSpec(f"common/{source.name}", source.name, source=source)
+    yield FileSpec("common/catalogue.ads", "catalogue.ads.jinja", catalogue())
+    stems = file_stems([robot.id for robot in input.program.robots])
+    yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items())})
+    for robot in input.program.robots:
+        mission = Mission(context_of(robot, input, geographic=False), input.program)
+        folder = f"robot-{stems[robot.id]}"
+        for name in OWN:
+            yield FileSpec(f"{folder}/{name}", name, source=TEMPLATES / name)
+        yield FileSpec(f"{folder}/mission.adb", "mission.adb.jinja", {"robot": mission.view()})
+        conditions = list(mission.conditions())
+        yield FileSpec(
+            f"{folder}/conditions.adb",
+            "conditions.adb.jinja",
+            {"conditions": conditions},
+            once=True,
+            asks=tuple(f"say when '{condition}' holds" for condition, _ in conditions),
+        )
+
+
+ADA = Target(
+    name="ada",
+    description="decision centres in Ada for underwater vehicles, on their CAN buses: a GNAT project each",
+    templates=TEMPLATES,
+    files=files,
+    refusals=refusals,
+    filters={"ada": literals.value, "ada_string": literals.string},
+    capabilities=CAPABILITIES,
+    tried_with="sub",
+)

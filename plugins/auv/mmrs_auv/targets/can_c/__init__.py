@@ -1,0 +1,1 @@
+"""The target can-c: the drives of thrusters, as firmware in C."""

@@ -1,0 +1,131 @@
+"""The target can-c: what runs beside the motors of each vehicle's thrusters, in C.
+
+It obeys the same commands as the drives of the simulated vehicle, frame by frame. What a robot does on its
+mission makes no difference to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_auv.sheets import is_vehicle, sheet_of
+from mmrs_auv.targets.can_c.bus import codec_of
+from mmrs_auv.targets.can_c.words import block, number
+from mmrs_auv.targets.moves import MOVES
+from mmrs_auv.targets.places import templates_of
+from mmrs_auv.vessel.body.propulsion import curve_of
+from mmrs_auv.vessel.refusals import MOST_POWER
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.catalogue import messages_of
+from mmrs_auv.vessel.wire.layout import layout_of
+from mmrs_core.behaviour.program import BEHAVIOUR, RobotProgram
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.escaping import file_stems
+
+AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "Makefile")
+ASKS = ("what sets the thrust of each motor, tells of its faults, and lets go of the drop weight",)
+KNOWN = frozenset({*MOVES, (BEHAVIOUR, "Recharge")})
+"""Moves in which thrusters do nothing but what they are told."""
+
+CAPABILITIES = {
+    "Behaviour.robots": "a folder each",
+    "Robot: a sub": "a drive for each of its thrusters",
+    "Robot.id": "name of the folder",
+}
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield a folder for each robot, and how to build them.
+
+    Raises:
+        UnsupportedError: a robot is no underwater vehicle whose data are known.
+    """
+    robots = input.program.robots
+    stems = file_stems([robot.id for robot in robots], hyphens=False)
+    folders = {robot.id: f"drives_{stems[robot.id]}" for robot in robots}
+    for robot in robots:
+        yield from files_of(_sheet(robot, input), folders[robot.id])
+    shown = [
+        {"folder": folder, "robot": id, "traced": TracedStep("drives", id, "")}
+        for id, folder in folders.items()
+    ]
+    yield FileSpec("README.md", "README.md.jinja", {"robots": shown})
+
+
+def files_of(sheet: Sheet, folder: str) -> Iterator[FileSpec]:
+    """Yield the drives of a vehicle.
+
+    Raises:
+        SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
+    """
+    header, source = codec_of(sheet)
+    view = _view(sheet)
+    yield FileSpec(f"{folder}/bus.h", "", data=header.encode())
+    yield FileSpec(f"{folder}/bus.c", "", data=source.encode())
+    yield FileSpec(f"{folder}/vehicle.h", "vehicle.h.jinja", view)
+    yield FileSpec(f"{folder}/vehicle.c", "vehicle.c.jinja", view)
+    for file in AS_THEY_ARE:
+        yield FileSpec(f"{folder}/{file}", file)
+    yield FileSpec(f"{folder}/outputs.c", "outputs.c", once=True, asks=ASKS)
+
+
+def refusals(input: TargetInput) -> Iterator[str]:
+    """Yield which robots have no thrusters on a bus, and which moves nobody knows."""
+    for robot in input.program.robots:
+        try:
+            _sheet(robot, input)
+        except UnsupportedError as error:
+            yield from (f"robot '{robot.id}': {each}" for each in error.elements or (str(error),))
+        for move in robot.moves:
+            if move.metaclasses[0] not in KNOWN:
+                yield f"robot '{robot.id}', move '{move.id}': {move.kind} is not known to this target"
+
+
+def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
+    type = input.types.get(robot.type_name)
+    if type is None:
+        why = f"type '{robot.type_name}' is not known"
+        raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
+    if not is_vehicle(type):
+        why = "is no underwater vehicle"
+        raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
+    return sheet_of(type, robot.id, payload=robot.payload)
+
+
+def _view(sheet: Sheet) -> dict[str, object]:
+    layouts = {message.name: layout_of(message) for message in messages_of(sheet)}
+    thrusters = []
+    for index, thruster in enumerate(sheet.thrusters):
+        watts, newtons, exponent = curve_of(thruster)
+        thrust = layouts[f"Thruster{index}Command"].slots["Thrust"]
+        thrusters.append(
+            {
+                "number": index,
+                "id": thruster.id,
+                "low": thrust.low,
+                "high": thrust.high,
+                "most": float(thruster.max_thrust),
+                "watts": float(watts),
+                "newtons": float(newtons),
+                "exponent": float(exponent),
+            }
+        )
+    return {
+        "robot": sheet.robot,
+        "watchdog": int(sheet.watchdog * 1e6 + 1e-3),
+        "most_power": MOST_POWER,
+        "thrusters": thrusters,
+    }
+
+
+CAN_C = Target(
+    name="can-c",
+    description="drives of the thrusters of underwater vehicles on CAN buses, in C11",
+    templates=templates_of("can-c"),
+    files=files,
+    refusals=refusals,
+    filters={"block": block, "c": number},
+    capabilities=CAPABILITIES,
+    tried_with="sub",
+)

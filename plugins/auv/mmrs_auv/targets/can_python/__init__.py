@@ -1,0 +1,1 @@
+"""The target can-python: standalone controllers of underwater vehicles on CAN buses."""

@@ -1,0 +1,186 @@
+"""The target can-python: a controller for each vehicle, which needs nothing of this project.
+
+A controller is a program in the words of the runtime that all controllers share, on a vehicle whose goals
+go over its CAN bus. It carries that runtime, and what it needs to speak to the vehicle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib.resources import files as files_of
+from pathlib import Path
+
+from mmrs_auv.sheets import is_vehicle, sheet_of
+from mmrs_auv.targets.places import templates_of
+from mmrs_auv.vessel.sheet import Sheet, to_json
+from mmrs_core.behaviour.program import Action, RobotProgram
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.flight.conditions import is_standard
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.mavlink.actions import action_losses
+from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
+from mmrs_core.mavlink.controllers import RUNTIME, RUNTIME_SOURCES, ModuleView
+from mmrs_core.mavlink.movements import losses_of
+from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
+from mmrs_core.mavlink.safety import policies_of
+from mmrs_core.scene import Device, Policy, RobotType
+
+VESSEL = "mmrs_vessel"
+SOURCES = Path(str(files_of("mmrs_auv")))
+CARRIED = ("vessel", "controllers")
+RENAMED = {
+    "mmrs_auv.vessel": f"{VESSEL}.vessel",
+    "mmrs_auv.controllers": f"{VESSEL}.controllers",
+    "mmrs_core.flight": RUNTIME,
+}
+WIRED = "can.device"
+"""A property that devices get here: their number on the bus, from 1 on."""
+
+FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield a controller and a sheet for each robot, the fleet, and all that they need.
+
+    Raises:
+        UnsupportedError: a robot has no home, or is no underwater vehicle whose data are known.
+    """
+    local = _local(input)
+    robots = local.program.robots
+    stems = file_stems([robot.id for robot in robots], hyphens=False)
+    modules = [f"robot_{stems[robot.id]}" for robot in robots]
+    for robot, module in zip(robots, modules, strict=True):
+        sheet = to_json(_sheet(robot, input))
+        view = {"robot": robot_view(robot, local), "sheet": f"{module}.json"}
+        yield FileSpec(f"{module}.json", "", data=sheet.encode())
+        yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
+    conditions, objects = deciding(local.program), seeking(local.program)
+    common = {
+        "mission": local.program.name,
+        "modules": [
+            ModuleView(module, robot.id, TracedStep("controller", robot.id, ""))
+            for module, robot in zip(modules, robots, strict=True)
+        ],
+        "conditions": conditions,
+        "standard_conditions": [name for name in conditions if is_standard(name)],
+        "own_conditions": [name for name in conditions if not is_standard(name)],
+        "objects": objects,
+    }
+    yield FileSpec("fleet.py", "fleet.py.jinja", common)
+    yield FileSpec("README.md", "README.md.jinja", common)
+    if conditions:
+        asks = tuple(f"when '{name}' holds" for name in conditions if not is_standard(name))
+        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True, asks=asks)
+    if objects:
+        asks = tuple(f"how '{name}' is found" for name in objects)
+        yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
+    yield from _carried()
+
+
+def refusals(input: TargetInput) -> Iterator[str]:
+    """Yield what no controller of a vehicle on a CAN bus can do."""
+    local = _local(input)
+    for robot in local.program.robots:
+        if robot.home is None:
+            yield homeless(robot)
+        type = input.types.get(robot.type_name)
+        if type is None or not is_vehicle(type):
+            yield f"robot '{robot.id}': is no underwater vehicle"
+            continue
+        try:
+            _sheet(robot, input)
+        except UnsupportedError as error:
+            yield from (f"robot '{robot.id}': {each}" for each in error.elements or (str(error),))
+        yield from _refused(robot, local)
+
+
+def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
+    context = context_of(robot, input, geographic=False)
+    for policy in policies_of(robot, input):
+        yield from _impossible(policy, f"robot '{robot.id}'")
+    for index, move in enumerate(robot.moves):
+        yield from losses_of(move, context)
+        yield from action_losses(move, context)
+        transition = robot.transitions.get(index)
+        for policy in transition.policies if transition is not None else ():
+            yield from _impossible(policy, _label(context, index))
+
+
+def _label(context: RobotContext, index: int) -> str:
+    return context.label(context.robot.moves[index])
+
+
+def _impossible(policy: Policy, where: str) -> Iterator[str]:
+    if policy.response == "EMERGENCY_AREA":
+        yield f"{where}: policy {policy.event}: no controller on a CAN bus knows a way to an emergency area"
+    elif policy.event == "POSITION_LOST" and policy.response in FINDING_ITS_WAY:
+        blind = f"nobody can answer it by {policy.response} without its position"
+        yield f"{where}: policy {policy.event}: {blind}"
+
+
+def _local(input: TargetInput) -> TargetInput:
+    """Return the input in metres, with devices wired to the bus."""
+    frame = replace(input.program.frame, latitude=None, longitude=None)
+    types = {name: _wired(type) for name, type in input.types.items()}
+    wirings = {WIRED: DeviceWiring(WIRED, "a command on the vehicle's bus", _command)}
+    program = replace(input.program, frame=frame)
+    return replace(input, program=program, types=types, device_actions=wirings)
+
+
+def _wired(type: RobotType) -> RobotType:
+    devices = {
+        id: replace(device, properties={WIRED: str(number), **_mounted(device)})
+        for number, (id, device) in enumerate(type.devices.items(), start=1)
+    }
+    return replace(type, devices=devices)
+
+
+def _mounted(device: Device) -> dict[str, str]:
+    return {key: value for key, value in device.properties.items() if key.startswith("mount.")}
+
+
+def _command(action: Action, device: Device) -> Wiring:
+    if action.name not in device.actions:
+        return Unwired(f"device {device.id!r} does not support {action.name!r}")
+    number = list(device.actions).index(action.name)
+    return Wired(int(device.properties[WIRED]), (float(number), _parameter(action)), 0.0)
+
+
+def _parameter(action: Action) -> float:
+    from mmrs_auv.backend.duties_of import parameter_of
+
+    return parameter_of(action)
+
+
+def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
+    type = input.types.get(robot.type_name)
+    if type is None:
+        raise UnsupportedError(f"robot '{robot.id}': type '{robot.type_name}' is not known")
+    home = require_home(robot)
+    return sheet_of(type, robot.id, home=home, surface=input.program.frame.surface, payload=robot.payload)
+
+
+def _carried() -> Iterator[FileSpec]:
+    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
+    yield FileSpec(f"{VESSEL}/__init__.py", "", data=b'"""Vehicles on CAN buses."""\n')
+    for part in CARRIED:
+        for path in sorted((SOURCES / part).rglob("*.py")):
+            text = path.read_text(encoding="utf-8")
+            for before, after in RENAMED.items():
+                text = text.replace(before, after)
+            yield FileSpec(f"{VESSEL}/{path.relative_to(SOURCES).as_posix()}", "", data=text.encode())
+
+
+CAN_PYTHON = Target(
+    name="can-python",
+    description="standalone controllers of underwater vehicles on CAN buses, and one for the whole fleet",
+    templates=templates_of("can-python"),
+    files=files,
+    refusals=refusals,
+    capabilities={},
+    tried_with="sub",
+)

@@ -1,0 +1,73 @@
+"""The target imc: a plan for each robot, as vehicles of LSTS take it, and as people read it.
+
+The messages are those of IMC 5.4 (https://www.lsts.pt/docs/imc/master/). ``<robot>.imc`` holds the
+packet of a ``PlanSpecification``; ``<robot>.load.imc`` the same in a request to a vehicle's plan data
+base (``PlanDB``, SET); ``<robot>.json`` the same for people and scripts. Nobody has sent these packets
+to a vehicle: what reads them in our tests was written from the published definitions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mmrs_auv.targets.imc.capabilities import CAPABILITIES
+from mmrs_auv.targets.imc.messages import REQUEST, SET, Message, Value
+from mmrs_auv.targets.imc.packing import packet
+from mmrs_auv.targets.imc.plans import Plan, places_of, plan_of
+from mmrs_auv.targets.imc.refusals import refusals
+from mmrs_auv.targets.places import templates_of
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.escaping import file_stems
+from mmrs_core.mavlink.context import RobotContext, context_of, require_home
+
+
+def files(input: TargetInput) -> Iterator[FileSpec]:
+    """Yield ``<robot>.imc``, ``<robot>.load.imc`` and ``<robot>.json``.
+
+    Raises:
+        UnsupportedError: the behaviour is local, a robot has no home or flies, or a plan is too long.
+    """
+    stems = file_stems([robot.id for robot in input.program.robots])
+    for robot in input.program.robots:
+        require_home(robot)
+        bare = context_of(robot, input, geographic=False)
+        if bare.vehicle.flies:
+            raise UnsupportedError(f"robot '{robot.id}': flies")
+        context = context_of(robot, input, tuple(places_of(bare)), geographic=True)
+        stem = stems[robot.id]
+        plan = plan_of(context, input.program.name, stem)
+        if not plan.maneuvers:
+            raise UnsupportedError(f"robot '{robot.id}': does nothing that a manoeuvre of IMC does")
+        trace = tuple(_steps(context, plan))
+        yield FileSpec(f"{stem}.imc", "", data=packet(plan.message), trace=trace)
+        yield FileSpec(f"{stem}.load.imc", "", data=packet(_request(stem, plan.message)))
+        yield FileSpec(f"{stem}.json", "plan.json.jinja", {"plan": _shown(plan.message)})
+
+
+def _steps(context: RobotContext, plan: Plan) -> Iterator[TracedStep]:
+    for each in plan.maneuvers:
+        move = each.move
+        yield TracedStep(f"manoeuvre {each.id}", context.robot.id, move.id, move.task, move.rule)
+
+
+def _request(plan_id: str, plan: Message) -> Message:
+    values: dict[str, Value] = {"type": REQUEST, "op": SET, "request_id": 1, "plan_id": plan_id}
+    return Message("PlanDB", {**values, "arg": plan, "info": ""})
+
+
+def _shown(value: Value) -> object:
+    if isinstance(value, Message):
+        return {"message": value.name} | {name: _shown(each) for name, each in value.values.items()}
+    return [_shown(each) for each in value] if isinstance(value, tuple) else value
+
+
+IMC = Target(
+    name="imc",
+    description="plans for LSTS vehicles: IMC messages PlanSpecification, one of each robot",
+    templates=templates_of("imc"),
+    files=files,
+    refusals=refusals,
+    capabilities=CAPABILITIES,
+    tried_with="sub",
+)

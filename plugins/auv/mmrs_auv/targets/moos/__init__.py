@@ -1,0 +1,1 @@
+"""The target moos: behaviour files for the IvP helm of MOOS-IvP."""

@@ -1,0 +1,40 @@
+"""What plans for vehicles of others know of moves, and of the actions of devices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal, TypeAlias
+
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.mavlink.earth import metres
+from mmrs_core.scene import Name, Position, RobotType
+
+Sort: TypeAlias = Literal["start", "stop", "go", "hold", "turn"]
+
+MOVES: Mapping[Name, Sort] = {
+    (BEHAVIOUR, "Start"): "start",
+    (BEHAVIOUR, "Stop"): "stop",
+    (BEHAVIOUR, "GoTo"): "go",
+    (BEHAVIOUR, "HoldPosition"): "hold",
+    (BEHAVIOUR, "HeadTo"): "turn",
+}
+"""Moves by their own metaclass: one that extends it may move otherwise, and is not known."""
+
+
+def above_surface(position: Position, context: RobotContext) -> float:
+    """Return how far a position is above the surface, metres; one of a robot that stays on it never is."""
+    return metres(position[2] - context.frame.surface) if context.vehicle.dives else 0.0
+
+
+def seconds_of_hold(move: Move) -> float:
+    """Return how long a move holds; 0 for others."""
+    found = move.attributes.get("duration") if MOVES.get(move.metaclasses[0]) == "hold" else None
+    return float(found) if isinstance(found, (int, float)) else 0.0
+
+
+def seconds_of(action: Action, type: RobotType | None) -> float:
+    """Return how long an action of a device takes; 0 where nothing is known."""
+    device = type.devices.get(action.device) if type is not None else None
+    known = device.actions.get(action.name) if device is not None else None
+    return known.duration if known is not None else 0.0

@@ -1,0 +1,201 @@
+"""Constraints on tasks under water, and on pipelines."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import TypeAlias
+
+from mmrs_auv import names
+from mmrs_auv.tasks.sonar import height_of, swath_at
+from mmrs_core.contributions.constraints import Constraint, Finding
+from mmrs_core.diagnostics import Severity
+from mmrs_core.languages.element import Element, is_kind, label_of
+from mmrs_core.languages.grounding.values import child, children, number, text, value
+from mmrs_core.languages.modelset import ModelSet
+
+TASK = ("urn:mmrs:mission:1.0", "Task")
+CONTEXT = ("urn:mmrs:context:1.0", "Context")
+
+_Findings: TypeAlias = Iterator[Finding]
+
+ABOVE_ZERO = {
+    names.DEPTH_HOLD_SURVEY_TASK: ("swath",),
+    names.INSPECT_OBJECT_TASK: ("distance", "views"),
+    names.ALIGN_TASK: ("distance",),
+    names.RECORDING: ("speed",),
+}
+NOT_BELOW_ZERO = {
+    names.INSPECT_OBJECT_TASK: ("duration",),
+    names.ALIGN_TASK: ("duration", "tolerance"),
+    names.SURFACE_TASK: ("duration",),
+    names.FOLLOW_PIPELINE_TASK: ("height",),
+}
+
+
+def _swath_missing(task: Element, models: ModelSet) -> _Findings:
+    if number(task, "swath") is not None or not models.robots:
+        return
+    height = height_of(number(task, "depth"), number(task, "bottomDepth"))
+    asked = text(task, "deviceId")
+    known = (
+        swath_at(_properties(device), height)
+        for robot_type in models.robots.values()
+        for device in children(robot_type, "devices")
+        if asked in ("", text(device, "id"))
+    )
+    if all(swath is None for swath in known):
+        yield Finding(task, f"swath of task '{label_of(task)}' is missing, and no device says what it covers")
+
+
+def _properties(device: Element) -> dict[str, str]:
+    return {text(each, "name"): text(each, "value") for each in children(device, "properties")}
+
+
+def _overlap_outside(task: Element, models: ModelSet) -> _Findings:
+    overlap = number(task, "overlap")
+    if overlap is not None and not 0.0 <= overlap < 1.0:
+        yield Finding(task, f"overlap of task '{label_of(task)}' is {overlap:g}, not from 0 to below 1")
+
+
+def _below_bottom(task: Element, models: ModelSet) -> _Findings:
+    depth, bottom = number(task, "depth"), number(task, "bottomDepth")
+    if depth is not None and bottom is not None and depth >= bottom:
+        yield Finding(task, f"depth of task '{label_of(task)}' is {depth:g} m, the bottom is at {bottom:g} m")
+
+
+def _depths_upside_down(task: Element, models: ModelSet) -> _Findings:
+    upper, lower = number(task, "minDepth"), number(task, "maxDepth")
+    if upper is not None and lower is not None and lower <= upper:
+        yield Finding(
+            task,
+            f"maxDepth of task '{label_of(task)}' is {lower:g} m, not below its minDepth of {upper:g} m",
+        )
+
+
+def _pitch_outside(task: Element, models: ModelSet) -> _Findings:
+    pitch = number(task, "pitch")
+    if pitch is not None and not 0.0 < pitch < 90.0:
+        yield Finding(task, f"pitch of task '{label_of(task)}' is {pitch:g} degrees, not between 0 and 90")
+
+
+def _out_of_range(task: Element, models: ModelSet) -> _Findings:
+    for figures, least in ((ABOVE_ZERO, "above 0"), (NOT_BELOW_ZERO, "0 or above")):
+        for metaclass, listed in figures.items():
+            for name in listed if is_kind(task, *metaclass) else ():
+                found = number(task, name)
+                if found is not None and (found < 0.0 or (found == 0.0 and figures is ABOVE_ZERO)):
+                    yield Finding(task, f"{name} of task '{label_of(task)}' is {found:g}, it must be {least}")
+
+
+def _above_water(task: Element, models: ModelSet) -> _Findings:
+    for name in ("depth", "minDepth"):
+        depth = number(task, name) if _is_ours(task) else None
+        if depth is not None and depth < 0.0:
+            yield Finding(task, f"{name} of task '{label_of(task)}' is {depth:g} m, above the surface")
+
+
+def _is_ours(task: Element) -> bool:
+    return is_kind(task, *names.DEPTH_HOLD_SURVEY_TASK) or is_kind(task, *names.YO_YO_TASK)
+
+
+def _never_begun(task: Element, models: ModelSet) -> _Findings:
+    stop = text(task, "stopAction")
+    if stop and not text(task, "startAction"):
+        yield Finding(task, f"task '{label_of(task)}' ends what it records by '{stop}', and never begins it")
+
+
+def _name_shared(context: Element, models: ModelSet) -> _Findings:
+    pipelines = [each for each in children(context, "elements") if is_kind(each, *names.PIPELINE)]
+    counted = Counter(label_of(each) for each in pipelines)
+    for pipeline in pipelines:
+        name = label_of(pipeline)
+        if not name:
+            yield Finding(pipeline, "pipeline has no name, tasks could not be told what it is")
+        elif counted[name] > 1:
+            yield Finding(pipeline, f"pipeline '{name}' is one of {counted[name]} of that name")
+
+
+def _no_satellites(task: Element, models: ModelSet) -> _Findings:
+    mission = models.mission
+    team = child(mission, "team")
+    types = [models.robots.get(text(member, "type")) for member in children(team, "robots")]
+    if types and all(each is not None and value(each, "gps") is not True for each in types):
+        yield Finding(task, f"task '{label_of(task)}' comes up for a fix, no robot of the team has gps")
+
+
+TASK_CONSTRAINTS = (
+    Constraint(
+        "AUV022",
+        "How wide a strip a sonar survey covers is known",
+        names.DEPTH_HOLD_SURVEY_TASK,
+        _swath_missing,
+        "give a swath, or state sonar.swath, sonar.aperture or sonar.range of the device",
+    ),
+    Constraint(
+        "AUV023",
+        "Swaths overlap by a part of their width",
+        names.DEPTH_HOLD_SURVEY_TASK,
+        _overlap_outside,
+        "write a part of one: 0.2 is a fifth of the swath",
+    ),
+    Constraint(
+        "AUV024",
+        "A sonar survey is above the bottom",
+        names.DEPTH_HOLD_SURVEY_TASK,
+        _below_bottom,
+        "both depths count down from the surface",
+    ),
+    Constraint(
+        "AUV025",
+        "A yo-yo goes down from its minDepth to its maxDepth",
+        names.YO_YO_TASK,
+        _depths_upside_down,
+        "exchange the two figures",
+    ),
+    Constraint(
+        "AUV026",
+        "A yo-yo goes neither level nor upright",
+        names.YO_YO_TASK,
+        _pitch_outside,
+        "pitch is in degrees, such as 15",
+    ),
+    Constraint(
+        "AUV027",
+        "Distances, speeds, numbers and durations of tasks under water are positive",
+        TASK,
+        _out_of_range,
+        "correct the figure, or leave it out where it is optional",
+    ),
+    Constraint(
+        "AUV028",
+        "Depths of tasks count down from the surface",
+        TASK,
+        _above_water,
+        "write depths as positive numbers",
+    ),
+    Constraint(
+        "AUV029",
+        "What is recorded is begun before it is ended",
+        names.RECORDING,
+        _never_begun,
+        "add a startAction",
+        Severity.WARNING,
+    ),
+    Constraint(
+        "AUV030",
+        "Every pipeline has a name of its own",
+        CONTEXT,
+        _name_shared,
+        "tasks refer to pipelines by name",
+    ),
+    Constraint(
+        "AUV031",
+        "Some robot of the team finds its position by satellites where a task comes up for that",
+        names.SURFACE_TASK,
+        _no_satellites,
+        'write gps="true" if a robot type has a receiver',
+        Severity.WARNING,
+    ),
+)
+"""What must hold for tasks under water."""

@@ -1,0 +1,1 @@
+"""Rules for what underwater vehicles do: surveys, profiles, objects, pipelines, fixes at the surface."""

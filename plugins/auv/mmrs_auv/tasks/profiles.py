@@ -1,0 +1,98 @@
+"""The rule for profiles of the water: along a line, down and up again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import accumulate, pairwise
+from math import dist, floor, radians, tan
+
+from mmrs_auv.names import YO_YO_TASK
+from mmrs_auv.tasks.recording import recorded
+from mmrs_core.contributions.rules import Rule
+from mmrs_core.errors import InfeasibleError
+from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.scene import Part, Point, Position, Robot, Scene, Stroke, Task, Work
+from mmrs_core.scene.attributes import number, position, positions
+
+RULE = "yo_yo"
+
+MOST_WAVES = 5_000
+"""Times at most that one line goes down and up: more, nobody means."""
+
+
+def yo_yo_work(task: Task, robot: Robot, scene: Scene) -> Work:
+    """Return one stroke along the line between two depths, no steeper than asked for.
+
+    It begins and ends at the upper depth, with all ways down and up equally long.
+    """
+    part, surface = task.part, scene.frame.surface
+    line = _level(positions(part, "points"))
+    upper, lower, pitch = (_needed(part, name) for name in ("minDepth", "maxDepth", "pitch"))
+    if not (0.0 <= upper < lower and 0.0 < pitch < 90.0):
+        raise InfeasibleError(f"no way leads from {upper:g} to {lower:g} m of depth at {pitch:g} degrees")
+    length = sum(dist(a, b) for a, b in pairwise(line))
+    wave = 2.0 * (lower - upper) / tan(radians(pitch))
+    if length < wave * (1.0 - 1e-9):
+        raise InfeasibleError(f"the line of {length:.1f} m is too short to go down and up, {wave:.1f} m")
+    if length > MOST_WAVES * wave:
+        raise InfeasibleError(f"goes down and up {length / wave:,.0f} times, of {MOST_WAVES:,} at most")
+    waves = floor(length / wave + 1e-9)
+    points = tuple(
+        (east, north, surface - upper - (lower - upper) * _drop(at, length / waves))
+        for at, (east, north) in _stops(line, length, 2 * waves)
+    )
+    initial = position(part, "initialPosition")
+    entry = (initial[0], initial[1], surface - upper)
+    refuse_heights(robot, (entry, *points))
+    refuse_blocked(robot, scene, (entry,), "the initial position")
+    refuse_blocked(robot, scene, points, "the line")
+    cuts = tuple(_climbs(points)) if waves > 1 else ()
+    stroke = recorded(part, robot, Stroke(points, cuts=cuts, reversible=True))
+    return Work((stroke,), divisible=True, rule=RULE, entry=entry)
+
+
+def _needed(part: Part, name: str) -> float:
+    found = number(part, name)
+    if found is None:
+        raise InfeasibleError(f"{name} is missing")
+    return found
+
+
+def _level(points: tuple[Position, ...]) -> tuple[Point, ...]:
+    """Return the line as seen from above, without points that only repeat the one before."""
+    line = [(east, north) for east, north, _ in points]
+    if not line:
+        raise InfeasibleError("points are missing")
+    return (line[0], *(b for a, b in pairwise(line) if dist(a, b) > 1e-6))
+
+
+def _drop(at: float, wave: float) -> float:
+    """Return how far down a way is after so many metres: 0 is up, 1 is down."""
+    share = at / wave % 1.0
+    return 1.0 - abs(1.0 - 2.0 * share)
+
+
+def _stops(line: tuple[Point, ...], length: float, ways: int) -> Iterator[tuple[float, Point]]:
+    """Yield arc length and place of each vertex and each turning point, in order."""
+    turns = [length * index / ways for index in range(ways + 1)]
+    corners = [0.0, *accumulate(dist(a, b) for a, b in pairwise(line))]
+    kept = [at for at in corners[1:-1] if min(abs(at - turn) for turn in turns) > 1e-6]
+    leg = 0
+    for at in sorted((*turns, *kept)):
+        while leg < len(line) - 2 and at > corners[leg + 1]:
+            leg += 1
+        share = (at - corners[leg]) / (corners[leg + 1] - corners[leg])
+        (east, north), (east_to, north_to) = line[leg], line[leg + 1]
+        yield at, (east + share * (east_to - east), north + share * (north_to - north))
+
+
+def _climbs(points: tuple[Position, ...]) -> Iterator[float]:
+    """Yield where along the way, metres, the line is up again, ends left out."""
+    travelled = 0.0
+    for before, here, after in zip(points, points[1:], points[2:], strict=False):
+        travelled += dist(before, here)
+        if before[2] < here[2] > after[2]:
+            yield travelled
+
+
+YO_YO_RULE = Rule(RULE, YO_YO_TASK, yo_yo_work)

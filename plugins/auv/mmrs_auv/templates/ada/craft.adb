@@ -1,0 +1,181 @@
+with Catalogue; use Catalogue;
+
+package body Craft is
+
+   --  Ticks between two repetitions of a device's command once it has answered.
+   Seldom : constant := 5;
+
+   --  Emergency messages that are sent for one order, one at each tick.
+   Often : constant := 25;
+
+   Beat_Period : constant Long_Float := 0.5;
+
+   Depth_Field : Wire.Field := GoalPose_Depth;
+
+   procedure Sealed (Item : in out Wire.Frame; As : Wire.Message; Counter : in out Unsigned_8);
+
+   function Turned (Degrees : Long_Float) return Long_Float;
+
+   procedure Set_Step (Metres : Long_Float) is
+   begin
+      Depth_Field.Scale := Metres;
+      Depth_Field.Most := Long_Float (Depth_Field.Highest) * Metres;
+   end Set_Step;
+
+   procedure Sealed (Item : in out Wire.Frame; As : Wire.Message; Counter : in out Unsigned_8) is
+   begin
+      Wire.Seal (Item, As, Counter);
+      Counter := Counter + 1;
+   end Sealed;
+
+   function Turned (Degrees : Long_Float) return Long_Float is
+      Found : constant Long_Float := Degrees - 360.0 * Long_Float'Floor (Degrees / 360.0);
+   begin
+      return (if Found >= 360.0 then 0.0 else Found);
+   end Turned;
+
+   procedure Goal_Frames (Wanted : Goal; Place_Frame, Pose_Frame : out Wire.Frame) is
+   begin
+      Place_Frame := Wire.New_Frame (GoalPlace);
+      Wire.Put (Place_Frame, GoalPlace_North, Wanted.Where.North);
+      Wire.Put (Place_Frame, GoalPlace_East, Wanted.Where.East);
+      Pose_Frame := Wire.New_Frame (GoalPose);
+      Wire.Put (Pose_Frame, Depth_Field, Wanted.Where.Depth);
+      Wire.Put (Pose_Frame, GoalPose_Heading, Turned (Wanted.Heading));
+      Wire.Put (Pose_Frame, GoalPose_Speed, Wanted.Speed);
+      Wire.Put (Pose_Frame, GoalPose_Mode, Long_Float (Wanted.Mode));
+      Wire.Put (Pose_Frame, GoalPose_FaceAlong, (if Wanted.Along then 1.0 else 0.0));
+      Wire.Put (Pose_Frame, GoalPose_Goal, Long_Float (Wanted.Number));
+   end Goal_Frames;
+
+   protected body Vehicle is
+
+      procedure Begin_Goal (Wanted : Goal) is
+         Numbered           : Goal := Wanted;
+         First, Second      : Wire.Frame;
+      begin
+         Numbered.Number := (In_Force.Number + 1) mod 16;
+         Goal_Frames (Numbered, First, Second);
+         In_Force := Numbered;
+         Known.Progress := PROGRESS_NONE;
+         Known.Distance := 0.0;
+      end Begin_Goal;
+
+      procedure Operate (Device, Does : Natural; Parameter : Long_Float) is
+      begin
+         Known.Asked := (Known.Asked + 1) mod 256;
+         Known.Answer := PROGRESS_NONE;
+         Vehicle.Device := (Device, Does, Parameter, True);
+      end Operate;
+
+      procedure Give_Up (Reason : Natural) is
+      begin
+         if Emergencies = 0 then
+            Emergencies := Often;
+         end if;
+         Vehicle.Reason := Reason;
+         if Known.Emergency = 0 then
+            Known.Emergency := Reason;
+         end if;
+      end Give_Up;
+
+      procedure Hear (Item : Wire.Frame; Now : Long_Float) is
+         use Wire;
+         Sound : Boolean := True;
+      begin
+         if Is_Sound (Item, Position) and then Is_Within (Item, Position_North)
+           and then Is_Within (Item, Position_East)
+         then
+            Known.Here.North := Value (Item, Position_North);
+            Known.Here.East := Value (Item, Position_East);
+         elsif Is_Sound (Item, Depth) and then Is_Within (Item, Depth_Depth) then
+            Known.Here.Depth := Value (Item, Depth_Depth);
+            Known.Uncertainty := Value (Item, Depth_Uncertainty);
+            Known.Trusted := Number (Item, Depth_Trusted) = 1;
+            Known.Known_At := Now;
+         elsif Is_Sound (Item, Pose) then
+            Known.Heading := Value (Item, Pose_Heading);
+         elsif Is_Sound (Item, Health) then
+            Known.Leak := Number (Item, Health_Leak) = 1;
+            Known.Charge := Value (Item, Health_Charge);
+            Known.Sonar := Value (Item, Health_SonarRange);
+            if Known.Sonar >= 655.3 then
+               Known.Sonar := Long_Float'Last;
+            end if;
+         elsif Is_Sound (Item, Progress) then
+            if Number (Item, Progress_Goal) = In_Force.Number then
+               Known.Progress := Number (Item, Progress_State);
+               Known.Distance := Value (Item, Progress_Distance);
+            end if;
+         elsif Is_Sound (Item, Emergency) and then Is_Within (Item, Emergency_Reason) then
+            if Known.Emergency = 0 then
+               Known.Emergency := Natural'Max (1, Number (Item, Emergency_Reason));
+            end if;
+         elsif Is_Sound (Item, DeviceStatus) then
+            if Number (Item, DeviceStatus_Request) = Known.Asked and then Device.Open then
+               Known.Answer := Number (Item, DeviceStatus_State);
+               Device.Open := Known.Answer not in PROGRESS_REACHED | PROGRESS_FAILED;
+            end if;
+         else
+            Sound := False;
+         end if;
+         if Sound then
+            Known.Heard_At := Now;
+         end if;
+      end Hear;
+
+      procedure Tick (Now : Long_Float; Said : out Frames; Last : out Natural) is
+         use Wire;
+         Made, Posed : Frame;
+
+         procedure Add (Item : Frame);
+
+         procedure Add (Item : Frame) is
+         begin
+            Last := Last + 1;
+            Said (Last) := Item;
+         end Add;
+      begin
+         Last := 0;
+         Said := (others => (others => <>));
+         if Emergencies > 0 then
+            Emergencies := Emergencies - 1;
+            Made := New_Frame (Emergency);
+            Put (Made, Emergency_Reason, Long_Float (Reason));
+            Put (Made, Emergency_Release, 1.0);
+            Sealed (Made, Emergency, Counted (1));
+            Add (Made);
+         end if;
+         Goal_Frames (In_Force, Made, Posed);
+         Sealed (Made, GoalPlace, Counted (2));
+         Add (Made);
+         Sealed (Posed, GoalPose, Counted (3));
+         Add (Posed);
+         Ticks := (Ticks + 1) mod Seldom;
+         if Device.Open and then (Known.Answer = PROGRESS_NONE or else Ticks = 0) then
+            Made := New_Frame (DeviceCommand);
+            Put (Made, DeviceCommand_Device, Long_Float (Device.Device));
+            Put (Made, DeviceCommand_Action, Long_Float (Device.Does));
+            Put (Made, DeviceCommand_Parameter, Device.Parameter);
+            Put (Made, DeviceCommand_Request, Long_Float (Known.Asked));
+            Sealed (Made, DeviceCommand, Counted (4));
+            Add (Made);
+         end if;
+         if Now + 1.0E-6 >= Beat_Due then
+            Beat_Due := Now + Beat_Period;
+            Made := New_Frame (DecisionBeat);
+            Put (Made, DecisionBeat_State, Long_Float (STATE_RUNS));
+            Put (Made, DecisionBeat_Uptime, Now);
+            Put (Made, DecisionBeat_Reason, 0.0);
+            Sealed (Made, DecisionBeat, Counted (5));
+            Add (Made);
+         end if;
+      end Tick;
+
+      function Told return State is (Known);
+
+      function Wanted return Goal is (In_Force);
+
+   end Vehicle;
+
+end Craft;

@@ -1,0 +1,83 @@
+--  A robot's behaviour as data: moves, what is done before and after them, what follows.
+with Ada.Containers.Vectors;
+with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
+
+package Plans is
+
+   subtype Text is Unbounded_String;
+
+   function "+" (Item : String) return Text renames To_Unbounded_String;
+
+   type Place is record
+      North, East, Depth : Long_Float := 0.0;
+   end record;
+
+   package Numbers is new Ada.Containers.Vectors (Positive, Positive);
+
+   None : constant Numbers.Vector := Numbers.Empty_Vector;
+
+   function "&" (Left : Numbers.Vector; Right : Positive) return Numbers.Vector renames Numbers."&";
+
+   type Action_Kind is (Feedback, Device, Notify);
+
+   --  Detail and Slots as logs have them, in JSON; Words for people. Sets: numbers of own slots;
+   --  Told: the same and those of other robots as the gateway reads them.
+   type Action (Kind : Action_Kind := Feedback) is record
+      Detail : Text;
+      case Kind is
+         when Feedback =>
+            Words : Text;
+
+         when Device =>
+            Number, Does        : Natural;
+            Parameter, Patience : Long_Float;
+
+         when Notify =>
+            Slots, Told : Text;
+            Sets        : Numbers.Vector;
+            Active      : Boolean;
+      end case;
+   end record;
+
+   package Action_Lists is new Ada.Containers.Vectors (Positive, Action);
+
+   type Move_Kind is (Starts, Goes, Holds, Turns, Stops);
+
+   type Way_Kind is (Ends, Takes, Chooses);
+
+   --  Id in JSON, Name for people. Task_Number: the composed state that the move belongs to; 0: none.
+   --  Target, Away and Speed of Goes: it ends so many metres before the target. Looks: at Seen, turned by
+   --  Angle degrees. Waits: own slots that must be active. Otherwise: where a choice leads that does not hold.
+   type Move is record
+      Kind          : Move_Kind := Starts;
+      Id, Name      : Text;
+      Task_Number   : Natural := 0;
+      Target, Seen  : Place;
+      Away, Speed   : Long_Float := 0.0;
+      Looks         : Boolean := False;
+      Angle         : Long_Float := 0.0;
+      Seconds       : Long_Float := 0.0;
+      Before, After : Action_Lists.Vector;
+      Way           : Way_Kind := Ends;
+      To, Otherwise : Natural := 0;
+      Condition     : Text;
+      Waits         : Numbers.Vector;
+      Awaited       : Text;
+   end record;
+
+   package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
+   package Text_Lists is new Ada.Containers.Vectors (Positive, Text);
+
+   --  Robot and Slots in JSON; Log: the name of its file. Step: metres of depth in a step of goals on the
+   --  bus; 0: not known. Reserve: part of the battery that must remain. Alone: no other robot is waited for.
+   type Plan is record
+      Robot, Name, Log : Text;
+      Step, Reserve    : Long_Float := 0.0;
+      Floats, Alone    : Boolean := True;
+      Devices          : Natural := 0;
+      Start            : Positive := 1;
+      Slots, Tasks     : Text_Lists.Vector;
+      Moves            : Move_Lists.Vector;
+   end record;
+
+end Plans;

@@ -1,0 +1,50 @@
+--  Frames of CAN, and the fields in their bytes.
+with Interfaces; use Interfaces;
+
+package Wire is
+
+   type Bytes is array (Natural range <>) of Unsigned_8;
+
+   type Frame is record
+      Id     : Natural := 0;
+      Length : Natural range 0 .. 8 := 0;
+      Data   : Bytes (0 .. 7) := (others => 0);
+   end record;
+
+   --  A guarded message ends with a counter and a check over identifier and bytes.
+   type Message is record
+      Id, Length : Natural;
+      Guarded    : Boolean;
+   end record;
+
+   --  Value = raw * Scale; raw lies within Lowest .. Highest, values to be sent within Least .. Most.
+   type Field is record
+      Start, Bits     : Natural;
+      Signed          : Boolean;
+      Scale           : Long_Float;
+      Lowest, Highest : Long_Long_Integer;
+      Least, Most     : Long_Float;
+   end record;
+
+   Out_Of_Range : exception;
+
+   function Check_Of (Id : Natural; Data : Bytes) return Unsigned_8;
+
+   function New_Frame (Of_Message : Message) return Frame;
+
+   --  Round to the nearest step, halves away from zero. Raises Out_Of_Range.
+   procedure Put (Into : in out Frame; Where : Field; Value : Long_Float);
+
+   --  Set counter and check.
+   procedure Seal (Item : in out Frame; Of_Message : Message; Counter : Unsigned_8);
+
+   --  Whether length and check are right.
+   function Is_Sound (Item : Frame; Of_Message : Message) return Boolean;
+
+   function Is_Within (Item : Frame; Where : Field) return Boolean;
+
+   function Value (Item : Frame; Where : Field) return Long_Float;
+
+   function Number (Item : Frame; Where : Field) return Natural;
+
+end Wire;

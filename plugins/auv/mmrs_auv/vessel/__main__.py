@@ -1,0 +1,141 @@
+"""One part of a vehicle as a process of its own, on any bus that python-can has.
+
+python -m mmrs_auv.vessel vehicle --sheet auv.json --interface socketcand --channel can0@127.0.0.1:29536
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from .hosting import Pace, serve
+from .node import Node
+from .sheet import Sheet, from_json
+from .wire.codec import Codec
+from .wire.ports import CHANNEL, PortError, open_port
+
+if TYPE_CHECKING:
+    from .control.actuators import Drives
+
+PARTS = ("sensors", "actuators", "movement", "vehicle")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Serve the part that is asked for until SIGTERM or SIGINT; return the exit status."""
+    given = _parser().parse_args(words)
+    try:
+        sheet = from_json(given.sheet.read_text(encoding="utf-8"))
+        node = _node(given, sheet)
+        port = open_port(given.interface, given.channel, bit_rate=given.bit_rate)
+    except (OSError, ValueError) as error:
+        print(f"{given.part}: {error}", file=sys.stderr)
+        return 2
+    stop = threading.Event()
+    for sign in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(sign, _setter(stop))
+    late: list[float] = []
+    begin = time.process_time()
+    try:
+        with port:
+            serve(
+                node,
+                port,
+                _pace(given),
+                stop,
+                speedup=given.speedup,
+                late=late.append if given.figures else None,
+            )
+    except PortError as error:
+        print(f"{given.part}: the bus is gone: {error}", file=sys.stderr)
+        return 3
+    if given.figures:
+        _write_figures(given.figures, late, time.process_time() - begin)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("part", choices=PARTS)
+    parser.add_argument(
+        "--sheet", type=Path, required=True, help="file that says what the vehicle is made of"
+    )
+    parser.add_argument("--interface", default="socketcand", help="of python-can")
+    parser.add_argument("--channel", default=CHANNEL, help="of that interface; CHANNEL@HOST:PORT of a hub")
+    parser.add_argument("--bit-rate", type=int, help="for adapters that have to be told")
+    parser.add_argument(
+        "--clock", choices=("real", "bus"), default="real", help="bus: time as the vehicle tells it"
+    )
+    parser.add_argument("--speedup", type=float, default=1.0, help="of the vehicle, where it tells time")
+    parser.add_argument(
+        "--surroundings", type=Path, help="file that says what is around the simulated vehicle"
+    )
+    parser.add_argument(
+        "--drives",
+        metavar="MODULE:FUNCTION,OPTION=VALUE,...",
+        help="of thrusters that go by other messages, such as mmrs_dronecan.speed_controllers:opened",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of its instruments' noise and bias")
+    parser.add_argument("--figures", type=Path, help="file for how late ticks were, at the end")
+    return parser
+
+
+def _pace(given: argparse.Namespace) -> Pace:
+    if given.clock == "real":
+        return "real"
+    return "lead" if given.part == "vehicle" else "bus"
+
+
+def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
+    """Return the part; only what it needs is imported."""
+    codec = Codec(sheet)
+    if given.part == "sensors":
+        from .control.sensors import Sensors
+
+        return Sensors(sheet, codec)
+    if given.part == "actuators":
+        from .control.actuators import Actuators
+
+        return Actuators(sheet, codec, _drives(given.drives, sheet))
+    if given.part == "movement":
+        from .movement.movement import Movement
+
+        return Movement(sheet, codec)
+    from .body import surroundings as around
+    from .body.vehicle import Vehicle
+
+    text = None if given.surroundings is None else given.surroundings.read_text(encoding="utf-8")
+    found = around.Surroundings() if text is None else around.from_json(text)
+    return Vehicle(sheet, codec, found, given.seed)
+
+
+def _drives(text: str | None, sheet: Sheet) -> Drives | None:
+    if text is None:
+        return None
+    from .control.foreign import drives_of
+
+    return drives_of(text, sheet)
+
+
+def _setter(stop: threading.Event) -> Callable[[int, FrameType | None], None]:
+    def set_stop(_signal: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    return set_stop
+
+
+def _write_figures(path: Path, late: Sequence[float], seconds: float) -> None:
+    """Write seconds of processor time, then how late each tick was, one number in a line."""
+    path.write_text("".join(f"{each:.6f}\n" for each in (seconds, *late)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

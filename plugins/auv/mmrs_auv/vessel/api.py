@@ -1,0 +1,337 @@
+"""The functions by which a decision centre commands a vehicle and asks for its state; none of them waits."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
+from .hosting import Pace, Port, serve
+from .sheet import Sheet
+from .wire.catalogue import BEAT_PERIOD, DECISION, by_id
+from .wire.codec import Codec, Received
+from .wire.frame import Frame
+
+POSITION_LOST = 10.0
+"""Metres of uncertainty above which the place counts as lost (`Sheet.extra`: ``position.lost``)."""
+
+SELDOM = 5
+"""Ticks from one repetition of a device's command to the next, once the device has answered."""
+
+OFTEN = 25
+"""Emergency messages that are sent for one order, one at each tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What is known of a vehicle: metres, metres per second, degrees, degrees per second.
+
+    Attributes:
+        uncertainty: of the place, one sigma.
+        trusted: whether depth, attitude and heading may be relied on.
+        age: seconds since the sensor controller said it; infinite: it never did.
+        charge: part of the battery that is left; None: not told yet. sonar: range ahead; None: nothing seen.
+        goal: number of the goal of which `progress` tells (one of `catalogue.PROGRESS`).
+        distance: left to it.
+        emergency: why the dive was given up; None: it was not.
+        devices: progress of each request.
+        silent: seconds since any node of the vehicle was heard.
+    """
+
+    north: float = 0.0
+    east: float = 0.0
+    depth: float = 0.0
+    roll: float = 0.0
+    pitch: float = 0.0
+    heading: float = 0.0
+    surge: float = 0.0
+    sway: float = 0.0
+    heave: float = 0.0
+    current_north: float = 0.0
+    current_east: float = 0.0
+    uncertainty: float = float("inf")
+    trusted: bool = False
+    position_lost: bool = True
+    age: float = float("inf")
+    silent: float = float("inf")
+    charge: float | None = None
+    leak: bool = False
+    sonar: float | None = None
+    goal: int | None = None
+    progress: str = "NONE"
+    distance: float = 0.0
+    emergency: str | None = None
+    devices: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
+
+
+class Craft:
+    """A vehicle as its decision centre sees it: a node that says goals and device commands, and hears states.
+
+    All functions may be called from any thread and return at once. A goal is in force, and repeated, until
+    the next one.
+    """
+
+    name = DECISION
+    period = GOAL_PERIOD
+
+    def __init__(self, sheet: Sheet, codec: Codec) -> None:
+        self._sheet, self._codec = sheet, codec
+        self._lost = sheet.extra.get("position.lost", POSITION_LOST)
+        self._lock = threading.Lock()
+        self._hearers = by_id({
+            "Position": self._hear_place, "Pose": self._hear_pose, "Velocity": self._hear_speed,
+            "Depth": self._hear_depth, "Current": self._hear_current, "Health": self._hear_health,
+            "Progress": self._hear_progress, "Emergency": self._hear_emergency,
+            "DeviceStatus": self._hear_device,
+        })  # fmt: skip
+        self._goal = Goal()
+        self._state = State()
+        self._devices: dict[int, str] = {}
+        self._requests: dict[int, dict[str, float]] = {}
+        self._request = 0
+        self._ticks = 0
+        self._state_at = self._heard_at = float("-inf")
+        self._now = 0.0
+        self._emergency: tuple[str, bool] | None = None
+        self._emergencies = 0
+        self._began: float | None = None
+        self._beat_due = 0.0
+
+    def go_to(
+        self, north: float, east: float, depth: float, *, speed: float = 0.0, heading: float | None = None
+    ) -> int:
+        """Go to a place, metres; return the goal's number.
+
+        Args:
+            speed: metres per second at most; 0: as the vehicle likes.
+            heading: degrees; None: facing where it goes, and any at the goal.
+
+        Raises:
+            ValueError: a value is beyond what messages hold.
+        """
+        return self._begin(Goal("GO_TO", north, east, depth, heading or 0.0, speed, heading is None))
+
+    def hold(
+        self,
+        north: float | None = None,
+        east: float | None = None,
+        depth: float | None = None,
+        heading: float | None = None,
+    ) -> int:
+        """Hold a place, depth and heading, by default those where the vehicle is; return the goal's number.
+
+        Raises:
+            ValueError: a value is beyond what messages hold.
+        """
+        with self._lock:
+            here = self._state
+        return self._begin(
+            Goal(
+                "HOLD",
+                here.north if north is None else north,
+                here.east if east is None else east,
+                max(0.0, here.depth) if depth is None else depth,
+                here.heading if heading is None else heading,
+            )
+        )
+
+    def turn(self, heading: float) -> int:
+        """Turn to a heading on the spot, degrees; return the goal's number."""
+        return self._begin(Goal("TURN", heading=heading))
+
+    def surface(self) -> int:
+        """Come up by thrust; return the goal's number."""
+        return self._begin(Goal("SURFACE"))
+
+    def search(
+        self, north: float, east: float, depth: float, *, speed: float = 0.0, heading: float | None = None
+    ) -> int:
+        """Search around a place; return the goal's number.
+
+        Args:
+            heading: None: along a spiral outwards, facing where it goes; else a full turn on the spot.
+        """
+        return self._begin(Goal("SEARCH", north, east, depth, heading or 0.0, speed, heading is None))
+
+    def idle(self) -> int:
+        """Ask for no thrust; return the goal's number."""
+        return self._begin(Goal("IDLE"))
+
+    def operate(self, device: str, action: int, parameter: float = 0.0) -> int:
+        """Have a device do something; return the number of the request, under which its progress is told.
+
+        It is asked again until it says that it is done, or is asked for something else.
+
+        Args:
+            device: identifier. action: its number at the device.
+
+        Raises:
+            ValueError: the vehicle has no such device, or a value is beyond what messages hold.
+        """
+        if device not in self._sheet.devices:
+            raise ValueError(f"{self._sheet.robot} has no device {device!r}")
+        with self._lock:
+            request = (self._request + 1) % 256
+            values = {
+                "Device": float(self._sheet.devices.index(device)),
+                "Action": float(action),
+                "Parameter": parameter,
+                "Request": float(request),
+            }
+            self._codec.encode("DeviceCommand", **values)
+            for earlier in [
+                number for number, each in self._requests.items() if each["Device"] == values["Device"]
+            ]:
+                del self._requests[earlier]
+            self._request = request
+            self._devices[request] = "NONE"
+            self._requests[request] = values
+        return request
+
+    def emergency(self, reason: str = "ORDERED", *, release: bool = True) -> None:
+        """Stop all thrust for good, and let go of the drop weight if it is to.
+
+        Args:
+            reason: one of `catalogue.REASONS`.
+
+        Raises:
+            ValueError: there is no such reason.
+        """
+        with self._lock:
+            self._codec.encode("Emergency", Reason=reason, Release=release)
+            self._emergency, self._emergencies = (reason, release), OFTEN
+            self._state = replace(self._state, emergency=self._state.emergency or reason)
+
+    def state(self) -> State:
+        """Return what is known now."""
+        with self._lock:
+            known, age = self._state, self._now - self._state_at
+            return replace(
+                known,
+                age=age,
+                silent=self._now - self._heard_at,
+                position_lost=not known.trusted or known.uncertainty > self._lost,
+                devices=MappingProxyType(dict(self._devices)),
+            )
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Take what the vehicle says."""
+        hearer = self._hearers.get(frame.id)
+        if hearer is None:
+            return
+        with self._lock:
+            self._now = max(self._now, now)
+            if (found := self._codec.decode(frame)) is not None:
+                self._heard_at = now
+                hearer(found, now)
+
+    def tick(self, now: float) -> list[Frame]:
+        """Repeat the goal, and what devices and an emergency need."""
+        with self._lock:
+            self._now = now
+            self._began = now if self._began is None else self._began
+            said = []
+            if self._emergency is not None and self._emergencies > 0:
+                self._emergencies -= 1
+                said.append(
+                    self._codec.encode("Emergency", Reason=self._emergency[0], Release=self._emergency[1])
+                )
+            said += goal_frames(self._codec, self._goal)
+            self._ticks += 1
+            said += [
+                self._codec.encode("DeviceCommand", **values)
+                for request, values in self._requests.items()
+                if self._devices[request] == "NONE" or self._ticks % SELDOM == 0
+            ]
+            if now + 1e-6 >= self._beat_due:
+                self._beat_due = now + BEAT_PERIOD
+                uptime = now - self._began
+                said.append(self._codec.encode("DecisionBeat", State="RUNS", Uptime=uptime, Reason="NONE"))
+            return said
+
+    def _begin(self, goal: Goal) -> int:
+        with self._lock:
+            goal = replace(goal, number=(self._goal.number + 1) % GOALS)
+            check_goal(self._codec, goal)
+            self._goal = goal
+            self._state = replace(self._state, goal=goal.number, progress="NONE", distance=0.0)
+            return goal.number
+
+    def _hear_place(self, found: Received, now: float) -> None:
+        north, east = _numbers(found, "North", "East")
+        self._state = replace(self._state, north=north, east=east)
+
+    def _hear_pose(self, found: Received, now: float) -> None:
+        roll, pitch, heading = _numbers(found, "Roll", "Pitch", "Heading")
+        self._state = replace(self._state, roll=roll, pitch=pitch, heading=heading)
+
+    def _hear_speed(self, found: Received, now: float) -> None:
+        surge, sway, heave = _numbers(found, "Surge", "Sway", "Heave")
+        self._state = replace(self._state, surge=surge, sway=sway, heave=heave)
+
+    def _hear_depth(self, found: Received, now: float) -> None:
+        values = found.values
+        depth, uncertainty = float(values["Depth"]), float(values["Uncertainty"])
+        self._state = replace(
+            self._state, depth=depth, uncertainty=uncertainty, trusted=bool(values["Trusted"])
+        )
+        self._state_at = now
+
+    def _hear_current(self, found: Received, now: float) -> None:
+        north, east = _numbers(found, "North", "East")
+        self._state = replace(self._state, current_north=north, current_east=east)
+
+    def _hear_health(self, found: Received, now: float) -> None:
+        seen = float(found.values["SonarRange"])
+        sonar = seen if seen < 655.3 else None
+        charge, leak = float(found.values["Charge"]), bool(found.values["Leak"])
+        self._state = replace(self._state, charge=charge, leak=leak, sonar=sonar)
+
+    def _hear_progress(self, found: Received, now: float) -> None:
+        values = found.values
+        if int(values["Goal"]) == self._goal.number:
+            progress, distance = str(values["State"]), float(values["Distance"])
+            self._state = replace(self._state, goal=self._goal.number, progress=progress, distance=distance)
+
+    def _hear_emergency(self, found: Received, now: float) -> None:
+        self._state = replace(self._state, emergency=self._state.emergency or str(found.values["Reason"]))
+
+    def _hear_device(self, found: Received, now: float) -> None:
+        request, state = int(found.values["Request"]), str(found.values["State"])
+        if request in self._devices:
+            self._devices[request] = state
+            if state in ("REACHED", "FAILED"):
+                self._requests.pop(request, None)
+
+
+class Connection:
+    """A craft that a thread of its own serves on a bus.
+
+    Attributes:
+        craft: to be commanded.
+        failure: what ended the thread; None: nothing did.
+    """
+
+    def __init__(self, sheet: Sheet, port: Port, clock: Pace = "real") -> None:
+        self.craft = Craft(sheet, Codec(sheet))
+        self.failure: Exception | None = None
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._serve, args=(port, clock), name="decision", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Fall silent; the vehicle then holds, and surfaces."""
+        self._stop.set()
+        self._thread.join(5.0)
+
+    def _serve(self, port: Port, clock: Pace) -> None:
+        try:
+            serve(self.craft, port, clock, self._stop)
+        except Exception as error:
+            self.failure = error
+
+
+def _numbers(found: Received, *names: str) -> tuple[float, ...]:
+    return tuple(float(found.values[name]) for name in names)

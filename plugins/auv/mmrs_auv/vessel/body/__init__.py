@@ -1,0 +1,1 @@
+"""The vehicle in simulation: hull, water, thrusters and their drives, battery, sensors, devices."""

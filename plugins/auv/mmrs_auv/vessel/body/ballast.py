@@ -1,0 +1,33 @@
+"""The drop weight's release, which lets go by itself when nobody commands the vehicle any more."""
+
+from __future__ import annotations
+
+from ..sheet import Sheet
+
+_PATIENCE, _DEEP, _SOON = 5.0, 0.5, 1e-9
+
+
+class Release:
+    """What holds the drop weight.
+
+    It is held by the supply of the drives: once they have had a valid command, and then none for
+    ``deadman.time`` of `Sheet.extra` (seconds; 5 if it does not say; 0: for ever) while deeper than half a
+    metre, it lets go.
+
+    Attributes:
+        open: whether the weight is gone, which nothing undoes.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        self.open = False
+        self._patience = sheet.extra.get("deadman.time", _PATIENCE)
+        self._commanded: float | None = None
+
+    def command(self, now: float) -> None:
+        """Take note that a drive had a valid command."""
+        self._commanded = now
+
+    def run(self, now: float, depth: float) -> None:
+        """Let go if it is time to, seconds and metres."""
+        if self._patience > 0.0 and self._commanded is not None and depth > _DEEP:
+            self.open = self.open or now - self._commanded >= self._patience - _SOON

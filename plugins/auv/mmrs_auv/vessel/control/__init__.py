@@ -1,0 +1,1 @@
+"""The control layer: reads sensors, drives thrusters, and fails safe."""

@@ -1,0 +1,114 @@
+"""Thrusters' drives as the actuator controller sees them: what they are told, and whether they do it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..sheet import Sheet
+from ..wire.catalogue import STATUS_BASE
+from ..wire.codec import Codec
+from ..wire.frame import Frame
+from .allocation import Array
+
+SILENT = 0.5
+"""Seconds without a status after which a drive that gave some counts as dead."""
+
+IDLE, ASKED = 0.02, 0.1
+"""Parts of peak thrust: below the first a drive gives nothing; above the second it was asked for some."""
+
+IDLES = 0.5
+"""Seconds for which a drive may give nothing though it was asked, before its thruster counts as dead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What a drive tells of its thruster.
+
+    Attributes:
+        number: of the thruster, from 0 in the order of the sheet.
+        thrust: newtons; None: it does not tell.
+        fault: whether the drive says that it cannot work.
+        runs: whether it obeys commands now.
+    """
+
+    number: int
+    thrust: float | None
+    fault: bool
+    runs: bool = True
+
+
+class CatalogueDrives:
+    """Drives that go by the messages of the vehicle's own bus."""
+
+    def __init__(self, sheet: Sheet, codec: Codec) -> None:
+        self._codec = codec
+        self._most = [each.max_thrust for each in sheet.thrusters]
+
+    def commands(self, thrusts: Sequence[float], enable: bool) -> list[Frame]:
+        """Return a command for each thruster, newtons."""
+        return [
+            self._codec.encode(
+                f"Thruster{number}Command", Thrust=min(max(thrust, -most), most), Enable=enable
+            )
+            for number, (thrust, most) in enumerate(zip(thrusts, self._most, strict=True))
+        ]
+
+    def hear(self, frame: Frame) -> Status | None:
+        """Return what a status says."""
+        number = frame.id - STATUS_BASE
+        if frame.extended or not 0 <= number < len(self._most):
+            return None
+        found = self._codec.decode(frame)
+        if found is None:
+            return None
+        drive = found.values["Drive"]
+        return Status(number, float(found.values["Thrust"]), drive == "FAULT", drive == "RUNS")
+
+
+class Watch:
+    """Which thrusters work, by what their drives say and do.
+
+    A thruster is dead while its drive says so or is silent, and for good once it gave nothing when asked.
+
+    Attributes:
+        working: of each thruster.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        count = len(sheet.thrusters)
+        self._most = [each.max_thrust for each in sheet.thrusters]
+        self.working = [True] * count
+        self._last: list[Status | None] = [None] * count
+        self._heard = [0.0] * count
+        self._gave: list[float | None] = [None] * count
+        self._lame = [False] * count
+
+    def take(self, status: Status, now: float) -> None:
+        """Note what a drive says."""
+        self._last[status.number] = status
+        self._heard[status.number] = now
+
+    def judge(self, asked: Array, now: float) -> list[bool] | None:
+        """Judge which thrusters work, given the newtons asked of each; return that if it changed."""
+        working = [self._works(number, float(thrust), now) for number, thrust in enumerate(asked)]
+        if working == self.working:
+            return None
+        self.working = working
+        return working
+
+    def _works(self, number: int, asked: float, now: float) -> bool:
+        status = self._last[number]
+        if status is None:
+            return True
+        if status.fault or now - self._heard[number] > SILENT:
+            return False
+        most = self._most[number]
+        gives = status.thrust is None or not status.runs or abs(status.thrust) > IDLE * most
+        if gives or abs(asked) < ASKED * most:
+            self._gave[number] = None
+        else:
+            since = self._gave[number]
+            self._gave[number] = since = now if since is None else since
+            self._lame[number] = self._lame[number] or now - since > IDLES
+        return not self._lame[number]

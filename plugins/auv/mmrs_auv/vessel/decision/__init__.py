@@ -1,0 +1,1 @@
+"""The decision centre: what a vehicle does, one thing after another, and what stops it."""

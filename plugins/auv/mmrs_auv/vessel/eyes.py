@@ -1,0 +1,240 @@
+"""What cameras tell the decision centre: detections, one JSON object in each UDP datagram."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields
+from math import hypot
+from statistics import median
+from types import TracebackType
+
+from .sheet import Vector
+
+FRONT, BOTTOM = "front", "bottom"
+CAMERAS = (FRONT, BOTTOM)
+
+LONGEST, LONGEST_NAME, FARTHEST, DEEPEST = 1024, 80, 8388.0, 11000.0
+"""Bytes of a datagram, characters of a name, metres from the origin and of depth that are taken at most."""
+
+KEPT, NAMES = 9, 256
+"""Detections that are kept of each object, and objects of which any are kept."""
+
+REPEATED = 60.0
+"""Seconds: who tells of times that lie farther back than this has another clock, and is heard again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Detection:
+    """An object that a camera saw.
+
+    Attributes:
+        time: when the picture was taken, seconds of the vehicle's clock.
+        name: of the object, as behaviours call it.
+        confidence: from 0 to 1: how often such a detection is right.
+        north, east, depth: of the object's middle, metres.
+        camera: one of `CAMERAS`.
+    """
+
+    time: float
+    name: str
+    confidence: float
+    north: float
+    east: float
+    depth: float
+    camera: str
+
+
+def to_datagram(detection: Detection) -> bytes:
+    """Return a detection as it goes through UDP."""
+    return json.dumps(asdict(detection), allow_nan=False).encode() + b"\n"
+
+
+def from_datagram(data: bytes) -> Detection:
+    """Return what a datagram tells.
+
+    Raises:
+        ValueError: it is no detection; says why.
+    """
+    if len(data) > LONGEST:
+        raise ValueError("too long")
+    try:
+        found = json.loads(data)
+    except (ValueError, RecursionError):
+        raise ValueError("no JSON") from None
+    if not isinstance(found, dict) or set(found) != {each.name for each in fields(Detection)}:
+        raise ValueError("other keys")
+    name = found["name"]
+    if not isinstance(name, str) or not 0 < len(name) <= LONGEST_NAME or not name.isprintable():
+        raise ValueError("no name")
+    if found["camera"] not in CAMERAS:
+        raise ValueError("no camera")
+    return Detection(
+        _number(found, "time", 0.0, 1e12),
+        name,
+        _number(found, "confidence", 0.0, 1.0),
+        _number(found, "north", -FARTHEST, FARTHEST),
+        _number(found, "east", -FARTHEST, FARTHEST),
+        _number(found, "depth", -FARTHEST, DEEPEST),
+        str(found["camera"]),
+    )
+
+
+def _number(found: Mapping[str, object], key: str, low: float, high: float) -> float:
+    value = found[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{key} is no number")
+    if not low <= value <= high:
+        raise ValueError(f"{key} out of range")
+    return float(value)
+
+
+class Detections:
+    """Listens to what cameras tell, and says where objects are.
+
+    One detection alone moves nothing: an object counts as seen when `least` of its latest detections, each
+    at least as confident as asked, lie within `spread` of their median. Whoever can send to the port can
+    tell anything, so that it is opened on this computer only unless a host is given.
+
+    Attributes:
+        port: that is listened to.
+        bad: how many datagrams were refused, by why.
+    """
+
+    def __init__(
+        self,
+        port: int = 0,
+        host: str = "127.0.0.1",
+        *,
+        confidence: float = 0.5,
+        lasting: float = 10.0,
+        least: int = 2,
+        spread: float = 1.0,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Open the port; 0: any that is free.
+
+        Args:
+            confidence: less counts for nothing.
+            lasting: seconds after its arrival, by the clock, that a detection counts.
+            least: number of them that must agree. spread: metres from their median within which they do.
+
+        Raises:
+            OSError: the port is taken.
+        """
+        self.bad: Counter[str] = Counter()
+        self._confidence, self._lasting, self._least, self._spread = confidence, lasting, least, spread
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._kept: dict[str, deque[tuple[float, Detection]]] = {}
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((host, port))
+        except OSError:
+            self._socket.close()
+            raise
+        self._socket.settimeout(0.2)
+        self.port: int = self._socket.getsockname()[1]
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._listen, name="detections", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Detections:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Listen no more; idempotent."""
+        self._stop.set()
+        self._thread.join()
+        self._socket.close()
+
+    def place(self, name: str) -> Vector | None:
+        """Return where an object is seen: metres north, east and below the surface; None: it is not."""
+        found = self._lately(name)
+        for _ in range(len(found)):
+            if len(found) < self._least:
+                return None
+            middle = (
+                median(each.north for each in found),
+                median(each.east for each in found),
+                median(each.depth for each in found),
+            )
+            agreeing = [each for each in found if _away(each, middle) <= self._spread]
+            if len(agreeing) == len(found):
+                return middle
+            found = agreeing
+        return None
+
+    def newest(self, name: str) -> Detection | None:
+        """Return the latest detection of an object that counts."""
+        found = self._lately(name)
+        return found[-1] if found else None
+
+    def seen(self) -> frozenset[str]:
+        """Return the names of the objects that are seen."""
+        with self._lock:
+            names = list(self._kept)
+        return frozenset(name for name in names if self.place(name) is not None)
+
+    def take(self, data: bytes) -> None:
+        """Take a datagram; what is no detection is counted in `bad`."""
+        try:
+            detection = from_datagram(data)
+        except ValueError as error:
+            self.bad[str(error)] += 1
+            return
+        if detection.confidence < self._confidence:
+            return
+        now = self._clock()
+        with self._lock:
+            self._keep(detection, now)
+
+    def _keep(self, detection: Detection, now: float) -> None:
+        kept = self._kept.get(detection.name)
+        if kept is None:
+            if len(self._kept) >= NAMES:
+                self._forget(now)
+            if len(self._kept) >= NAMES:
+                self.bad["too many names"] += 1
+                return
+            kept = self._kept[detection.name] = deque(maxlen=KEPT)
+        if any(-REPEATED < detection.time - other.time <= 0.0 and other.camera == detection.camera
+               for _, other in kept):  # fmt: skip
+            self.bad["late"] += 1
+            return
+        kept.append((now, detection))
+
+    def _forget(self, now: float) -> None:
+        for name in [name for name, kept in self._kept.items() if now - kept[-1][0] > self._lasting]:
+            del self._kept[name]
+
+    def _lately(self, name: str) -> list[Detection]:
+        now = self._clock()
+        with self._lock:
+            kept = self._kept.get(name, ())
+            return [each for arrived, each in kept if now - arrived <= self._lasting]
+
+    def _listen(self) -> None:
+        while not self._stop.is_set():
+            try:
+                data = self._socket.recv(LONGEST + 1)
+            except TimeoutError:
+                continue
+            except OSError:
+                self.bad["socket"] += 1
+                self._stop.wait(0.2)
+                continue
+            self.take(data)
+
+
+def _away(one: Detection, middle: Vector) -> float:
+    return hypot(one.north - middle[0], one.east - middle[1], one.depth - middle[2])

@@ -1,0 +1,301 @@
+"""Hosts of nodes: all of a vehicle in one process on simulated time, or one node in a process of its own."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Literal, Protocol
+
+from .node import Node
+from .wire.catalogue import CLOCK_ID, NODES
+from .wire.frame import Frame
+
+MICROSECONDS = 1_000_000
+CATCH_UP = 5
+"""Ticks that a node in real time may be late before it lets them go."""
+
+SEEN_BASE = 0x18FF0000
+"""Extended identifiers by which hosts that go by the bus say that their node has done what was due at a time.
+
+They concern hosts only: they are in no database, and are not sent in real time.
+"""
+
+LAG = 2
+"""Ticks of who leads by which others may be behind it."""
+
+PATIENCE = 2.0
+"""Seconds of real time for which simulated time waits for a part; it then counts as gone till it is heard."""
+
+Pace = Literal["real", "bus", "lead"]
+
+
+class Port(Protocol):
+    """A connection to a bus, as `wire.ports.open_port` opens one."""
+
+    def send(self, frame: Frame) -> None:
+        """Put a frame on the bus."""
+        ...
+
+    def receive(self, timeout: float) -> Frame | None:
+        """Return the next frame, or None if there was none for so many seconds."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class WireFault:
+    """What is wrong with the bus for a while.
+
+    Attributes:
+        begin, end: seconds of simulated time.
+        loss: part of the frames that never arrive. corruption: part that arrive with one to three bits wrong.
+        ids: identifiers that it concerns; None: all.
+        sender: name of the only node that it concerns; None: all.
+        seed: of the chances.
+    """
+
+    begin: float = 0.0
+    end: float = float("inf")
+    loss: float = 0.0
+    corruption: float = 0.0
+    ids: frozenset[int] | None = None
+    sender: str | None = None
+    seed: int = 0
+
+
+class _Disturbance:
+    """A fault at work, with its chances."""
+
+    def __init__(self, fault: WireFault) -> None:
+        self._fault = fault
+        self._random = Random(fault.seed)
+
+    def through(self, frame: Frame, sender: str, now: float) -> Frame | None:
+        """Return the frame as it arrives; None if it does not."""
+        fault = self._fault
+        if not fault.begin <= now < fault.end or (fault.sender is not None and fault.sender != sender):
+            return frame
+        if fault.ids is not None and frame.id not in fault.ids:
+            return frame
+        if self._random.random() < fault.loss:
+            return None
+        if frame.data and self._random.random() < fault.corruption:
+            return self._corrupted(frame)
+        return frame
+
+    def _corrupted(self, frame: Frame) -> Frame:
+        data = bytearray(frame.data)
+        for bit in self._random.sample(range(8 * len(data)), self._random.randint(1, 3)):
+            data[bit // 8] ^= 1 << bit % 8
+        return Frame(frame.id, bytes(data), frame.extended)
+
+
+class Rehearsal:
+    """Nodes on one bus in simulated time: the same nodes and faults always say the same.
+
+    All nodes whose time has come tick; what they say is then delivered to all others in the order of the
+    bus (identifier, then order of the nodes), before time goes on.
+
+    Args:
+        nodes: in the order in which they tick when their time comes together.
+        faults: of the bus.
+        watch: called with the time and every frame that was put on the bus, before faults take it.
+    """
+
+    def __init__(
+        self,
+        nodes: Sequence[Node],
+        faults: Sequence[WireFault] = (),
+        watch: Callable[[float, Frame], None] | None = None,
+    ) -> None:
+        self._nodes = list(nodes)
+        self._disturbances = [_Disturbance(fault) for fault in faults]
+        self._watch = watch
+        self._time = 0
+        self._due = {id(node): 0 for node in self._nodes}
+        self._dead: set[str] = set()
+        self._posted: list[Frame] = []
+
+    @property
+    def now(self) -> float:
+        """Seconds of simulated time."""
+        return self._time / MICROSECONDS
+
+    def add(self, node: Node) -> None:
+        """Take another node; it ticks with the others from now on."""
+        self._nodes.append(node)
+        self._due[id(node)] = self._time
+
+    def kill(self, name: str) -> None:
+        """Let a node hear and say nothing any more, as a process that was killed."""
+        self._dead.add(name)
+
+    def revive(self, name: str) -> None:
+        """Let a node that was killed hear and speak again, with what it knew."""
+        self._dead.discard(name)
+
+    def disturb(self, fault: WireFault) -> None:
+        """Let a fault of the bus begin to count."""
+        self._disturbances.append(_Disturbance(fault))
+
+    def post(self, frame: Frame) -> None:
+        """Put a frame on the bus at the next tick, as if a node beside all others had said it."""
+        self._posted.append(frame)
+
+    def run(self, seconds: float) -> None:
+        """Let so much time go by."""
+        until = self._time + round(seconds * MICROSECONDS)
+        while self._nodes and (due := min(self._due.values())) <= until:
+            self._time = max(due, self._time)
+            self._step()
+        self._time = until
+
+    def _step(self) -> None:
+        now = self.now
+        said: list[tuple[int, str, Frame]] = [(frame.id, "", frame) for frame in self._posted]
+        self._posted.clear()
+        for node in self._nodes:
+            if self._due[id(node)] > self._time:
+                continue
+            self._due[id(node)] += round(node.period * MICROSECONDS)
+            if node.name not in self._dead:
+                said.extend((frame.id, node.name, frame) for frame in node.tick(now))
+        said.sort(key=lambda each: each[0])
+        for _, sender, frame in said:
+            if self._watch is not None:
+                self._watch(now, frame)
+            self._deliver(frame, sender, now)
+
+    def _deliver(self, frame: Frame, sender: str, now: float) -> None:
+        arrived: Frame | None = frame
+        for disturbance in self._disturbances:
+            if arrived is None:
+                return
+            arrived = disturbance.through(arrived, sender, now)
+        if arrived is None:
+            return
+        for node in self._nodes:
+            if node.name != sender and node.name not in self._dead:
+                node.hear(arrived, now)
+
+
+def clock_frame(now: float) -> Frame:
+    """Return the frame that tells simulated time, seconds."""
+    return Frame(CLOCK_ID, (round(now * 1000.0) & 0xFFFFFFFF).to_bytes(4, "little"))
+
+
+def clock_time(frame: Frame) -> float | None:
+    """Return what time a frame tells, seconds, or None if it tells none."""
+    if frame.id != CLOCK_ID or frame.extended or len(frame.data) != 4:
+        return None
+    return int.from_bytes(frame.data, "little") / 1000.0
+
+
+def serve(
+    node: Node,
+    port: Port,
+    clock: Pace = "real",
+    stop: threading.Event | None = None,
+    *,
+    speedup: float = 1.0,
+    late: Callable[[float], None] | None = None,
+) -> None:
+    """Host one node on a bus until `stop` is set.
+
+    Args:
+        clock: "real": ticks by this computer's monotonic clock; "bus": when `Clock` frames say so;
+            "lead": real time times `speedup`, told to all others in `Clock` frames before each tick, and
+            it waits for hosts by "bus" that are more than `LAG` ticks behind.
+        late: called with the seconds by which each tick came late (not with "bus").
+
+    Raises:
+        Whatever the port raises when the bus is gone, and whatever the node raises: a process that fails is
+        restarted from outside, and what depends on it meanwhile fails safe.
+    """
+    ended = stop or threading.Event()
+    if clock == "bus":
+        _serve_by_bus(node, port, ended)
+    elif clock == "lead":
+        _serve_leading(node, port, ended, speedup, late)
+    else:
+        _serve_by_clock(node, port, ended, late)
+
+
+def _serve_by_clock(
+    node: Node, port: Port, stop: threading.Event, late: Callable[[float], None] | None
+) -> None:
+    begin = time.monotonic()
+    ticks = 0
+    while not stop.is_set():
+        due = ticks * node.period
+        now = time.monotonic() - begin
+        if now < due:
+            if (frame := port.receive(due - now)) is not None:
+                node.hear(frame, time.monotonic() - begin)
+            continue
+        if late is not None:
+            late(now - due)
+        if now - due > CATCH_UP * node.period:
+            ticks = int(now / node.period)
+        for said in node.tick(now):
+            port.send(said)
+        ticks += 1
+        while (heard := port.receive(0.0)) is not None:
+            node.hear(heard, now)
+
+
+def _serve_leading(
+    node: Node, port: Port, stop: threading.Event, speedup: float, late: Callable[[float], None] | None
+) -> None:
+    """Tell time, and let it go on when it may and the others have kept up with it."""
+    begin = time.monotonic()
+    now, ticks = 0.0, 0
+    seen: dict[int, float] = {}
+    while not stop.is_set():
+        due = ticks * node.period
+        on = begin + due / speedup
+        given_up = max(on, time.monotonic()) + PATIENCE
+        while not stop.is_set():
+            while (frame := port.receive(0.0)) is not None:
+                if frame.extended and 0 <= frame.id - SEEN_BASE < len(NODES):
+                    seen[frame.id] = int.from_bytes(frame.data, "little") / 1000.0
+                else:
+                    node.hear(frame, now)
+            real = time.monotonic()
+            behind = [each for each, at in seen.items() if due - at > LAG * node.period + 1e-6]
+            if real >= on and (not behind or real >= given_up):
+                break
+            time.sleep(min(max(on - real, 0.0005), 0.005))
+        for each in behind:
+            del seen[each]
+        if late is not None:
+            late(time.monotonic() - on)
+        now = due
+        port.send(clock_frame(now))
+        for said in node.tick(now):
+            port.send(said)
+        ticks += 1
+
+
+def _serve_by_bus(node: Node, port: Port, stop: threading.Event) -> None:
+    due: float | None = None
+    now = 0.0
+    while not stop.is_set():
+        frame = port.receive(0.1)
+        if frame is None:
+            continue
+        told = clock_time(frame)
+        if told is None:
+            node.hear(frame, now)
+            continue
+        now = told
+        if due is None or due - now > 10.0 * node.period:
+            due = now
+        if now + 1e-6 >= due:
+            for said in node.tick(now):
+                port.send(said)
+            due = max(due + node.period, now)
+        if node.name in NODES:
+            port.send(Frame(SEEN_BASE + NODES.index(node.name), frame.data, True))

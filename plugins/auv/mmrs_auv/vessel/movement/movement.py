@@ -1,0 +1,211 @@
+"""The movement component: takes goals of the decision centre, and asks for a wrench that leads there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isfinite
+
+import numpy as np
+
+from ..control.allocation import DEGREES, Allocation, Array
+from ..goals import GOAL_PERIOD, Goal, goal_of, within_rating
+from ..sheet import Sheet
+from ..wire.catalogue import BEAT_PERIOD, COMMAND_PERIOD, COMMON, MOVEMENT, by_id
+from ..wire.codec import Codec, Received
+from ..wire.frame import Frame
+from .abilities import abilities_of
+from .guidance import Guidance
+from .loops import Loops, Motion
+from .progress import Progress
+
+GOAL_SILENT = 5.0 * GOAL_PERIOD
+"""Seconds without a goal after which the decision centre counts as silent: the vehicle holds its place."""
+
+PATIENCE = 10.0
+"""Seconds for which it holds, before it surfaces by thrust (`Sheet.extra`: ``movement.patience``)."""
+
+STATE_SILENT = 0.3
+"""Seconds without a state that is to be trusted after which it asks for no thrust."""
+
+PROGRESS_PERIOD = 0.1
+FARTHEST = 655.35
+
+
+class Movement:
+    """Brings the vehicle to where its goal is and keeps it there, and tells how far it is.
+
+    It asks for no thrust without a goal, without a state that may be trusted, and after an emergency. When
+    the decision centre falls silent it holds place and depth for a while, then surfaces by thrust, until a
+    goal is heard again.
+
+    Attributes:
+        motion: the state it goes by.
+        goal: that it is given; None: none yet.
+    """
+
+    name = MOVEMENT
+    period = COMMAND_PERIOD
+
+    def __init__(self, sheet: Sheet, codec: Codec) -> None:
+        self._sheet, self._codec = sheet, codec
+        self._abilities = abilities_of(sheet)
+        served = Allocation(sheet).served([True] * len(sheet.thrusters))
+        self._loops = Loops(self._abilities, served)
+        self._patience = sheet.extra.get("movement.patience", PATIENCE)
+        self._most = {
+            field.name: field.high for each in COMMON for field in each.fields if each.id in (0x80, 0x81)
+        }
+        self._hearers = by_id({
+            "Position": self._hear_state, "Depth": self._hear_depth, "Pose": self._hear_state,
+            "Velocity": self._hear_state, "Turning": self._hear_turning, "Current": self._hear_current,
+            "Reach": self._hear_reach, "GoalPlace": self._hear_place, "GoalPose": self._hear_pose,
+            "Emergency": self._hear_emergency,
+        })  # fmt: skip
+        self.motion = Motion()
+        self.goal: Goal | None = None
+        self._place: Received | None = None
+        self._guidance: Guidance | None = None
+        self._progress: Progress | None = None
+        self._emergency: str | None = None
+        self._fallback: str | None = None
+        self._trusted_at = self._goal_at = float("-inf")
+        self._began: float | None = None
+        self._due = {"Progress": 0.0, "Beat": 0.0}
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Take the state, a goal, or an emergency."""
+        hearer = self._hearers.get(frame.id)
+        if hearer is not None and (found := self._codec.decode(frame)) is not None:
+            hearer(found, now)
+
+    def tick(self, now: float) -> list[Frame]:
+        """Ask for a wrench; tell progress."""
+        self._began = now if self._began is None else self._began
+        self._look_after_decision(now)
+        wrench = self._wrench(now)
+        return [*self._asked(wrench), *self._tell(now)]
+
+    def _wrench(self, now: float) -> Array | None:
+        """Return what is asked for; None: no thrust."""
+        if self._emergency is not None or now - self._trusted_at > STATE_SILENT or self._guidance is None:
+            self._loops.reset()
+            return None
+        steers = not self._loops.served[1]
+        aim = self._guidance.aim(self.motion, steers, self.period)
+        if self._progress is not None:
+            self._progress.judge(self.motion, now, steers=steers)
+        return self._loops.wrench(aim, self.motion, self.period)
+
+    def _asked(self, wrench: Array | None) -> list[Frame]:
+        numbers = np.zeros(6) if wrench is None else wrench
+        asked = {
+            degree: min(max(float(number), -self._most[degree]), self._most[degree])
+            for degree, number in zip(DEGREES, numbers, strict=True)
+        }
+        force = {degree: asked[degree] for degree in DEGREES[:3]}
+        moment = {degree: asked[degree] for degree in DEGREES[3:]}
+        return [
+            self._codec.encode("WrenchForce", **force, Enable=wrench is not None),
+            self._codec.encode("WrenchMoment", **moment),
+        ]
+
+    def _look_after_decision(self, now: float) -> None:
+        """Hold, then surface, while no goal is heard that was heard before."""
+        if self.goal is None:
+            return
+        silent = now - self._goal_at
+        wanted = (
+            None if silent <= GOAL_SILENT else "HOLD" if silent <= GOAL_SILENT + self._patience else "SURFACE"
+        )
+        if wanted == self._fallback:
+            return
+        self._fallback = wanted
+        if wanted is None:
+            self._begin(self.goal, now)
+        elif self.goal.mode != "IDLE" or self.motion.depth > self._abilities.afloat:
+            here = self.motion
+            self._begin(
+                Goal(
+                    wanted,
+                    here.north,
+                    here.east,
+                    here.depth,
+                    here.heading,
+                    along=False,
+                    number=self.goal.number,
+                ),
+                now,
+            )
+
+    def _begin(self, goal: Goal, now: float) -> None:
+        """Go for a goal, from where the vehicle is now."""
+        if goal.mode == "IDLE":
+            self._guidance = self._progress = None
+            return
+        within = within_rating(goal, self._sheet)
+        self._guidance = Guidance(within, self.motion, self._sheet, self._abilities)
+        self._progress = Progress(self._guidance, self.motion, self._abilities, now)
+
+    def _tell(self, now: float) -> list[Frame]:
+        said = []
+        if now + 1e-6 >= self._due["Progress"]:
+            self._due["Progress"] = now + PROGRESS_PERIOD
+            said.append(self._told())
+        if now + 1e-6 >= self._due["Beat"]:
+            self._due["Beat"] = now + BEAT_PERIOD
+            uptime = now - (self._began or 0.0)
+            reason = self._emergency or ("COMMANDS_SILENT" if self._fallback else "NONE")
+            state = "RUNS" if reason == "NONE" else "FAILS_SAFE"
+            said.append(self._codec.encode("MovementBeat", State=state, Uptime=uptime, Reason=reason))
+        return said
+
+    def _told(self) -> Frame:
+        number = 0 if self.goal is None else self.goal.number
+        if self._progress is None:
+            return self._codec.encode("Progress", Goal=number, State="NONE", Distance=0.0)
+        state = "FAILED" if self._emergency else "ACTIVE" if self._fallback else self._progress.state
+        distance = self._progress.distance
+        within = min(distance, FARTHEST) if isfinite(distance) else FARTHEST
+        return self._codec.encode("Progress", Goal=number, State=state, Distance=within)
+
+    def _hear_state(self, found: Received, now: float) -> None:
+        self.motion = replace(
+            self.motion, **{name.lower(): float(value) for name, value in found.values.items()}
+        )
+
+    def _hear_depth(self, found: Received, now: float) -> None:
+        values = found.values
+        depth, uncertainty = float(values["Depth"]), float(values["Uncertainty"])
+        self.motion = replace(self.motion, depth=depth, uncertainty=uncertainty)
+        if values["Trusted"]:
+            self._trusted_at = now
+
+    def _hear_turning(self, found: Received, now: float) -> None:
+        roll, pitch, yaw = (float(found.values[name]) for name in ("Roll", "Pitch", "Yaw"))
+        self.motion = replace(self.motion, rolling=roll, pitching=pitch, yawing=yaw)
+
+    def _hear_current(self, found: Received, now: float) -> None:
+        north, east = float(found.values["North"]), float(found.values["East"])
+        self.motion = replace(self.motion, current_north=north, current_east=east)
+
+    def _hear_reach(self, found: Received, now: float) -> None:
+        self._loops.served = tuple(bool(found.values[degree]) for degree in DEGREES)
+        self._loops.limited = bool(found.values["Limited"])
+
+    def _hear_place(self, found: Received, now: float) -> None:
+        self._place = found
+
+    def _hear_pose(self, found: Received, now: float) -> None:
+        """Take a goal: its place came before with the same counter."""
+        place = self._place
+        if place is None or place.sequence != found.sequence:
+            return
+        goal = goal_of(place, found)
+        self._goal_at = now
+        if goal != self.goal:
+            self.goal = goal
+            if self._fallback is None:
+                self._begin(goal, now)
+
+    def _hear_emergency(self, found: Received, now: float) -> None:
+        self._emergency = self._emergency or str(found.values["Reason"])

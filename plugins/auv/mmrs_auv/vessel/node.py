@@ -1,0 +1,30 @@
+"""The parts of a vehicle that share its CAN bus."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from .wire.frame import Frame
+
+
+class Node(Protocol):
+    """A part that hears every frame of the others, and speaks when its time has come.
+
+    Nodes do not read clocks, wait or block: hosts call them, in real or in simulated time.
+
+    Attributes:
+        name: of the node, as in the bus's database.
+        period: seconds from one tick to the next.
+    """
+
+    name: str
+    period: float
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Take a frame of another node, in the order of the bus."""
+        ...
+
+    def tick(self, now: float) -> Sequence[Frame]:
+        """Do what is due at that time, seconds; return what it has to say."""
+        ...

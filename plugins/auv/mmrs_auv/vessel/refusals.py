@@ -1,0 +1,131 @@
+"""What makes a vehicle's data unfit for a bus, so that nothing is generated from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import hypot, isfinite
+from typing import Any
+
+from .sheet import Sheet, Thruster
+
+MOST_THRUSTERS, MOST_DEVICES = 32, 256
+LEAST_THRUST, MOST_THRUST = 0.01, 32767.0
+MOST_POWER, MOST_DEPTH, MOST_SPEED, MOST_PLACE = 6553.5, 8388.607, 5.1, 8388.607
+MOST_BIT_RATE, LEAST_WATCHDOG, MOST_WATCHDOG = 1_000_000, 0.1, 60.0
+LONGEST_NAME = 64
+"""Figures that do not fit are refused. Power, depth, speed and place: what the fields of messages hold."""
+
+
+class SheetError(ValueError):
+    """A bus cannot be made of a vehicle's data.
+
+    Attributes:
+        faults: one line for each, that begins with the place.
+    """
+
+    def __init__(self, faults: Sequence[str]) -> None:
+        super().__init__("; ".join(faults))
+        self.faults = tuple(faults)
+
+
+def refuse(sheet: Sheet) -> None:
+    """Return if a bus can be made of a vehicle's data.
+
+    Raises:
+        SheetError: if not; lists all that is wrong.
+    """
+    if faults := tuple(faults_of(sheet)):
+        raise SheetError(faults)
+
+
+def faults_of(sheet: Sheet) -> Iterator[str]:
+    """Yield all that is wrong with a vehicle's data, each with its place."""
+    yield from _name("robot", sheet.robot)
+    yield from _hull(sheet)
+    if len(sheet.thrusters) > MOST_THRUSTERS:
+        yield f"thrusters: {len(sheet.thrusters)}, there are identifiers for {MOST_THRUSTERS}"
+    for number, thruster in enumerate(sheet.thrusters):
+        place = f"thruster {number} ({thruster.id!r})"
+        yield from (f"{place}: {fault}" for fault in _thruster(thruster))
+    yield from _twice("thrusters", [thruster.id for thruster in sheet.thrusters])
+    if len(sheet.devices) > MOST_DEVICES:
+        yield f"devices: {len(sheet.devices)}, there are numbers for {MOST_DEVICES}"
+    for number, device in enumerate(sheet.devices):
+        yield from _name(f"device {number}", device)
+    yield from _twice("devices", sheet.devices)
+
+
+def _hull(sheet: Sheet) -> Iterator[str]:
+    for what in ("length", "width", "height", "mass", "water_density", "battery"):
+        yield from _number(what, getattr(sheet, what), above=0.0)
+    for what in ("drop_weight", "hotel"):
+        yield from _number(what, getattr(sheet, what), least=0.0)
+    yield from _number("weight_in_water", sheet.weight_in_water)
+    yield from _number("heading", sheet.heading)
+    yield from _number("speed", sheet.speed, above=0.0, most=MOST_SPEED)
+    yield from _number("max_depth", sheet.max_depth, above=0.0, most=MOST_DEPTH)
+    yield from _number("bit_rate", sheet.bit_rate, above=0.0, most=MOST_BIT_RATE)
+    yield from _number("watchdog", sheet.watchdog, least=LEAST_WATCHDOG, most=MOST_WATCHDOG)
+    yield from _vector("home", sheet.home, most=MOST_PLACE)
+    for key, value in sheet.extra.items():
+        yield from _number(f"extra {key!r}", value)
+
+
+def _thruster(thruster: Thruster) -> Iterator[str]:
+    yield from _name("id", thruster.id)
+    yield from _vector("position", thruster.position)
+    wrong = tuple(_vector("direction", thruster.direction))
+    yield from wrong
+    if not wrong and abs(hypot(*thruster.direction) - 1.0) > 1e-3:
+        yield f"direction: {thruster.direction} has the length {hypot(*thruster.direction):g}, not 1"
+    thrusts = [
+        fault
+        for what in ("operating_thrust", "max_thrust")
+        for fault in _number(what, getattr(thruster, what), least=LEAST_THRUST, most=MOST_THRUST)
+    ]
+    yield from thrusts
+    if not thrusts and thruster.operating_thrust > thruster.max_thrust:
+        yield f"operating_thrust: {thruster.operating_thrust!r} is more than max_thrust"
+    for what in ("operating_power", "max_power"):
+        yield from _number(what, getattr(thruster, what), least=0.0, most=MOST_POWER)
+    yield from _number("max_depth", thruster.max_depth, above=0.0)
+
+
+def _vector(what: str, value: Any, *, most: float | None = None) -> Iterator[str]:
+    if not isinstance(value, (tuple, list)) or len(value) != 3:
+        yield f"{what}: {value!r} is not three numbers"
+        return
+    for axis, each in enumerate(value):
+        yield from _number(f"{what}[{axis}]", each, least=None if most is None else -most, most=most)
+
+
+def _number(
+    what: str,
+    value: Any,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    most: float | None = None,
+) -> Iterator[str]:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
+        yield f"{what}: {value!r} is no finite number"
+    elif above is not None and value <= above:
+        yield f"{what}: {value!r} is not above {above:g}"
+    elif least is not None and value < least:
+        yield f"{what}: {value!r} is less than {least:g}"
+    elif most is not None and value > most:
+        yield f"{what}: {value!r} is more than {most:g}, the most that its messages carry"
+
+
+def _name(what: str, value: Any) -> Iterator[str]:
+    if not isinstance(value, str) or not value.strip():
+        yield f"{what}: {value!r} is no name"
+    elif len(value) > LONGEST_NAME:
+        yield f"{what}: {value!r} has more than {LONGEST_NAME} characters"
+    elif odd := sorted({each for each in value if not each.isprintable() or each in '"\\'}):
+        yield f"{what}: {value!r} has {', '.join(repr(each) for each in odd)}"
+
+
+def _twice(what: str, names: Sequence[str]) -> Iterator[str]:
+    for name in sorted({name for name in names if names.count(name) > 1}, key=str):
+        yield f"{what}: {name!r} is there {names.count(name)} times"

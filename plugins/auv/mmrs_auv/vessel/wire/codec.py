@@ -1,0 +1,169 @@
+"""From values to frames and back."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
+
+from ..sheet import Sheet
+from .catalogue import CHECK, SEQUENCE, Message, messages_of
+from .check import check_of
+from .database import database_of
+from .frame import Frame
+from .layout import Layout, Slot, layout_of
+
+if TYPE_CHECKING:
+    from cantools.database.can import Message as Entry
+
+Value: TypeAlias = float | str | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """What a frame says.
+
+    Attributes:
+        name: of the message.
+        values: by field: quantities as numbers, flags as booleans, named values as their names.
+        sequence: its counter; None: it is not guarded.
+    """
+
+    name: str
+    values: Mapping[str, Value]
+    sequence: int | None
+
+
+class Codec:
+    """The messages of one vehicle, as one node says and hears them.
+
+    Attributes:
+        faults: frames with a known identifier that say nothing that can be believed, by message.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        """Prepare for a vehicle's messages.
+
+        Raises:
+            SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
+        """
+        self.faults: Counter[str] = Counter()
+        database = database_of(sheet)
+        self._codings = {
+            message.name: _Coding(layout_of(message), database.get_message_by_name(message.name))
+            for message in messages_of(sheet)
+        }
+        self._by_id = {coding.message.id: coding for coding in self._codings.values()}
+
+    def encode(self, name: str, **values: Value) -> Frame:
+        """Return a frame that says so; one guarded counts on from the last of its message.
+
+        Quantities are rounded to the nearest step, halves away from zero.
+
+        Raises:
+            ValueError: there is no such message, a field is missing or unknown, or a value is out of range.
+        """
+        return self._coding(name).frame(values)
+
+    def check(self, name: str, **values: Value) -> None:
+        """Return if `encode` would say so; nothing is said, and nothing counted.
+
+        Raises:
+            ValueError: as `encode`.
+        """
+        self._coding(name).raw(values)
+
+    def decode(self, frame: Frame) -> Received | None:
+        """Return what a frame says; None: it is none of this bus, or cannot be believed (see `faults`)."""
+        coding = None if frame.extended else self._by_id.get(frame.id)
+        if coding is None:
+            return None
+        found = coding.received(frame.data)
+        if found is None:
+            self.faults[coding.message.name] += 1
+        return found
+
+    def _coding(self, name: str) -> _Coding:
+        if name not in self._codings:
+            raise ValueError(f"there is no message {name!r} on this bus")
+        return self._codings[name]
+
+
+class _Coding:
+    """How one message is put into bytes and taken from them."""
+
+    def __init__(self, layout: Layout, entry: Entry) -> None:
+        self.message: Message = layout.message
+        self._length = layout.length
+        self._slots = layout.slots
+        self._own = {name: slot for name, slot in layout.slots.items() if name not in (SEQUENCE, CHECK)}
+        self._entry = entry
+        self._sequence = 255
+
+    def raw(self, values: Mapping[str, Value]) -> dict[str, int]:
+        if values.keys() != self._own.keys():
+            self._refuse_fields(values)
+        return {name: self._raw(slot, values[name]) for name, slot in self._own.items()}
+
+    def frame(self, values: Mapping[str, Value]) -> Frame:
+        raw = self.raw(values)
+        if not self.message.guarded:
+            return Frame(self.message.id, self._packed(raw))
+        self._sequence = (self._sequence + 1) % 256
+        data = self._packed(raw | {SEQUENCE: self._sequence, CHECK: 0})[:-1]
+        return Frame(self.message.id, data + bytes((check_of(self.message.id, data),)))
+
+    def received(self, data: bytes) -> Received | None:
+        if len(data) != self._length:
+            return None
+        if self.message.guarded and check_of(self.message.id, data[:-1]) != data[-1]:
+            return None
+        raw: Any = self._entry.decode(data, decode_choices=False, scaling=False)
+        values: dict[str, Value] = {}
+        for name, slot in self._own.items():
+            number = int(raw[name])
+            if not slot.low <= number <= slot.high:
+                return None
+            values[name] = _meaning(slot, number)
+        return Received(self.message.name, values, int(raw[SEQUENCE]) if self.message.guarded else None)
+
+    def _packed(self, raw: Mapping[str, int]) -> bytes:
+        data: bytes = self._entry.encode(dict(raw), scaling=False, strict=False)
+        return data
+
+    def _raw(self, slot: Slot, value: Value) -> int:
+        field = slot.field
+        if field.names:
+            if value not in field.names:
+                raise ValueError(self._about(slot, value, f"expected one of {', '.join(field.names)}"))
+            return field.names.index(value)
+        if isinstance(value, str) or not isfinite(value) or not field.low <= value <= field.high:
+            wanted = f"{field.low:g} to {field.high:g}"
+            raise ValueError(self._about(slot, value, f"expected {wanted} {field.unit}".rstrip()))
+        return min(max(_nearest(value / field.scale), slot.low), slot.high)
+
+    def _about(self, slot: Slot, value: Value, wanted: str) -> str:
+        return f"{self.message.name}.{slot.field.name}: {value!r}: {wanted}"
+
+    def _refuse_fields(self, values: Mapping[str, Value]) -> NoReturn:
+        missing, unknown = self._own.keys() - values.keys(), values.keys() - self._own.keys()
+        said = [f"{name} is missing" for name in sorted(missing)]
+        said += [f"there is no field {name}" for name in sorted(unknown)]
+        raise ValueError(f"{self.message.name}: {', '.join(said)}")
+
+
+def _nearest(number: float) -> int:
+    """Return the nearest whole number, halves away from zero, as C's lround and Ada's rounding have it."""
+    whole = int(number)
+    if abs(number - whole) >= 0.5:
+        return whole + (1 if number > 0 else -1)
+    return whole
+
+
+def _meaning(slot: Slot, number: int) -> Value:
+    field = slot.field
+    if field.names:
+        return field.names[number]
+    return bool(number) if field.bits == 1 else number * field.scale

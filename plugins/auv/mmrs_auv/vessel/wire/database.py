@@ -1,0 +1,107 @@
+"""The database (DBC) of a vehicle's bus, for everybody else's tools."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import TYPE_CHECKING
+
+from ..refusals import MOST_THRUSTERS
+from ..sheet import Sheet
+from .catalogue import COMMAND_BASE, EMERGENCY_ID, NODES, Message, messages_of
+from .layout import Layout, Slot, layout_of
+
+if TYPE_CHECKING:
+    from cantools.database import Database
+    from cantools.database.can import Message as Entry
+    from cantools.database.can import Signal
+    from cantools.database.can.formats.dbc.dbc_attribute_definition import DbcAttributeDefinition
+
+WATCHDOG = "WatchdogTime"
+"""Attribute of messages: milliseconds without a valid one after which the drives that obey it stop."""
+
+
+def database_of(sheet: Sheet) -> Database:
+    """Return the database of a vehicle's bus.
+
+    Raises:
+        SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
+    """
+    from cantools.database import Database
+    from cantools.database.can import Bus, Node
+    from cantools.database.can.formats.dbc.dbc_attribute_definition import DbcAttributeDefinition
+    from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
+
+    watchdog = DbcAttributeDefinition(WATCHDOG, 0, "BO_", "INT", 0, 65535)
+    entries = [_entry(layout_of(message), sheet, watchdog) for message in messages_of(sheet)]
+    return Database(
+        entries,
+        [Node(name) for name in NODES],
+        [Bus("", baudrate=int(sheet.bit_rate))],
+        version=_ascii(sheet.robot),
+        dbc_specifics=DbcSpecifics(attribute_definitions=OrderedDict({WATCHDOG: watchdog})),
+    )
+
+
+def dbc_of(sheet: Sheet) -> str:
+    """Return the text of a vehicle's DBC, in ASCII.
+
+    Raises:
+        SheetError: as `database_of`.
+    """
+    text: str = database_of(sheet).as_dbc_string()
+    return text.replace("\r\n", "\n")
+
+
+def _entry(layout: Layout, sheet: Sheet, watchdog: DbcAttributeDefinition[int]) -> Entry:
+    from cantools.database.can import Message as Entry
+    from cantools.database.can.formats.dbc.dbc_attribute import DbcAttribute
+    from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
+
+    message = layout.message
+    limit = _patience(message, sheet)
+    attributes = {WATCHDOG: DbcAttribute(round(limit * 1000), watchdog)} if limit else {}
+    return Entry(
+        message.id,
+        message.name,
+        layout.length,
+        [_signal(slot, message) for slot in layout.slots.values()],
+        senders=_senders(message),
+        cycle_time=None if message.period is None else round(message.period * 1000),
+        comment=_ascii(message.comment) or None,
+        dbc_specifics=DbcSpecifics(attributes=OrderedDict(attributes)),
+    )
+
+
+def _senders(message: Message) -> list[str]:
+    others = [node for node in NODES if node != message.sender]
+    return [message.sender, *others] if message.id == EMERGENCY_ID else [message.sender]
+
+
+def _patience(message: Message, sheet: Sheet) -> float:
+    """Return the seconds without this message after which a thruster's drive stops; 0: it goes by another."""
+    return sheet.watchdog if COMMAND_BASE <= message.id < COMMAND_BASE + MOST_THRUSTERS else 0.0
+
+
+def _signal(slot: Slot, message: Message) -> Signal:
+    from cantools.database.can import Signal
+    from cantools.database.conversion import BaseConversion
+
+    field = slot.field
+    choices = dict(enumerate(field.names)) or None
+    return Signal(
+        field.name,
+        slot.start,
+        field.bits,
+        is_signed=field.signed,
+        conversion=BaseConversion.factory(field.scale, 0, choices),  # type: ignore[arg-type]
+        minimum=round(slot.low * field.scale, 9),
+        maximum=round(slot.high * field.scale, 9),
+        unit=field.unit or None,
+        receivers=[node for node in NODES if node not in _senders(message)] or list(NODES),
+        comment=_ascii(field.comment) or None,
+    )
+
+
+def _ascii(text: str) -> str:
+    """Return a text for files that may be read in any of the encodings that DBC files are found in."""
+    return text.encode("ascii", "backslashreplace").decode("ascii")

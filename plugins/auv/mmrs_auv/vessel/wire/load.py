@@ -1,0 +1,156 @@
+"""How busy a vehicle's bus is: as designed, and as it was heard."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import ceil, floor
+
+from ..sheet import Sheet
+from .catalogue import Message, messages_of
+from .frame import Frame
+from .layout import layout_of
+from .stuffing import length_of, longest, shortest
+
+_ROUNDING = 1e-6
+"""Part of a window by which a time may come before it and still count in it: times are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What a message takes of the bus.
+
+    Attributes:
+        period: seconds between two of them; None: it is only sent when there is something to say.
+        shortest, longest: bits without any stuff bit, and with as many as there can be.
+        latest: seconds after which it is on the bus and over at the latest, if all are sent as often as
+            they are to be, none is repeated, and nodes say them when they are due; None: no limit is known.
+    """
+
+    name: str
+    id: int
+    period: float | None
+    shortest: int
+    longest: int
+    latest: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """How busy a bus is by design; parts of its time.
+
+    Attributes:
+        least, most: without any stuff bit, and with as many as there can be.
+        shares: of the messages, by identifier.
+    """
+
+    bit_rate: int
+    least: float
+    most: float
+    shares: tuple[Share, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """How busy a bus was, by the stuff bits of the frames that were heard; parts of its time.
+
+    Attributes:
+        mean: over all the time.
+        median, high: of all windows, and the 99th percentile.
+        peak: of the busiest window.
+        stuffing: stuff bits in a hundred others.
+    """
+
+    frames: int
+    seconds: float
+    window: float
+    mean: float
+    median: float
+    high: float
+    peak: float
+    stuffing: float
+
+
+def load_of(sheet: Sheet) -> Load:
+    """Return how busy a vehicle's bus is if all messages with a period are sent as often as that.
+
+    Raises:
+        SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
+    """
+    messages = messages_of(sheet)
+    lengths = [layout_of(message).length for message in messages]
+    least = sum(shortest(n) / m.period for n, m in zip(lengths, messages, strict=True) if m.period)
+    most = sum(longest(n) / m.period for n, m in zip(lengths, messages, strict=True) if m.period)
+    shares = tuple(
+        Share(
+            m.name,
+            m.id,
+            m.period,
+            shortest(n),
+            longest(n),
+            _latest(number, messages, lengths, sheet.bit_rate),
+        )
+        for number, (m, n) in enumerate(zip(messages, lengths, strict=True))
+    )
+    return Load(sheet.bit_rate, least / sheet.bit_rate, most / sheet.bit_rate, shares)
+
+
+def _latest(number: int, messages: Sequence[Message], lengths: Sequence[int], rate: float) -> float | None:
+    """Return by when a message is over in the worst case.
+
+    It waits for the longest frame that may just have begun, and for all with lower identifiers that come
+    meanwhile (Davis, Burns, Bril and Lukkien 2007, equations 3 to 5, their sufficient form). Messages
+    without a period are not reckoned with: they are few.
+    """
+    own = longest(lengths[number]) / rate
+    blocking = max(longest(length) for length in lengths[number:]) / rate
+    before = [
+        (longest(length) / rate, message.period)
+        for length, message in zip(lengths[:number], messages[:number], strict=True)
+        if message.period
+    ]
+    limit = max(message.period or 0.0 for message in messages)
+    waiting, last = blocking, -1.0
+    while waiting != last:
+        if waiting > limit:
+            return None
+        last = waiting
+        waiting = blocking + sum(ceil((last + 1.0 / rate) / period) * each for each, period in before)
+    return waiting + own
+
+
+def heard_load(frames: Iterable[tuple[float, Frame]], bit_rate: int, window: float = 0.1) -> Heard | None:
+    """Return how busy a bus was.
+
+    Args:
+        frames: with the times in seconds at which they were heard, in order.
+        bit_rate: that the bus has or, if it is a hub, would have.
+        window: seconds.
+
+    Returns:
+        None if there are not two frames at different times.
+    """
+    windows: dict[int, int] = {}
+    count = bits = plain = 0
+    first = last = None
+    for time, frame in frames:
+        first = time if first is None else first
+        last = time
+        length = length_of(frame)
+        number = floor((time - first) / window + _ROUNDING)
+        windows[number] = windows.get(number, 0) + length
+        count, bits = count + 1, bits + length
+        plain += shortest(len(frame.data), frame.extended)
+    if first is None or last is None or last <= first:
+        return None
+    whole = max(1, floor((last - first) / window + _ROUNDING))
+    shares = sorted(windows.get(each, 0) / (bit_rate * window) for each in range(whole))
+    return Heard(
+        count, last - first, window, bits / bit_rate / (last - first),
+        _part(shares, 0.5), _part(shares, 0.99), shares[-1], 100.0 * (bits - plain) / plain,
+    )  # fmt: skip
+
+
+def _part(values: Sequence[float], part: float) -> float:
+    """Return the value below which that part of the sorted ones is, by nearest rank."""
+    return values[max(0, ceil(part * len(values)) - 1)]

@@ -1,0 +1,35 @@
+"""Where in the water, and by what name, a camera has seen something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import dist
+
+from ..vessel.eyes import Detection
+from ..vessel.sheet import Vector
+from .cameras import Camera, Pose
+from .detecting import Sighting, Sought
+
+
+def detections_of(sightings: Iterable[Sighting], camera: Camera, pose: Pose, time: float) -> list[Detection]:
+    """Return what is told of sightings; each name at most once, the surest first.
+
+    Args:
+        pose: where the vehicle believed to be when the pictures were taken, at `time`.
+    """
+    found: dict[str, Detection] = {}
+    for each in sorted(sightings, key=lambda each: -each.confidence):
+        place = camera.world(each.point, pose)
+        name = name_of(each.matches, place)
+        if name is not None and name not in found:
+            found[name] = Detection(time, name, each.confidence, *place, camera.name)
+    return list(found.values())
+
+
+def name_of(matches: Iterable[Sought], place: Vector) -> str | None:
+    """Return which of things that look the same is at a place; None where nothing tells them apart."""
+    known = list(matches)
+    if len(known) == 1:
+        return known[0].name
+    expected = [(dist(each.place, place), each.name) for each in known if each.place is not None]
+    return min(expected)[1] if len(expected) == len(known) else None

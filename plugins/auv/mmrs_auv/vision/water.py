@@ -1,0 +1,64 @@
+"""How water changes colours, and the colours that things have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from .cameras import Numbers
+
+PALETTE: Final = {
+    "red": (205, 35, 30),
+    "orange": (245, 125, 20),
+    "yellow": (240, 215, 35),
+    "green": (35, 170, 55),
+    "blue": (30, 60, 190),
+    "white": (235, 235, 230),
+    "black": (20, 20, 20),
+    "grey": (128, 128, 128),
+}
+"""Red, green, blue of things in air."""
+
+TOLD_APART = ("red", "orange", "yellow", "green")
+"""Colours that stand out from water and bottom, and that detections tell from each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Water:
+    """What water does to light on its way to an eye.
+
+    Attributes:
+        attenuation: of blue, green and red, per metre.
+        veil: blue, green and red that water itself looks like, from afar.
+    """
+
+    attenuation: tuple[float, float, float] = (0.09, 0.10, 0.22)
+    veil: tuple[float, float, float] = (135.0, 95.0, 25.0)
+
+    def left(self, metres: Numbers) -> Numbers:
+        """Return the part of each colour that is left after a way; another axis for the colours."""
+        found: Numbers = np.exp(-metres[..., None] * np.array(self.attenuation))
+        return found
+
+    def seen(self, colour: Numbers, metres: Numbers) -> Numbers:
+        """Return what colours (blue, green, red last) look like from so far."""
+        left = self.left(metres)
+        found: Numbers = colour * left + np.array(self.veil) * (1.0 - left)
+        return found
+
+
+POOL: Final = Water()
+
+
+def hazier(water: Water, times: float) -> Water:
+    """Return water that is so many times as hazy."""
+    blue, green, red = water.attenuation
+    return Water((times * blue, times * green, times * red), water.veil)
+
+
+def bgr(name: str) -> Numbers:
+    """Return blue, green and red of a colour; of one that is not in the palette: grey."""
+    red, green, blue = PALETTE.get(name, PALETTE["grey"])
+    return np.array((blue, green, red), dtype=float)

@@ -1,0 +1,208 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import dist
+from pathlib import Path
+
+import pytest
+from dives import POOL, dive, rehearse, swim
+from mmrs_auv.backend.rehearsed import RehearsedRobot
+from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
+
+from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.contributions.execution import Condition
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.scene import Area, AreaUse, Policy
+from mmrs_core.testing.programs import feedback, move, notify, program, robot_program, take_off, use
+
+SAMPLE = use("ctd", "Sample")
+BUOY_NAME = "red buoy"
+AFLOAT = 0.4
+"""Metres less deep than which the vehicle is at the surface; it floats at 0.2 m."""
+
+
+def at(robot: RehearsedRobot) -> tuple[float, float, float]:
+    truth = robot.stage.vehicle.truth
+    return truth.east, truth.north, truth.depth
+
+
+def test_every_move_and_action_is_carried_out(tmp_path: Path) -> None:
+    look = Heading(Target((5.0, 0.0, -1.5)), angle_degrees=90.0)
+    out = swim("out", 3.0, 2.0, 1.5, after=(SAMPLE, feedback("there", ("depth", "1.5"))))
+    stay = move("stay", "HoldPosition", duration=5.0)
+    turn = replace(move("turn", "HeadTo"), heading=look)
+    found = rehearse(dive(out, stay, turn, swim("near", 3.0, 4.0, 1.0, distance=0.5)), tmp_path)
+
+    robot = found.robots["naiad"]
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert found.accepted
+    assert [each.device for each in robot.stage.vehicle.devices.operations] == [2]
+    times = {(each.label, each.move): each.time for each in found.run.records}
+    assert times["end", "stay"] - times["begin", "stay"] == pytest.approx(5.0, abs=0.25)
+    assert times["begin", "stay"] - times["end", "out"] >= 2.0
+    track = [(each.east, each.north, each.up) for each in found.run.tracks["naiad"]]
+    assert min(dist(each, (3.0, 2.0, -1.5)) for each in track) < 0.4
+    assert dist(at(robot), (3.0, 3.5, 1.0)) < 0.8
+
+
+def test_a_turn_points_where_it_is_to(tmp_path: Path) -> None:
+    look = Heading(Target((10.0, 0.0, -0.5)))
+    found = rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path, noise="no")
+    assert found.robots["naiad"].stage.vehicle.truth.heading == pytest.approx(90.0, abs=6.0)
+
+
+def test_moves_that_flow_do_not_stop(tmp_path: Path) -> None:
+    moves = [swim(f"m{n}", 2.0 * n, 0.0, 1.0, flows=True) for n in (1, 2, 3)]
+    fluid = {index: Transition(index, index + 1, fluid=True) for index in (1, 2)}
+    stops = rehearse(dive(*moves), tmp_path / "stops")
+    flows = rehearse(dive(*moves, transitions=fluid), tmp_path / "flows")
+    assert flows.accepted
+    assert flows.run.ending.time < stops.run.ending.time - 2.0
+
+
+Meddle = Callable[[RehearsedRobot], None]
+
+
+def leak(robot: RehearsedRobot) -> None:
+    robot.stage.vehicle.faults.leak = True
+
+
+def empty(robot: RehearsedRobot) -> None:
+    robot.stage.vehicle.charge *= 0.1
+
+
+@pytest.mark.parametrize(
+    ("meddle", "event"), [(leak, "CRASHED"), (empty, "BATTERY_LOW")], ids=["leak", "battery"]
+)
+def test_whatever_goes_wrong_the_vehicle_comes_up(tmp_path: Path, meddle: Meddle, event: str) -> None:
+    def under_way(robot: RehearsedRobot) -> None:
+        look = robot._look
+
+        def meddled(now: float) -> None:
+            look(now)
+            if now > 8.0:
+                meddle(robot)
+                robot._look = look  # type: ignore[method-assign]
+
+        robot._look = meddled  # type: ignore[method-assign]
+
+    found = rehearse(dive(swim("out", 12.0, 0.0, 2.0)), tmp_path, under_way)
+    assert found.fault == event
+    assert found.accepted
+    assert at(found.robots["naiad"])[2] < AFLOAT
+    assert list(found.run.ending.responses.values()) == ["SURFACE"]
+
+
+def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
+    def deafen(robot: RehearsedRobot) -> None:
+        hear = robot.stage.craft.hear
+        robot.stage.craft.hear = lambda frame, now: hear(frame, now) if now < 5.0 else None  # type: ignore
+
+    found = rehearse(dive(swim("out", 12.0, 0.0, 2.0)), tmp_path, deafen)
+    assert found.fault == "LINK_LOST"
+    assert list(found.run.ending.responses.values()) == ["SURFACE"]
+    assert at(found.robots["naiad"])[2] < AFLOAT
+
+
+def test_policies_of_the_program_count(tmp_path: Path) -> None:
+    shore = Area("shore", AreaUse.EMERGENCY, ((-9.0, -3.0), (-3.0, -3.0), (-3.0, 3.0), (-9.0, 3.0)))
+    behaviour = dive(swim("out", 6.0, 0.0, 1.0, after=(use("ctd", "Bake"),)))
+    robot = replace(behaviour.robots[0], policies=(Policy("DEVICE_SILENT", "EMERGENCY_AREA"),))
+    found = rehearse(replace(behaviour, robots=(robot,)), tmp_path, areas=(shore,))
+    assert found.fault == "DEVICE_SILENT"
+    east, _, depth = at(found.robots["naiad"])
+    assert east < -2.5
+    assert depth < AFLOAT
+
+    borne = replace(behaviour.robots[0], policies=(Policy("DEVICE_SILENT", "CONTINUE"),))
+    goes_on = rehearse(replace(behaviour, robots=(borne,)), tmp_path / "borne", areas=(shore,))
+    assert goes_on.run.ending.outcome is Outcome.SUCCESS
+
+
+def buoy_at(folder: Path, east: float) -> str:
+    file = folder / "pool.json"
+    things = (Thing(BUOY, BUOY_NAME, 0.0, east, 1.5, colour="red", size=0.3),)
+    file.write_text(to_json(Surroundings(bottom=4.0, things=things)))
+    return str(file)
+
+
+def test_objects_are_gone_to_where_they_are_seen(tmp_path: Path) -> None:
+    target = Target((6.0, 0.0, -1.5), BUOY_NAME, 2.0)
+    go = replace(swim("buoy", 0.0, 0.0, 0.0), target=target, distance=1.0)
+    found = rehearse(dive(go), tmp_path / "a", objects="seen", surroundings=buoy_at(tmp_path, 7.2))
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert at(found.robots["naiad"])[0] == pytest.approx(6.2, abs=0.6)
+    far = rehearse(dive(go), tmp_path / "b", objects="seen", surroundings=buoy_at(tmp_path, 9.0))
+    assert far.fault == "OBJECT_NOT_FOUND"
+
+
+def test_objects_are_found_in_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("cv2")
+    target = Target((5.0, 0.0, -1.5), BUOY_NAME, 1.5)
+    go = replace(swim("buoy", 0.0, 0.0, 0.0), target=target, distance=1.0)
+    around = buoy_at(tmp_path, 5.8)
+    found = rehearse(dive(go), tmp_path / "a", objects="cameras", surroundings=around, heading="90")
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert at(found.robots["naiad"])[0] == pytest.approx(4.8, abs=0.6)
+
+
+def test_choices_know_what_was_seen(tmp_path: Path) -> None:
+    ways = {1: Transition(1, 2, condition="sees", otherwise=3), 2: Transition(2, 3)}
+    sees = Condition("sees", lambda state: BUOY_NAME in state.detected)
+    behaviour = dive(swim("out", 2.0, 0.0, 1.0), swim("on", 3.0, 0.0, 1.0), transitions=ways)
+    for east, moves in ((5.0, 4), (30.0, 3)):
+        folder = tmp_path / f"{east}"
+        folder.mkdir()
+        found = rehearse(
+            behaviour,
+            folder / "logs",
+            conditions={"sees": sees},
+            surroundings=buoy_at(folder, east),
+            heading="90",
+        )
+        assert found.accepted
+        assert sum(each.label == "begin" for each in found.run.records) == moves
+
+
+def test_two_vehicles_keep_their_slots(tmp_path: Path) -> None:
+    first = robot_program(
+        "one",
+        [swim("a", 2.0, 0.0, 1.0, after=(notify(("two", "go")),))],
+        home=(0.0, 0.0, -0.5),
+        type_name="Pool AUV",
+    )
+    second = robot_program(
+        "two",
+        [swim("b", 2.0, 5.0, 1.0)],
+        home=(0.0, 5.0, -0.5),
+        slots=("go",),
+        transitions={0: Transition(0, 1, waits=("go",))},
+        type_name="Pool AUV",
+    )
+    found = rehearse(program(first, second, name="pair", frame=POOL), tmp_path)
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert found.accepted
+    told = next(each.time for each in found.run.records if each.label == "ntf")
+    assert next(each.time for each in found.run.records if each.move == "b") >= told
+
+
+def test_the_same_seed_gives_the_same_run(tmp_path: Path) -> None:
+    behaviour = dive(swim("out", 2.0, 1.0, 1.0))
+    runs = [rehearse(behaviour, tmp_path / f"{n}", seed=seed) for n, seed in enumerate("778")]
+    ends = [at(each.robots["naiad"]) for each in runs]
+    assert ends[0] == ends[1] != ends[2]
+
+
+def test_what_cannot_be_done_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UnsupportedError, match="has none of that name"):
+        rehearse(dive(), tmp_path, depth="3")
+    with pytest.raises(UnsupportedError, match="north is not NORTH,EAST"):
+        rehearse(dive(), tmp_path, current="north")
+    with pytest.raises(UnsupportedError):
+        rehearse(dive(take_off("up", 3.0)), tmp_path)
+    nowhere = replace(swim("x", 0.0, 0.0, 1.0), target=Target(None, "wreck", None))
+    with pytest.raises(UnsupportedError) as refused:
+        rehearse(dive(nowhere), tmp_path)
+    assert "'x'" in str(refused.value.elements)

@@ -1,0 +1,60 @@
+"""What the plug-in's page says of the simulated vehicle is so."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mmrs_auv.testing import pool_sheet
+from mmrs_auv.vessel.body.surroundings import Surroundings
+from mmrs_auv.vessel.body.vehicle import Vehicle
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.codec import Codec
+
+PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+TABLE = PAGE[PAGE.index("## The vehicle in simulation") :]
+
+
+def said_keys() -> list[str]:
+    keys = []
+    for row in re.findall(r"^\| (`.*?) \|", TABLE, re.MULTILINE):
+        for key in re.findall(r"`([^`]+)`", row):
+            keys.append(keys[-1].rsplit(".", 1)[0] + key if key.startswith(".") else key)
+    return keys
+
+
+class Watched(dict):
+    """Values of a sheet that remember which of them somebody asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked: set[str] = set()
+
+    def get(self, key, default=None):
+        self.asked.add(key)
+        return super().get(key, default)
+
+
+def test_the_page_names_all_that_a_sheet_may_say_of_the_body():
+    extra = Watched()
+    sheet: Sheet = replace(pool_sheet(), extra=extra)
+    vehicle = Vehicle(sheet, Codec(sheet), Surroundings())
+    command = Codec(sheet).encode("DeviceCommand", Device=0, Action=0, Parameter=0.0, Request=1)
+    vehicle.hear(command, 0.0)
+    vehicle.hear(Codec(sheet).encode("DeviceCommand", Device=1, Action=0, Parameter=0.0, Request=1), 0.0)
+    instruments = ("pressure.", "rates.", "attitude.", "heading.", "acceleration.", "log.", "fix.", "start.")
+
+    asked = {key for key in extra.asked if not key.startswith(instruments)}
+
+    spread = {"linear_drag.sway", "linear_drag.heave", "linear_drag.roll", "linear_drag.pitch"}
+    assert asked == set(said_keys()) | spread
+
+
+@pytest.mark.parametrize("key", ["munk", "righting_arm", "linear_drag.yaw", "thruster.lag"])
+def test_a_negative_value_is_refused_with_its_name(key):
+    sheet = pool_sheet(**{key: -1.0})
+
+    with pytest.raises(ValueError, match=key.replace(".", r"\.")):
+        Vehicle(sheet, Codec(sheet))

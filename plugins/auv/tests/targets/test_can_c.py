@@ -1,0 +1,229 @@
+from __future__ import annotations
+
+import signal
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from c_drives import STRICT, Compared, compiled, happenings, need_compiler, told, written
+from can_hub import Raw, running
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mmrs_auv.targets.can_c.target import CAN_C
+from mmrs_auv.targets.can_c.words import block, number
+from mmrs_auv.vessel.wire.check import check_of
+from mmrs_auv.vessel.wire.codec import Codec
+from mmrs_auv.vessel.wire.frame import Frame
+from vessel_sheets import sheet, sheets, thruster
+
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.capabilities.probes import plain
+from mmrs_core.generation.render import render
+
+HOSTILE = (
+    '*/ int x = "; /*',
+    "/*/",
+    "??/",
+    "*??/ /",
+    "ünï ☃ 名",
+    "#include <x>",
+    "%n%s",
+    "//",
+    "'",
+    "*" * 64,
+)
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    return compiled(sheet(3), tmp_path_factory.mktemp("three"), "-fsanitize=undefined,address")
+
+
+def agree(program, compared):
+    assert told(program, compared.script) == compared.expected
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(4, 60))]
+)
+def test_drives_do_what_those_of_the_simulated_vehicle_do(three, seed):
+    compared = happenings(sheet(3), seed, 8.0)
+    agree(three, compared)
+    states = {line[-6:-4] for lines in compared.expected for line in lines if line.startswith("s")}
+    assert len(states) >= 3, "the script must bring about most states"
+
+
+@pytest.mark.thorough
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(vehicle=sheets().filter(lambda each: each.thrusters), seed=st.integers(0, 999))
+def test_drives_of_any_vehicle_do(vehicle, seed, tmp_path_factory):
+    program = compiled(vehicle, tmp_path_factory.mktemp("any"))
+    agree(program, happenings(vehicle, seed, 2.0))
+
+
+@pytest.mark.parametrize("most", [0.01, 7.77, 32767.0])
+def test_drives_say_what_they_draw_at_any_thrust(most, tmp_path):
+    vehicle = sheet(0, thrusters=(thruster(0, operating_thrust=most, max_thrust=most),))
+    program = compiled(vehicle, tmp_path)
+    agree(program, happenings(vehicle, 1, 3.0, emergencies=False))
+
+
+def test_a_command_is_obeyed_until_its_watchdog_runs_out(three):
+    compared, codec = Compared(sheet(3)), Codec(sheet(3))
+    for at in (0, 5, 10):
+        compared.hear(at, codec.encode("Thruster1Command", Thrust=20.0, Enable=True))
+    for at in range(10, 80, 5):
+        compared.tick(at)
+    agree(three, compared)
+    pushes = ["o 1 20" in lines for lines in told(three, compared.script)]
+    assert pushes == [False, True, True, *[True] * 10, *[False] * 4]
+
+
+def test_one_frame_for_ever_moves_nothing(three):
+    compared = Compared(sheet(3))
+    frame = Codec(sheet(3)).encode("Thruster0Command", Thrust=20.0, Enable=True)
+    for at in range(0, 300, 5):
+        compared.hear(at, frame)
+    agree(three, compared)
+    assert all("o 0 0" in lines for lines in told(three, compared.script))
+
+
+def test_an_emergency_stops_all_for_good_and_drops_the_weight_once(three):
+    compared, codec = Compared(sheet(3)), Codec(sheet(3))
+    for at in range(0, 100, 5):
+        compared.hear(at, codec.encode("Thruster0Command", Thrust=-9.0, Enable=True))
+        if at in (20, 40):
+            compared.hear(at, codec.encode("Emergency", Reason="LEAK", Release=True))
+    agree(three, compared)
+    lines = told(three, compared.script)
+    assert sum(each.count("r") for each in lines) == 1
+    assert "o 0 -9" in lines[4]
+    assert all("o 0 0" in each for each in lines[5:])
+
+
+def test_an_emergency_for_no_reason_that_is_known_stops_nothing(three):
+    compared, codec = Compared(sheet(3)), Codec(sheet(3))
+    sound = codec.encode("Emergency", Reason="LEAK", Release=True)
+    data = bytes([200, *sound.data[1:-1]])
+    for at in range(0, 100, 5):
+        compared.hear(at, codec.encode("Thruster0Command", Thrust=-9.0, Enable=True))
+        compared.hear(at, Frame(sound.id, data + bytes([check_of(sound.id, data)])))
+    agree(three, compared)
+    assert "o 0 -9" in told(three, compared.script)[-1]
+
+
+def test_any_thruster_may_have_any_name(tmp_path):
+    need_compiler()
+    names = [name for name in HOSTILE if not set('"\\') & set(name)]
+    vehicle = sheet(0, robot="*/ #error /*", thrusters=tuple(thruster(i, id=n) for i, n in enumerate(names)))
+    made = written(vehicle, tmp_path)
+    done = subprocess.run(["make", "-C", str(made)], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_comment_ends_where_it_is_to_end(name, tmp_path):
+    need_compiler()
+    source = tmp_path / "x.c"
+    source.write_text(f"/* {block(name)} */\nextern int x;\nint x = 1;\n")
+    words = ["gcc", *STRICT, "-pedantic", "-c", str(source), "-o", str(tmp_path / "x.o")]
+    assert subprocess.run(words, capture_output=True, timeout=60).stderr == b""
+
+
+@given(st.text())
+def test_no_text_ends_a_comment(text):
+    shown = block(text)
+    assert shown.isascii()
+    assert shown.isprintable()
+    assert not [ends for ends in ("*/", "/*", "??/") if ends in shown]
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", True, None])
+def test_what_is_no_number_in_c_is_refused(value):
+    with pytest.raises(ValueError, match="is no number in C"):
+        number(value)
+
+
+def test_a_robot_without_thrusters_on_a_bus_is_refused():
+    with pytest.raises(UnsupportedError) as refusal:
+        render(CAN_C, plain("rover"))
+    assert refusal.value.elements[0] == "robot 'alpha': is no underwater vehicle"
+    given = plain("sub")
+    with pytest.raises(UnsupportedError, match="type 'Kind' is not known"):
+        render(CAN_C, replace(given, types={}))
+
+
+def test_what_is_the_users_is_said_to_be_so():
+    files = {file.path: file for file in render(CAN_C, plain("sub"))}
+    assert [path for path, file in files.items() if file.once] == ["drives_alpha/outputs.c"]
+    assert files["drives_alpha/outputs.c"].asks
+    assert "drives_alpha/" in files["README.md"].content.decode()
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory) -> Path:
+    need_compiler()
+    made = written(sheet(2), tmp_path_factory.mktemp("program"))
+    subprocess.run(["make", "-C", str(made)], check=True, capture_output=True, timeout=120)
+    return made / "drives"
+
+
+def statuses(client, codec, wanted):
+    """Hear until a status of the first thruster is as wanted; return it."""
+    for _ in range(2000):
+        heard = codec.decode(_frame(client.word()))
+        if heard is not None and heard.name == "Thruster0Status" and wanted(heard.values):
+            return heard.values
+    raise AssertionError("no such status")
+
+
+def _frame(word):
+    _, _, id, _, *data = word.split()
+    octets = bytes.fromhex(data[0]) if data[0] != ">" else b""
+    return Frame(int(id, 16), octets)
+
+
+def say(client, frame):
+    data = " ".join(f"{byte:x}" for byte in frame.data)
+    client.say(f"< send {frame.id:x} {len(frame.data)} {data} >")
+
+
+def test_the_program_is_a_node_of_the_bus(program):
+    codec = Codec(sheet(2))
+    with running() as hub, Raw(hub.port) as client:
+        drives = subprocess.Popen([program, "127.0.0.1", str(hub.port)])
+        try:
+            statuses(client, codec, lambda status: status["Drive"] == "OFF")
+            for _ in range(3):
+                say(client, codec.encode("Thruster0Command", Thrust=12.5, Enable=True))
+            found = statuses(client, codec, lambda status: status["Drive"] == "RUNS")
+            assert (found["Thrust"], found["Power"] > 0.0) == (pytest.approx(12.5), True)
+            found = statuses(client, codec, lambda status: status["Drive"] == "WATCHDOG")
+            assert (found["Thrust"], found["Power"]) == (0.0, 0.0)
+            assert not codec.faults
+            drives.send_signal(signal.SIGTERM)
+            assert drives.wait(10) == 0
+        finally:
+            drives.kill()
+            drives.wait()
+
+
+def test_the_program_ends_with_the_bus(program):
+    with running() as hub:
+        drives = subprocess.Popen([program, "127.0.0.1", str(hub.port)], stderr=subprocess.PIPE)
+        try:
+            with Raw(hub.port) as client:
+                statuses(client, Codec(sheet(2)), lambda status: True)
+            hub.stop()
+            _, said = drives.communicate(timeout=10)
+            assert (drives.returncode, said) == (
+                3, f"drives: the bus at 127.0.0.1, port {hub.port}, is gone\n".encode()
+            )  # fmt: skip
+        finally:
+            drives.kill()
+
+
+def test_the_program_says_how_it_is_called(program):
+    done = subprocess.run([program], capture_output=True, timeout=10)
+    assert (done.returncode, done.stderr) == (2, b"usage: drives HOST PORT [CHANNEL]\n")

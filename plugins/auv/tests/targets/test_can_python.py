@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from dives import POOL, dive, diver, swim
+from mmrs_auv.kinds import AUV_KIND
+from mmrs_auv.targets.can_python.target import CAN_PYTHON
+from mmrs_auv.vessel.sheet import from_json
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.program import Program, Transition
+from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import UnsupportedError
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.scene import Policy
+from mmrs_core.testing.programs import feedback, move, notify, program, quad, robot_program, use
+from mmrs_core.transformation.kinds import MOVE_KINDS
+
+
+def given(behaviour: Program) -> TargetInput:
+    kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
+    types = {each.name: each for each in (diver(), quad())}
+    return TargetInput(behaviour, types, {AUV_KIND.metaclass: AUV_KIND}, kinds)
+
+
+def pair() -> Program:
+    """Return two vehicles: the second waits until the first has sampled."""
+    sample = use("ctd", "Sample")
+    told = feedback("done", ("by", 'it "is"'))
+    first = robot_program(
+        "Caßtor '1'",
+        [swim("a", 2.0, 1.0, 1.0, after=(sample, told, notify(("Pollux", "go"))))],
+        home=(0.0, 0.0, -0.5),
+        type_name="Pool AUV",
+    )
+    stays = move("b", "HoldPosition", duration=1.0)
+    second = robot_program(
+        "Pollux",
+        [stays, swim("c", 3.0, 5.0, 1.0)],
+        home=(0.0, 5.0, -0.5),
+        slots=("go",),
+        transitions={1: Transition(1, 2, waits=("go",))},
+        type_name="Pool AUV",
+    )
+    return program(first, second, name="pair", frame=POOL)
+
+
+def generated(behaviour: Program, folder: Path) -> Path:
+    write(render(CAN_PYTHON, given(behaviour)), folder)
+    return folder
+
+
+def call(folder: Path, *words: str, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
+    """Run controllers without this project in reach."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    command = [sys.executable, "-S", "-c", BOOT, *words]
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=timeout, check=False
+    )
+
+
+BOOT = f"""
+import sys, runpy
+sys.path += {[path for path in sys.path if path.endswith("site-packages")]!r}
+class Barred:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in ("mmrs_core", "mmrs_auv"):
+            raise ImportError(name)
+sys.meta_path.insert(0, Barred())
+sys.path.insert(0, ".")
+runpy.run_path("fleet.py", run_name="__main__")
+"""
+
+
+def test_controllers_stand_alone_and_their_dry_logs_replay(tmp_path: Path) -> None:
+    folder = generated(pair(), tmp_path / "code")
+    done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    judged = replay(pair(), read_logs([tmp_path / "logs"]))
+    assert judged.accepted
+    assert judged.outcome is Outcome.SUCCESS
+
+
+def test_nothing_of_this_project_is_imported(tmp_path: Path) -> None:
+    folder = generated(dive(swim("a", 1.0, 0.0, 1.0)), tmp_path)
+    for file in folder.rglob("*.py"):
+        assert "import mmrs_core" not in file.read_text(encoding="utf-8"), file
+        assert "from mmrs_core" not in file.read_text(encoding="utf-8"), file
+        assert "from mmrs_auv" not in file.read_text(encoding="utf-8"), file
+
+
+def test_each_robot_has_its_sheet(tmp_path: Path) -> None:
+    folder = generated(pair(), tmp_path)
+    sheet = from_json((folder / "robot_Pollux.json").read_text(encoding="utf-8"))
+    assert (sheet.robot, sheet.home) == ("Pollux", (5.0, 0.0, 0.5))
+    assert "command=" not in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
+
+
+def test_a_vehicle_that_is_not_there_ends_the_program(tmp_path: Path) -> None:
+    folder = generated(dive(swim("a", 1.0, 0.0, 1.0)), tmp_path / "code")
+    done = call(folder, "--can", "can0@127.0.0.1:9", "--log", str(tmp_path / "logs"))
+    assert done.returncode == 5, done.stdout + done.stderr
+    assert "127.0.0.1:9" in done.stdout + done.stderr
+
+
+def test_what_controllers_cannot_do_is_refused() -> None:
+    flees = replace(dive().robots[0], policies=(Policy("BATTERY_LOW", "EMERGENCY_AREA"),))
+    flies = robot_program("Kite", [move("stay", "HoldPosition", duration=1.0)])
+    bakes = swim("a", 1.0, 0.0, 1.0, after=(use("ctd", "Bake"),))
+    for behaviour, said in (
+        (replace(dive(), robots=(flees,)), "emergency area"),
+        (program(flies, frame=POOL), "no underwater vehicle"),
+        (dive(bakes), "Bake"),
+        (dive(home=None), "home"),
+    ):
+        with pytest.raises(UnsupportedError) as refused:
+            render(CAN_PYTHON, given(behaviour))
+        assert said in f"{refused.value} {refused.value.elements}"

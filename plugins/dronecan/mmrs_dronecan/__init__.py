@@ -1,0 +1,1 @@
+"""Thrusters on DroneCAN for MMRS: electronic speed controllers by RawCommand and Status."""

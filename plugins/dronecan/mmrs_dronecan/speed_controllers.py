@@ -1,0 +1,108 @@
+"""Thrusters as electronic speed controllers on DroneCAN."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import copysign, sqrt
+from typing import TYPE_CHECKING, Any
+
+import dronecan
+
+from mmrs_core.contributions.codecs import CanFrame, ThrusterData
+from mmrs_core.errors import UnsupportedError
+from mmrs_dronecan.options import Options, options_of
+from mmrs_dronecan.transfers import Frame, Incoming, Outgoing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MOST, LEAST_RAW, MOST_RAW = 20, -8192, 8191
+COMMANDS_A_SECOND = 20
+STATUS_ID = 1034
+_ARMED, _DISARMED = 255, 0
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What a drive tells of its thruster.
+
+    Attributes:
+        number: of the thruster, from 0.
+        thrust: newtons, by its speed of rotation; None: that cannot be told.
+        fault: DroneCAN has no word for a drive that cannot work.
+        runs: it has no word for one that does not obey, either.
+    """
+
+    number: int
+    thrust: float | None
+    fault: bool = False
+    runs: bool = True
+
+
+class SpeedControllers:
+    """Speaks for the thrusters of one vehicle."""
+
+    def __init__(self, thrusters: Sequence[ThrusterData], options: Options) -> None:
+        """Prepare.
+
+        Raises:
+            UnsupportedError: there are more thrusters than a message carries.
+        """
+        if len(thrusters) > MOST:
+            raise UnsupportedError(f"dronecan: {len(thrusters)} thrusters: a RawCommand carries {MOST}")
+        self._most = [each.max_thrust for each in thrusters]
+        self._options = options
+        self._outgoing = Outgoing(options.node)
+        self._statuses = Incoming(STATUS_ID)
+        self._ticks = 0
+        self._armed: bool | None = None
+
+    @property
+    def faults(self) -> int:
+        """Frames and messages of drives that cannot be believed."""
+        return self._statuses.faults
+
+    def commands(self, thrusts: Sequence[float], enable: bool) -> list[Frame]:
+        """Return the frames that ask for those newtons; not enabled: that no propeller turns."""
+        raw = [self._raw(number, thrust) if enable else 0 for number, thrust in enumerate(thrusts)]
+        said = [self._outgoing.frames(dronecan.uavcan.equipment.esc.RawCommand(cmd=raw))]
+        said += [self._outgoing.frames(message) for message in self._now_and_then(enable)]
+        self._ticks += 1
+        return [frame for frames in said for frame in frames]
+
+    def hear(self, frame: CanFrame) -> Status | None:
+        """Return what a frame tells of a thruster, or None."""
+        said = self._statuses.message(frame)
+        if said is None or said.esc_index >= len(self._most):
+            return None
+        return Status(int(said.esc_index), self._thrust(int(said.esc_index), int(said.rpm)))
+
+    def _now_and_then(self, enable: bool) -> Iterator[Any]:
+        due = self._ticks % COMMANDS_A_SECOND == 0
+        if due:
+            yield dronecan.uavcan.protocol.NodeStatus(uptime_sec=self._ticks // COMMANDS_A_SECOND)
+        if self._options.arming and (due or enable != self._armed):
+            self._armed = enable
+            yield dronecan.uavcan.equipment.safety.ArmingStatus(status=_ARMED if enable else _DISARMED)
+
+    def _raw(self, number: int, thrust: float) -> int:
+        part = max(-1.0, min(1.0, thrust / self._most[number]))
+        if self._options.square:
+            part = copysign(sqrt(abs(part)), part)
+        return round(part * (MOST_RAW if part > 0.0 else -LEAST_RAW))
+
+    def _thrust(self, number: int, rpm: int) -> float | None:
+        if self._options.max_rpm is None:
+            return None
+        part = rpm / self._options.max_rpm
+        return self._most[number] * part * abs(part)
+
+
+def opened(thrusters: Sequence[ThrusterData], options: Mapping[str, str]) -> SpeedControllers:
+    """Return what speaks for thrusters, with options by name.
+
+    Raises:
+        UnsupportedError: there are too many, or an option is none.
+    """
+    return SpeedControllers(thrusters, options_of(options))

@@ -1,0 +1,93 @@
+"""The examples of underwater vehicles, checked, and dived by simulated vehicles with their control layer."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, pi, sin
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.replay import Outcome, replay
+from mmrs_core.cli.demo import example_folder
+from mmrs_core.cli.demonstration import Manner, manner_of
+from mmrs_core.cli.simulation import write_logs
+from mmrs_core.contributions.checks import Status
+from mmrs_core.errors import UnreadableError
+from mmrs_core.pipeline import simulate
+
+
+def dived(taken, contributions, name, folder, **options):
+    example = taken(name)
+    manner = manner_of(example_folder(name))
+    run = simulate(
+        example.program,
+        example.place,
+        contributions,
+        backend=manner.backend,
+        options={**manner.options, **options},
+    )
+    write_logs(run, example.program, folder, example.place.types)
+    return run, replay(example.program, read_logs([folder]))
+
+
+def random_start(seed: int) -> dict[str, str]:
+    """Return where a dive begins, in what current, and with which noise."""
+    random = Random(seed)
+    away, towards = random.uniform(0.0, 0.15), random.uniform(0.0, 2.0 * pi)
+    return {
+        "seed": str(seed),
+        "start": f"{random.uniform(-1.0, 1.0)},{random.uniform(-1.0, 1.0)}",
+        "heading": str(random.uniform(0.0, 360.0)),
+        "current": f"{away * cos(towards)},{away * sin(towards)}",
+    }
+
+
+def completes(taken, contributions, folder: Path, seed: int) -> None:
+    run, judged = dived(taken, contributions, "pool-course", folder, **random_start(seed))
+    assert run.ending.outcome is Outcome.SUCCESS, run.ending
+    assert judged.accepted
+    ways = [(each.east, each.north, each.up) for each in run.tracks["Thetis"]]
+    crossed = [b for a, b in pairwise(ways) if a[0] < 7.0 <= b[0]]
+    assert crossed
+    assert all(6.5 < north < 9.5 and -2.7 < up < -1.2 for _, north, up in crossed[:1])
+    assert ways[-1][2] > -0.6
+
+
+@pytest.mark.parametrize("name", ["pool-course", "two-auv-survey"])
+def test_they_are_safe(taken, name):
+    example = taken(name)
+    unsafe = [each for each in example.verdicts if each.status is Status.VIOLATED]
+    assert not unsafe
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_course_is_completed_from_random_starts(taken, contributions, tmp_path, seed):
+    completes(taken, contributions, tmp_path, seed)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", range(3, 11))
+def test_the_course_is_completed_from_many_starts(taken, contributions, tmp_path, seed):
+    completes(taken, contributions, tmp_path, seed)
+
+
+@pytest.mark.thorough
+def test_two_vehicles_meet_when_both_are_done(taken, contributions, tmp_path):
+    run, judged = dived(taken, contributions, "two-auv-survey", tmp_path)
+    assert run.ending.outcome is Outcome.SUCCESS
+    assert judged.accepted
+
+
+def test_examples_say_how_they_are_shown(tmp_path):
+    course = example_folder("auv")
+    assert course == example_folder("pool-course")
+    manner = manner_of(course)
+    assert (manner.backend, manner.targets) == ("can-sim", ("can-python",))
+    assert Path(manner.options["surroundings"]).is_file()
+    assert manner_of(example_folder("pool")) == Manner()
+    (tmp_path / "demo.toml").write_text("backend = 3\n")
+    with pytest.raises(UnreadableError, match=r"demo\.toml"):
+        manner_of(tmp_path)

@@ -1,0 +1,149 @@
+"""Decision centres in Ada: generated, compiled with warnings as errors, run with a simulated vehicle."""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from can_hub import RunningHub, running
+from dives import diver
+from mmrs_auv.sheets import sheet_of
+from mmrs_auv.targets.ada.target import ADA
+from mmrs_auv.vessel.body.surroundings import Surroundings
+from mmrs_auv.vessel.body.vehicle import Vehicle
+from mmrs_auv.vessel.control.actuators import Actuators
+from mmrs_auv.vessel.control.sensors import Sensors
+from mmrs_auv.vessel.hosting import Rehearsal
+from mmrs_auv.vessel.movement.movement import Movement
+from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.wire.codec import Codec, Received
+from mmrs_auv.vessel.wire.frame import Frame
+from mmrs_auv.vessel.wire.ports import Port, open_port
+
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.program import Program
+from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.render import render
+from mmrs_core.scene import RobotType
+
+FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe")
+
+
+def write(behaviour: Program, folder: Path, type: RobotType | None = None) -> Path:
+    """Write the decision centres of a behaviour; return the folder of the first robot."""
+    kind = type or diver()
+    files = render(ADA, TargetInput(behaviour, {kind.name: kind}, {}, {}))
+    for file in files:
+        path = folder / file.path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(file.content)
+    return next(folder.glob("robot-*"))
+
+
+def build(robot: Path) -> Path:
+    """Compile a decision centre; return the program."""
+    made = robot / "obj"
+    made.mkdir(exist_ok=True)
+    common = "../../common"
+    words = ["gnatmake", "-q", *FLAGS, "-I..", f"-I{common}", f"{common}/decision_centre.adb"]
+    done = subprocess.run(words, cwd=made, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return made / "decision_centre"
+
+
+def judge(robot: Path, units: Sequence[str] = ("mission.adb", "conditions.adb")) -> str:
+    """Return what the compiler has to say of sources; nothing is made."""
+    said = ""
+    for unit in units:
+        words = ["gcc", "-c", "-gnatc", *FLAGS, "-I.", "-I../common", unit]
+        said += subprocess.run(words, cwd=robot, capture_output=True, text=True, timeout=120).stderr
+    return said
+
+
+class Bridge:
+    """A node that passes on what is said on a real bus, and says there what a rehearsed one says."""
+
+    name = "Bridge"
+    period = 0.02
+
+    def __init__(self, port: Port) -> None:
+        self._port = port
+
+    def hear(self, frame: Frame, now: float) -> None:
+        self._port.send(frame)
+
+    def tick(self, now: float) -> list[Frame]:
+        found = []
+        while (frame := self._port.receive(0.0)) is not None:
+            found.append(frame)
+        return found
+
+
+class World:
+    """A simulated vehicle with its whole control layer in this process, on a hub, in real time at most."""
+
+    def __init__(self, hub: RunningHub, sheet: Sheet, surroundings: Surroundings) -> None:
+        self.hub = hub
+        self.heard: list[Received] = []
+        self._codec = Codec(sheet)
+        self.vehicle = Vehicle(sheet, Codec(sheet), surroundings)
+        parts = [Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet))]
+        self._port = open_port("socketcand", f"can0@127.0.0.1:{hub.port}")
+        self.rehearsal = Rehearsal([self.vehicle, *parts, Bridge(self._port)], watch=self._watch)
+
+    def _watch(self, now: float, frame: Frame) -> None:
+        if (said := self._codec.decode(frame)) is not None:
+            self.heard.append(said)
+
+    def said(self, name: str) -> list[Received]:
+        """Return what messages of that name said, each time that it was something else."""
+        found: list[Received] = []
+        for each in self.heard:
+            if each.name == name and (not found or each.values != found[-1].values):
+                found.append(each)
+        return found
+
+    def run(self, until: subprocess.Popen[str], seconds: float, **orders: float) -> None:
+        """Let time go by until a process ends; an order counts from so many seconds on: cut."""
+        behind = time.monotonic() - self.rehearsal.now
+        while until.poll() is None:
+            assert self.rehearsal.now < seconds, "it does not end"
+            if self.rehearsal.now >= orders.get("cut", seconds):
+                self.hub.stop()
+                until.wait(30)
+                return
+            self.rehearsal.run(0.05)
+            time.sleep(max(0.0, self.rehearsal.now + behind - time.monotonic()))
+
+
+@dataclass
+class Dive:
+    """What came of a decision centre that ran: its exit status, what it said, its log, the bus."""
+
+    status: int
+    errors: str
+    replayed: ReplayResult
+    world: World
+    log: Path
+
+
+def run(program: Path, behaviour: Program, folder: Path, seconds: float = 120.0, **orders: float) -> Dive:
+    """Have a decision centre command a vehicle until it ends."""
+    home = behaviour.robots[0].home or (0.0, 0.0, 0.0)
+    sheet = sheet_of(diver(), behaviour.robots[0].id, home=home, surface=behaviour.frame.surface)
+    logs = folder / "logs"
+    with running() as hub:
+        world = World(hub, sheet, Surroundings(noise=False))
+        words = [str(program), "--bus", f"127.0.0.1:{hub.port}", "--logs", str(logs)]
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            world.run(process, seconds, **orders)
+        finally:
+            process.kill()
+            _, errors = process.communicate()
+    replayed = replay(behaviour, read_logs([logs]))
+    return Dive(process.returncode, errors, replayed, world, logs)

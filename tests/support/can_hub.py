@@ -1,0 +1,96 @@
+"""A hub in a thread of its own, and a client that says words as they are written."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from mmrs_auv.vessel.wire.hub import Hub
+
+
+class RunningHub:
+    """A hub that listens; `hub` may be looked at from anywhere, its methods are called in its thread."""
+
+    def __init__(self, hub: Hub) -> None:
+        self.hub = hub
+        self.port = 0
+        self._loop = asyncio.new_event_loop()
+        self._ready = threading.Event()
+        self._stopping = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+        assert self._ready.wait(10)
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self.port = self._loop.run_until_complete(self.hub.start())
+        self._ready.set()
+        self._loop.run_forever()
+        self._loop.run_until_complete(self.hub.stop())
+        self._loop.run_until_complete(asyncio.sleep(0.01))
+        self._loop.close()
+
+    def stop(self) -> None:
+        with self._stopping:
+            if self._thread.is_alive():
+                self._loop.call_soon_threadsafe(self._loop.stop)
+                self._thread.join(10)
+
+
+@contextmanager
+def running(hub: Hub | None = None) -> Iterator[RunningHub]:
+    """Have a hub run."""
+    found = RunningHub(hub or Hub())
+    try:
+        yield found
+    finally:
+        found.stop()
+
+
+class Raw:
+    """A client by sockets alone."""
+
+    def __init__(self, port: int, *, listens: str | None = "can0") -> None:
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=10)
+        self._text = ""
+        if listens is not None:
+            assert self.word() == "< hi >"
+            for said in (f"< open {listens} >", "< rawmode >"):
+                self.say(said)
+                assert self.word() == "< ok >"
+
+    def say(self, text: str | bytes) -> None:
+        self.socket.sendall(text.encode() if isinstance(text, str) else text)
+
+    def word(self) -> str:
+        """Return the next word; empty: the hub has ended the connection."""
+        while ">" not in self._text:
+            data = self.socket.recv(4096)
+            if not data:
+                return ""
+            self._text += data.decode("ascii")
+        word, _, self._text = self._text.partition(">")
+        return word + ">"
+
+    def close(self) -> None:
+        self.socket.close()
+
+    def __enter__(self) -> Raw:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def eventually(true: Callable[[], bool], seconds: float = 10.0) -> bool:
+    """Return whether something becomes true in time."""
+    until = time.monotonic() + seconds
+    while not true():
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.005)
+    return True
