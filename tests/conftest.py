@@ -17,6 +17,7 @@ IN_REAL_TIME = {
         "end_to_end/faults",
         "end_to_end/vehicles",
         "unit/flight",
+        "unit/mavlink/backend/test_response.py",
         "unit/runtime",
         "unit/sitl",
     ),
@@ -39,13 +40,33 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give tests with full counts time enough, and each group of those in real time one worker."""
+    """Give tests with full counts time enough."""
     for item in items:
-        for group, folders in IN_REAL_TIME.items():
-            if any(item.path.is_relative_to(HERE / folder) for folder in folders):
-                item.add_marker(pytest.mark.xdist_group(group))
         if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log):
+    """Give each group of tests in real time one worker: marks of xdist 3.8 are lost with pytest 9.2."""
+    if config.getoption("dist") != "loadgroup":
+        return None
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByGroup(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return group_of(nodeid)
+
+    return ByGroup(config, log)
+
+
+def group_of(nodeid: str) -> str:
+    """Return the group of a test in real time; of another, which is alone, its own name."""
+    path = HERE.parent / nodeid.partition("::")[0]
+    for group, folders in IN_REAL_TIME.items():
+        if any(path.is_relative_to(HERE / folder) for folder in folders):
+            return group
+    return nodeid
 
 
 @pytest.fixture

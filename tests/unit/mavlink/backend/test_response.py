@@ -13,7 +13,6 @@ from mmrs_core.flight.program import Geographic, Place, Policy
 from mmrs_core.mavlink.backend.moves import Moves
 from mmrs_core.mavlink.backend.response import Response
 
-pytestmark = pytest.mark.xdist_group("parts of flights")
 NOWHERE = tuple((move, (Geographic(nan, nan, nan),)) for move in ("up", "out"))
 
 
