@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import atan2, cos, inf, pi, remainder
 
-from shapely import LineString, MultiLineString, Point, Polygon, prepare
+from shapely import LineString, MultiLineString, Point, Polygon, prepare, remove_repeated_points
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.behaviour.program import RobotProgram
@@ -41,6 +41,9 @@ by a twelfth where the area's corner is a right angle, more where it is sharper 
 
 FINE = 0.01
 """Metres to which the largest fence is found."""
+
+ONE = 1e-9
+"""Metres within which two vertices are one."""
 
 Leg = tuple[Vertex, Vertex]
 
@@ -189,7 +192,9 @@ def _turn(before: Vertex, here: Vertex, after: Vertex) -> float:
 
 def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fence:
     """Return the largest fence around an area that leaves the legs free."""
-    drawn, reach = Polygon(area.shell), reach_of(area.shell)
+    # Vertices that are as good as one would have it divide by their distance.
+    drawn, reach = remove_repeated_points(Polygon(area.shell), ONE), reach_of(area.shell)
+    assert isinstance(drawn, Polygon)
 
     def leaves_room(metres: float) -> bool:
         return legs.is_empty or _grown(drawn, metres).distance(legs) >= stray

@@ -66,7 +66,8 @@ def test_a_simulation_by_name_is_the_same_as_without(mmrs, project):
 def test_a_backend_that_nobody_contributed_is_named(mmrs, project, command, option):
     code, _, err = mmrs(command, project, "--backend", "simulaton", option, project / "logs")
     assert code == 2
-    assert "backend 'simulaton': not known; there are mavlink, simulation" in err
+    assert "backend 'simulaton': not known; there are " in err
+    assert "did you mean simulation?" in err
     assert not (project / "logs").exists()
 
 

@@ -111,7 +111,7 @@ def test_lines_make_faults_and_tell_what_is_wrong_with_a_line():
         (("--host", "nowhere.invalid"), "nowhere.invalid: no address is known of it"),
         (("--fault", "battery=2"), "--fault battery 2: 2 is not from 0 to 1"),
         (("--fault", "slow-upload=-3"), "-3 seconds are less than none"),
-        (("--fault", "obstacle=nan"), "nan is no finite number"),
+        (("--fault", "obstacle=nan"), "'nan' is no finite number"),
         (("--home", "91,0"), "--home 91,0: is no place"),
         (("carbon-dioxide", "--kind", "rover"), "--kind: 'carbon-dioxide' says it of its robots"),
     ],

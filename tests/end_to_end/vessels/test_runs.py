@@ -25,9 +25,9 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
-from mmrs_core.pipeline import Place, inputs_of, run_live
+from mmrs_core.pipeline import Place, inputs_of
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.live import Venture
+from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.runtime.terms import Ending
 from mmrs_core.testing.programs import use
@@ -75,7 +75,7 @@ def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
         links={"naiad": berth.channel},
     )
     with LogWriter(tmp_path / "logs") as writer:
-        ending = written(run_live(venture, "can", contributions), writer)
+        ending = written(run_live(venture, contributions.backends["can"]), writer)
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(behaviour, read_logs([tmp_path / "logs"])).accepted
     assert fixes_in(tmp_path / "logs") > 10
