@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import socket
 import subprocess
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -131,19 +134,55 @@ class Dive:
     log: Path
 
 
-def run(program: Path, behaviour: Program, folder: Path, seconds: float = 120.0, **orders: float) -> Dive:
-    """Have a decision centre command a vehicle until it ends."""
-    home = behaviour.robots[0].home or (0.0, 0.0, 0.0)
-    sheet = sheet_of(diver(), behaviour.robots[0].id, home=home, surface=behaviour.frame.surface)
+def run(
+    program: Path,
+    behaviour: Program,
+    folder: Path,
+    seconds: float = 120.0,
+    *,
+    robot: int = 0,
+    gateway: Path | None = None,
+    detections: int = 0,
+    **orders: float,
+) -> Dive:
+    """Have the decision centre of a robot command its vehicle until it ends."""
+    one = behaviour.robots[robot]
+    sheet = sheet_of(diver(), one.id, home=one.home or (0.0, 0.0, 0.0), surface=behaviour.frame.surface)
     logs = folder / "logs"
     with running() as hub:
         world = World(hub, sheet, Surroundings(noise=False))
         words = [str(program), "--bus", f"127.0.0.1:{hub.port}", "--logs", str(logs)]
+        words += ["--gateway", str(gateway)] if gateway is not None else []
+        words += ["--detections", str(detections)] if detections else []
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
             world.run(process, seconds, **orders)
         finally:
             process.kill()
             _, errors = process.communicate()
-    replayed = replay(behaviour, read_logs([logs]))
+    replayed = replay(behaviour, read_logs([logs]), partial=len(behaviour.robots) > 1)
     return Dive(process.returncode, errors, replayed, world, logs)
+
+
+@contextmanager
+def gateways(behaviour: Path, folder: Path, robots: Sequence[str]) -> Iterator[Mapping[str, Path]]:
+    """Have a gateway run for each robot; give the files in which they say where they listen."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        meeting = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    processes, files = [], {}
+    for number, robot in enumerate(robots):
+        kept = folder / f"gateway-{robot}"
+        words = [sys.executable, "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", robot]
+        words += ["--log", str(kept), "--connect" if number else "--listen", meeting]
+        processes.append(subprocess.Popen(words, stderr=subprocess.DEVNULL))
+        files[robot] = kept / "gateway.json"
+        until = time.monotonic() + 30
+        while not files[robot].exists():
+            assert time.monotonic() < until, "there is no gateway"
+            time.sleep(0.05)
+    try:
+        yield files
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()

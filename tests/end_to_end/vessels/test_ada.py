@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import socket
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from ada_centres import build, run, write
+from ada_centres import build, gateways, run, write
 from dives import dive, rehearse, swim
+from mmrs_auv.plugin import mmrs_metamodels
 from mmrs_auv.vessel.api import Craft
+from mmrs_auv.vessel.eyes import Detection, to_datagram
 from mmrs_auv.vessel.goals import Goal
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Target, Transition
-from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.behaviour.log import read_logs
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, Target, Transition
+from mmrs_core.behaviour.reading import program_of
+from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.execution import Condition
+from mmrs_core.languages.reading import read_model
+from mmrs_core.languages.registry import registry_with
 from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 
@@ -22,10 +33,60 @@ pytestmark = pytest.mark.xdist_group("vessels in real time")
 CHARGED = {"charged": Condition("charged", lambda state: True)}
 PHOTO = Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), "TakePicture", "front-camera")
 
+PAIR = """<?xml version="1.0" encoding="UTF-8"?>
+<bl:Behaviour xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:bl="urn:mmrs:behaviour:1.0" name="pair">
+  <targets xsi:type="bl:RelativeCoordinate" name="here" x="0.0" y="0.0"/>
+  <robots id="a" typeName="Pool AUV" home="//@targets.0">
+    <moves xsi:type="bl:Start" name="start"/>
+    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
+      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0"/>
+    </moves>
+    <moves xsi:type="bl:Stop" name="stop"/>
+    <moveTransitions from="//@robots.0/@moves.0" to="//@robots.0/@moves.1" waitFor="//@robots.0/@slots.0"/>
+    <moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"/>
+    <slots name="ready"/>
+  </robots>
+  <robots id="b" typeName="Pool AUV" home="//@targets.0">
+    <moves xsi:type="bl:Start" name="start"/>
+    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
+      <preActions xsi:type="bl:UnicastNotify" slot="//@robots.0/@slots.0"/>
+    </moves>
+    <moves xsi:type="bl:Stop" name="stop"/>
+    <moveTransitions from="//@robots.1/@moves.0" to="//@robots.1/@moves.1"/>
+    <moveTransitions from="//@robots.1/@moves.1" to="//@robots.1/@moves.2" waitFor="//@robots.1/@slots.0"/>
+    <slots name="go"/>
+  </robots>
+</bl:Behaviour>
+"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def compiler(need_program):
     return need_program("gnatmake", "compiles decision centres in Ada")
+
+
+def feedback_move(name: str) -> Move:
+    return replace(move(name, "HoldPosition", duration=0.1), before=(feedback(name),))
+
+
+@contextmanager
+def telling(port: int, detection: Detection) -> Iterator[None]:
+    """Send a detection again and again, and rubbish between."""
+    over = threading.Event()
+
+    def tell() -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
+            while not over.wait(0.2):
+                for data in (b"\xff{", b'{"name": "', to_datagram(detection)):
+                    with suppress(OSError):
+                        camera.sendto(data, ("127.0.0.1", port))
+
+    teller = threading.Thread(target=tell)
+    teller.start()
+    yield
+    over.set()
+    teller.join()
 
 
 def journey():
@@ -70,6 +131,20 @@ def test_a_dive_ends_well_and_its_log_replays(tmp_path: Path, monkeypatch) -> No
             assert abs((each["Heading"] - goal.heading + 180.0) % 360.0 - 180.0) < 5.0
 
 
+def test_a_choice_goes_by_what_cameras_detect(tmp_path: Path) -> None:
+    hold = move("h", "HoldPosition", duration=2.0)
+    ways = {1: Transition(1, 2, condition="detected:a buoy", otherwise=3)}
+    behaviour = dive(hold, feedback_move("seen"), feedback_move("unseen"), transitions=ways)
+    program = build(write(behaviour, tmp_path / "out"))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
+        camera.bind(("127.0.0.1", 0))
+        port = camera.getsockname()[1]
+    with telling(port, Detection(0.0, "a buoy", 0.9, 1.0, 2.0, 3.0, "front")):
+        found = run(program, behaviour, tmp_path, detections=port)
+    assert found.status == 0, found.errors
+    assert [each.detail for each in read_logs([found.log]) if each.label == "choose"] == ["true"]
+
+
 def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -> None:
     behaviour = journey()
     robot = write(behaviour, tmp_path / "out")
@@ -90,3 +165,23 @@ def test_a_lost_bus_is_a_fault_of_the_move_that_was_under_way(tmp_path: Path) ->
     assert found.status == 1
     assert found.replayed.faults == {"naiad": "LINK_LOST"}
     assert found.replayed.accepted, found.replayed.complaints
+
+
+def test_two_decision_centres_wait_for_each_other_over_the_bus_between_robots(tmp_path: Path) -> None:
+    file = tmp_path / "pair.xmi"
+    file.write_text(PAIR)
+    registry = registry_with(mmrs_metamodels())
+    root = read_model(file, registry).roots[0]
+    behaviour = program_of(root, registry=registry)  # type: ignore[arg-type]
+    out = write(behaviour, tmp_path / "out").parent
+    programs = {name: build(out / f"robot-{name}") for name in ("a", "b")}
+    with gateways(file, tmp_path, ("a", "b")) as files, ThreadPoolExecutor(2) as pool:
+        begun = [
+            pool.submit(run, programs[name], behaviour, tmp_path, robot=number, gateway=files[name])
+            for number, name in enumerate(("a", "b"))
+        ]
+        dives = [each.result() for each in begun]
+    assert [dive.status for dive in dives] == [0, 0], [dive.errors for dive in dives]
+    result = replay(behaviour, read_logs([tmp_path / "logs"]))
+    assert result.accepted, result.complaints
+    assert result.outcome is Outcome.SUCCESS

@@ -14,10 +14,11 @@ from mmrs_auv.targets.moves import MOVES, seconds_of, seconds_of_hold
 from mmrs_auv.vessel.refusals import MOST_DEPTH
 from mmrs_auv.vessel.wire.catalogue import depth_step
 from mmrs_core.behaviour.log import log_name
-from mmrs_core.behaviour.program import Action, Move, Program, Transition
+from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Transition
 from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.errors import InfeasibleError
+from mmrs_core.flight.conditions import BATTERY, DETECTED, is_standard
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Part, Position
 
@@ -46,22 +47,28 @@ class Mission:
             "step": self._depth_step(),
             "reserve": float(self._program.reserve),
             "floats": self._floats(),
-            "alone": True,
-            "devices": len(self._context.type.devices) if self._context.type else 0,
+            "alone": are_apart(self._program),
+            "robots": json.dumps([each.id for each in self._program.robots]),
             "start": robot.start + 1,
             "slots": tuple(map(_json, robot.slots)),
             "tasks": self._tasks,
             "moves": [self._move(index, move) for index, move in enumerate(robot.moves)],
         }
 
-    def conditions(self) -> Iterator[tuple[str, tuple[TracedStep, ...]]]:
-        """Yield each condition, and the steps after which it is asked for."""
+    def conditions(self) -> Mapping[str, object]:
+        """Return what the template of conditions sees: each, and the steps after which it is asked for."""
         robot = self._context.robot
         asked: dict[str, list[TracedStep]] = {}
         for index, transition in robot.transitions.items():
             if transition.condition is not None:
                 asked.setdefault(transition.condition, []).append(self._trace(robot.moves[index]))
-        yield from ((condition, tuple(steps)) for condition, steps in asked.items())
+        found = [{"id": id, "steps": tuple(steps), **_standard(id)} for id, steps in asked.items()]
+        return {"conditions": found, "sees": any(each["word"] == DETECTED for each in found)}
+
+    def undecided(self) -> tuple[str, ...]:
+        """Return the conditions that somebody has to decide."""
+        found = (each.condition for each in self._context.robot.transitions.values())
+        return tuple(dict.fromkeys(each for each in found if each and not _standard(each)["word"]))
 
     def _move(self, index: int, move: Move) -> Mapping[str, object]:
         transition = self._context.robot.transitions.get(index)
@@ -69,7 +76,7 @@ class Mission:
             "kind": KINDS[MOVES[move.metaclasses[0]]],
             "way": _kind_of_way(transition),
             "trace": self._trace(move),
-            "features": [*self._features(move), *_way(transition)],
+            "features": [*self._features(move), *_way(transition), *self._waits(transition)],
             "actions": [
                 *(("Before", self._action(each, f"pre:{n}")) for n, each in enumerate(move.before)),
                 *(("After", self._action(each, f"post:{n}")) for n, each in enumerate(move.after)),
@@ -93,6 +100,22 @@ class Mission:
             yield "Angle", float(move.heading.angle_degrees)
         if sort == "hold":
             yield "Seconds", seconds_of_hold(move)
+
+    def _waits(self, transition: Transition | None) -> Iterator[tuple[str, object]]:
+        if transition is None or not transition.waits:
+            return
+        wanted = {(self._context.robot.id, slot) for slot in transition.waits}
+        yield "Awaited", json.dumps(transition.waits)
+        yield (
+            "Senders",
+            json.dumps(
+                [
+                    each.id
+                    for each in self._program.robots
+                    if each.id != self._context.robot.id and wanted & set(_set_by(each))
+                ]
+            ),
+        )
 
     def _place(self, position: Position) -> Position:
         """Return metres north, east and below the surface."""
@@ -132,6 +155,28 @@ class Mission:
             return False
         weight = size.attributes.get("weightInWater")
         return isinstance(weight, (int, float)) and weight < 0.0
+
+
+def are_apart(program: Program) -> bool:
+    """Return whether no robot sets slots of another."""
+    return all(owner == robot.id for robot in program.robots for owner, _ in _set_by(robot))
+
+
+def _set_by(robot: RobotProgram) -> Iterator[SlotId]:
+    """Yield the slots that a robot sets."""
+    for move in robot.moves:
+        for action in (*move.before, *move.after):
+            yield from action.sets
+
+
+def _standard(condition: str) -> Mapping[str, object]:
+    """Return what a standard condition asks; the others are asked of whoever has the program."""
+    word, _, rest = condition.partition(":")
+    if is_standard(condition) and word == BATTERY:
+        return {"word": "battery", "argument": float(rest)}
+    if is_standard(condition) and word == DETECTED:
+        return {"word": DETECTED, "argument": _json(rest)}
+    return {"word": ""}
 
 
 def _kind_of_way(transition: Transition | None) -> str:

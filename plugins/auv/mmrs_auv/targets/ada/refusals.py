@@ -16,7 +16,7 @@ DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction"
 NOTICED = frozenset(
     {"BATTERY_LOW", "POSITION_LOST", "LINK_LOST", "DEVICE_SILENT", "NO_PROGRESS", "PEER_LOST"}
 )
-"""Events after which the vehicle comes up; others are of no peer, since it waits for none."""
+"""Events after which the vehicle comes up."""
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
@@ -46,12 +46,17 @@ def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
         yield from _of_way(move, context)
     if sort == "turn" and (move.heading is None or move.heading.target.position is None):
         yield "nobody says where what it turns to is"
-    if move.heading is not None and move.heading.device:
-        yield f"device '{move.heading.device}' is to point somewhere, where only the front can"
+    if move.heading is not None and _turns_aside(move.heading.device, context):
+        yield f"device '{move.heading.device}' does not look ahead, where only the front can point somewhere"
     if sort != "go" and sort != "turn" and move.heading is not None:
         yield f"heading of a {move.kind}"
     for action in (*move.before, *move.after):
         yield from _of_action(action, context)
+
+
+def _turns_aside(device: str, context: RobotContext) -> bool:
+    known = context.type.devices.get(device) if context.type is not None else None
+    return known is not None and ("mount.yaw" in known.properties or "mavlink.gimbal" in known.properties)
 
 
 def _of_way(move: Move, context: RobotContext) -> Iterator[str]:
@@ -71,9 +76,8 @@ def _of_way(move: Move, context: RobotContext) -> Iterator[str]:
 
 def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
     if action.is_a(NOTIFY):
-        if any(robot != context.robot.id for robot, _ in action.sets):
-            yield "sets slots of other robots"
-    elif action.is_a(DEVICE_ACTION):
+        return
+    if action.is_a(DEVICE_ACTION):
         known = context.type is not None and action_number(context.type, action.device, action.name)
         if known is None or known is False:
             yield f"device '{action.device}' has no action '{action.name}'"

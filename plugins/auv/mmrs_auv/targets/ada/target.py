@@ -43,13 +43,13 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         for name in OWN:
             yield FileSpec(f"{folder}/{name}", name, source=TEMPLATES / name)
         yield FileSpec(f"{folder}/mission.adb", "mission.adb.jinja", {"robot": mission.view()})
-        conditions = list(mission.conditions())
+        conditions = mission.conditions()
         yield FileSpec(
             f"{folder}/conditions.adb",
             "conditions.adb.jinja",
-            {"conditions": conditions},
+            conditions,
             once=True,
-            asks=tuple(f"say when '{condition}' holds" for condition, _ in conditions),
+            asks=tuple(f"say when '{condition}' holds" for condition in mission.undecided()),
         )
 
 

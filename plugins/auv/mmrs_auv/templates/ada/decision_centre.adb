@@ -5,12 +5,15 @@ with Ada.Strings.Fixed;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Ada.Text_IO;           use Ada.Text_IO;
 with Bus;
+with Clocks;
 with Craft;
 with GNAT.OS_Lib;
+with Gateway;
 with Guards;
 with Machine;
 with Mission;
 with Plans;
+with Sight;
 with Slots;
 with Step_Log;
 
@@ -33,13 +36,14 @@ procedure Decision_Centre is
 
    Usage : constant String :=
      "decision_centre --bus HOST:PORT [--channel can0] [--logs FOLDER] [--run ID] [--patience SECONDS] "
-     & "[--depth-step METRES]";
+     & "[--depth-step METRES] [--gateway FILE] [--detections PORT]";
 
    Server : constant String := Option ("--bus", "");
    Colon  : constant Natural := Ada.Strings.Fixed.Index (Server, ":", Ada.Strings.Backward);
    Logs   : constant String := Option ("--logs", "logs");
    Plan   : Plans.Plan;
    Step   : Long_Float;
+   Late   : Long_Float := 0.0;
    Done   : Boolean;
 begin
    if Colon = 0 or else Argument_Count mod 2 /= 0 then
@@ -60,6 +64,13 @@ begin
       Natural'Value (Server (Colon + 1 .. Server'Last)),
       Option ("--channel", "can0"),
       Long_Float'Value (Option ("--patience", "5.0")));
+   if not Plan.Alone then
+      Gateway.Open (Option ("--gateway", ""), To_String (Plan.Robots), Late);
+   end if;
+   if Option ("--detections", "") /= "" then
+      Sight.Open (Natural'Value (Option ("--detections", "")));
+   end if;
+   Step_Log.Shift (Late - Clocks.Now);
    Guards.Begin_Work;
    Done := Machine.Runs (Plan);
    GNAT.OS_Lib.OS_Exit (if Done then 0 else 1);

@@ -8,6 +8,7 @@ with Catalogue;                              use Catalogue;
 with Clocks;                                 use Clocks;
 with Conditions;
 with Craft;                                  use Craft;
+with Gateway;
 with Guards;
 with Plans;                                  use Plans;
 with Slots;
@@ -101,6 +102,7 @@ package body Machine is
    procedure Pause (Plan : Plans.Plan) is
    begin
       Look (Plan);
+      Gateway.Live;
       delay 0.05;
    end Pause;
 
@@ -172,6 +174,13 @@ package body Machine is
 
    procedure Act (Plan : Plans.Plan; At_Move : Move; Actions : Action_Lists.Vector) is
       Id : constant String := To_String (At_Move.Id);
+
+      procedure Wait;
+
+      procedure Wait is
+      begin
+         Pause (Plan);
+      end Wait;
    begin
       for Each of Actions loop
          Look (Plan);
@@ -185,7 +194,7 @@ package body Machine is
                Step_Log.Write ("act", Id, To_String (Each.Detail), Nothing);
 
             when Notify =>
-               Slots.Tell (Each, Id);
+               Slots.Tell (Each, Id, Wait'Access);
          end case;
       end loop;
    end Act;
@@ -217,6 +226,9 @@ package body Machine is
    begin
       loop
          exit when Slots.Pass (Along);
+         if Slots.Is_Hopeless (Along) then
+            Fail ("PEER_LOST", "nobody is left who could set what is waited for");
+         end if;
          Pause (Plan);
       end loop;
       case Along.Way is
@@ -300,11 +312,16 @@ package body Machine is
    begin
       Current := Plan.Start;
       Carry_Out (Plan);
+      Gateway.Leave;
       delay Farewell;
       return True;
    exception
       when Error : Failed =>
          Give_Up (Ada.Exceptions.Exception_Message (Error));
+         return False;
+      when Error : Gateway.Refused =>
+         Put_Line (Standard_Error, Ada.Exceptions.Exception_Message (Error));
+         Give_Up ("PEER_LOST");
          return False;
       when Error : Undecided.Not_Decided =>
          Put_Line (Standard_Error, Ada.Exceptions.Exception_Message (Error));

@@ -46,6 +46,7 @@ package Plans is
    type Way_Kind is (Ends, Takes, Chooses);
 
    --  Id in JSON, Name for people. Task_Number: the composed state that the move belongs to; 0: none.
+   --  Awaited, Senders: own slots, and other robots that set them, lists in JSON.
    --  Target, Away and Speed of Goes: it ends so many metres before the target. Looks: at Seen, turned by
    --  Angle degrees. Waits: own slots that must be active. Otherwise: where a choice leads that does not hold.
    type Move is record
@@ -63,21 +64,22 @@ package Plans is
       Condition     : Text;
       Waits         : Numbers.Vector;
       Awaited       : Text;
+      Senders       : Text;
    end record;
 
    package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
    package Text_Lists is new Ada.Containers.Vectors (Positive, Text);
 
-   --  Robot and Slots in JSON; Log: the name of its file. Step: metres of depth in a step of goals on the
+   --  Robot, Robots (all of the mission) and Slots in JSON; Log: the name of its file. Step: metres of depth in a step of goals on the
    --  bus; 0: not known. Reserve: part of the battery that must remain. Alone: no other robot is waited for.
    type Plan is record
-      Robot, Name, Log : Text;
-      Step, Reserve    : Long_Float := 0.0;
-      Floats, Alone    : Boolean := True;
-      Devices          : Natural := 0;
-      Start            : Positive := 1;
-      Slots, Tasks     : Text_Lists.Vector;
-      Moves            : Move_Lists.Vector;
+      Robot, Robots : Text;
+      Name, Log     : Text;
+      Step, Reserve : Long_Float := 0.0;
+      Floats, Alone : Boolean := True;
+      Start         : Positive := 1;
+      Slots, Tasks  : Text_Lists.Vector;
+      Moves         : Move_Lists.Vector;
    end record;
 
 end Plans;

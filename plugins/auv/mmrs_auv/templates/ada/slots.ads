@@ -5,10 +5,13 @@ package Slots is
 
    procedure Prepare (Plan : Plans.Plan);
 
-   --  Set slots, and log that.
-   procedure Tell (Action : Plans.Action; Move : String);
+   --  Set slots, and log that; Wait is called again and again until all their owners know.
+   procedure Tell (Action : Plans.Action; Move : String; Wait : not null access procedure);
 
    --  Return whether all slots that a move waits for are active.
    function Pass (Move : Plans.Move) return Boolean;
+
+   --  Return whether nobody is left who could set what a move waits for.
+   function Is_Hopeless (Move : Plans.Move) return Boolean;
 
 end Slots;

@@ -4,4 +4,12 @@ package body Undecided is
      (raise Not_Decided
         with Condition & ": nobody says whether it holds, at a depth of" & Integer (Known.Here.Depth)'Image & " m");
 
+   function Is_Below (Known : Craft.State; Part : Long_Float) return Boolean is
+   begin
+      if Known.Charge < 0.0 then
+         raise Not_Decided with "nobody says how much of the battery is left";
+      end if;
+      return Known.Charge < Part;
+   end Is_Below;
+
 end Undecided;
