@@ -96,7 +96,7 @@ def json_literal(value: object, indent: int = 0) -> Code:
 def comment(value: object) -> Code:
     """Return a value as printable characters on one line, which can end no comment and no docstring."""
     shown = repr(str(value))[1:-1].replace("\\'", "'").replace('"', "'")
-    return Code(shown.replace("*/", "* /").replace("`", "'").replace("\\", "/"))
+    return Code(shown.replace("\\", "/").replace("*/", "* /").replace("`", "'"))
 
 
 def name(value: object) -> Code:

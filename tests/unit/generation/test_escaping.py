@@ -7,7 +7,7 @@ import tokenize
 from math import inf, nan
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mmrs_core.generation.escaping import (
@@ -101,6 +101,13 @@ def test_a_comment_ends_no_docstring(text):
     source = f'"""About {comment(text)}."""\nx = 1\n'
     module = ast.parse(source)
     assert len(module.body) == 2
+
+
+@given(texts)
+@example("*\n")
+@example("*\\")
+def test_a_comment_ends_no_block_comment(text):
+    assert "*/" not in comment(text)
 
 
 @given(st.lists(texts, unique=True, max_size=12))
