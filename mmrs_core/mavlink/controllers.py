@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.resources import files as files_of
 from pathlib import Path
 
-from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.behaviour.program import Program, RobotProgram
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
 from mmrs_core.flight.conditions import is_standard
 from mmrs_core.generation.escaping import file_stems
@@ -51,12 +51,24 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(
             f"{module}.py", "robot.py.jinja", {"robot": robot_view(robot, input)}, trace=trace_of(robot)
         )
-    conditions, objects = deciding(input.program), seeking(input.program)
+    yield from fleet_files(input.program, modules)
+    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
+
+
+def fleet_files(program: Program, modules: Sequence[str]) -> Iterator[FileSpec]:
+    """Yield what controllers of a mission share: fleet, README, conditions and objects where there are any.
+
+    Args:
+        program: of the mission.
+        modules: names of the controllers, in the order of its robots.
+    """
+    conditions, objects = deciding(program), seeking(program)
     common = {
-        "mission": input.program.name,
+        "mission": program.name,
         "modules": [
             ModuleView(module, robot.id, TracedStep("controller", robot.id, ""))
-            for module, robot in zip(modules, robots, strict=True)
+            for module, robot in zip(modules, program.robots, strict=True)
         ],
         "conditions": conditions,
         "standard_conditions": [name for name in conditions if is_standard(name)],
@@ -71,8 +83,6 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     if objects:
         asks = tuple(f"how '{name}' is found" for name in objects)
         yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
-    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:

@@ -15,16 +15,15 @@ from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.places import templates_of
 from mmrs_auv.vessel.sheet import Sheet, to_json
 from mmrs_core.behaviour.program import Action, RobotProgram
-from mmrs_core.contributions.targets import FileSpec, Target, TargetInput, TracedStep
+from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.contributions.wiring import DeviceWiring, Unwired, Wired, Wiring
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.flight.conditions import is_standard
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
-from mmrs_core.mavlink.controllers import RUNTIME, RUNTIME_SOURCES, ModuleView
+from mmrs_core.mavlink.controllers import RUNTIME, RUNTIME_SOURCES, fleet_files
 from mmrs_core.mavlink.movements import losses_of
-from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
+from mmrs_core.mavlink.program import robot_view, trace_of
 from mmrs_core.mavlink.safety import policies_of
 from mmrs_core.scene import Device, Policy, RobotType
 
@@ -57,26 +56,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         view = {"robot": robot_view(robot, local), "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    conditions, objects = deciding(local.program), seeking(local.program)
-    common = {
-        "mission": local.program.name,
-        "modules": [
-            ModuleView(module, robot.id, TracedStep("controller", robot.id, ""))
-            for module, robot in zip(modules, robots, strict=True)
-        ],
-        "conditions": conditions,
-        "standard_conditions": [name for name in conditions if is_standard(name)],
-        "own_conditions": [name for name in conditions if not is_standard(name)],
-        "objects": objects,
-    }
-    yield FileSpec("fleet.py", "fleet.py.jinja", common)
-    yield FileSpec("README.md", "README.md.jinja", common)
-    if conditions:
-        asks = tuple(f"when '{name}' holds" for name in conditions if not is_standard(name))
-        yield FileSpec("conditions.py", "conditions.py.jinja", common, once=True, asks=asks)
-    if objects:
-        asks = tuple(f"how '{name}' is found" for name in objects)
-        yield FileSpec("objects.py", "objects.py.jinja", common, once=True, asks=asks)
+    yield from fleet_files(local.program, modules)
     yield from _carried()
 
 
