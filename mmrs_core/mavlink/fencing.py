@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import atan2, cos, inf, pi, remainder
 
+import numpy as np
 from shapely import LineString, MultiLineString, Point, Polygon, prepare, remove_repeated_points
 from shapely.geometry.base import BaseGeometry
 
@@ -192,9 +193,10 @@ def _turn(before: Vertex, here: Vertex, after: Vertex) -> float:
 
 def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fence:
     """Return the largest fence around an area that leaves the legs free."""
-    # Vertices that are as good as one would have it divide by their distance.
-    drawn, reach = remove_repeated_points(Polygon(area.shell), ONE), reach_of(area.shell)
+    # Vertices that are as good as one would turn by angles that are not there.
+    drawn = remove_repeated_points(Polygon(area.shell), ONE)
     assert isinstance(drawn, Polygon)
+    reach = reach_of(tuple((x, y) for x, y in drawn.exterior.coords[:-1]))
 
     def leaves_room(metres: float) -> bool:
         return legs.is_empty or _grown(drawn, metres).distance(legs) >= stray
@@ -211,6 +213,8 @@ def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fenc
 
 def _grown(drawn: Polygon, metres: float) -> Polygon:
     """Return an area with so many metres around it; what that closes in belongs to it."""
-    grown = drawn.buffer(metres, join_style="mitre", mitre_limit=BEVEL) if metres > 0.0 else drawn
+    # Along a spike with no width, GEOS divides by zero on the way to the right ring.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        grown = drawn.buffer(metres, join_style="mitre", mitre_limit=BEVEL) if metres > 0.0 else drawn
     assert isinstance(grown, Polygon)
     return Polygon(grown.exterior)
