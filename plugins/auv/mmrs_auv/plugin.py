@@ -38,7 +38,7 @@ def mmrs_constraints() -> tuple[Constraint, ...]:
 @hookimpl
 def mmrs_fixes() -> tuple[Fix, ...]:
     """Contribute what mends figures that are exchanged, and overlaps in per cent."""
-    from mmrs_auv.fixes import FIXES
+    from mmrs_auv.constraints.fixes import FIXES
 
     return FIXES
 

@@ -1,15 +1,12 @@
-"""What must hold for underwater vehicles and for missions that use them."""
+"""Constraints on thrusters, weight in water, and the depths that a team reaches."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mmrs_auv.depths import too_deep
-from mmrs_auv.equipment_checks import EQUIPMENT_CONSTRAINTS
+from mmrs_auv.constraints.depths import too_deep
 from mmrs_auv.kinds import GRAVITY
-from mmrs_auv.mounting_checks import MOUNTING_CONSTRAINTS
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, THRUSTER
-from mmrs_auv.task_checks import TASK_CONSTRAINTS
 from mmrs_core.contributions.constraints import Constraint, Finding
 from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element, is_kind, label_of
@@ -134,7 +131,7 @@ def _is_auv(robot_type: Element) -> bool:
     return any(is_kind(each, *AUV_MOVEMENT) for each in children(robot_type, "movementCapabilities"))
 
 
-CONSTRAINTS = (
+VEHICLE_CONSTRAINTS = (
     Constraint(
         "AUV001",
         "Some thruster moves the vehicle level",
@@ -231,7 +228,4 @@ CONSTRAINTS = (
         "trim the vehicle to be nearly neutral, or correct the thrust",
         Severity.WARNING,
     ),
-    *MOUNTING_CONSTRAINTS,
-    *EQUIPMENT_CONSTRAINTS,
-    *TASK_CONSTRAINTS,
 )
