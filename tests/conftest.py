@@ -23,6 +23,15 @@ IN_REAL_TIME = {
     ),
 }
 """Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
+SHARING = (
+    "documentation/test_tutorial.py",
+    "documentation/test_diagnostics_page.py",
+    "end_to_end/new_plugins/test_new_plugins.py",
+    "end_to_end/reports/test_flights.py",
+    "conformance/emf/test_dates.py",
+    "unit/analysis/test_derived_behaviours.py",
+)
+"""Modules whose tests share what is long in the making, so that one worker makes it once."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -48,7 +57,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log):
-    """Give each group of tests in real time one worker: marks of xdist 3.8 are lost with pytest 9.2."""
+    """Give each group of tests one worker: marks of xdist 3.8 are lost with pytest 9.2."""
     if config.getoption("dist") != "loadgroup":
         return None
     from xdist.scheduler import LoadScopeScheduling
@@ -61,12 +70,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log):
 
 
 def group_of(nodeid: str) -> str:
-    """Return the group of a test in real time; of another, which is alone, its own name."""
+    """Return the group of a test; of one that needs none, its own name."""
     path = HERE.parent / nodeid.partition("::")[0]
     for group, folders in IN_REAL_TIME.items():
         if any(path.is_relative_to(HERE / folder) for folder in folders):
             return group
-    return nodeid
+    return str(path) if any(path == HERE / module for module in SHARING) else nodeid
 
 
 @pytest.fixture

@@ -63,13 +63,12 @@ def test_they_are_safe(taken, name):
     assert not unsafe
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_the_course_is_completed_from_random_starts(taken, contributions, tmp_path, seed):
-    completes(taken, contributions, tmp_path, seed)
+def test_the_course_is_completed_from_a_random_start(taken, contributions, tmp_path):
+    completes(taken, contributions, tmp_path, 1)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(3, 11))
+@pytest.mark.parametrize("seed", range(2, 11))
 def test_the_course_is_completed_from_many_starts(taken, contributions, tmp_path, seed):
     completes(taken, contributions, tmp_path, seed)
 

@@ -114,7 +114,7 @@ def test_many_random_plans_can_be_carried_out(seed):
 
 
 def test_most_random_scenes_have_a_plan_that_can_be_carried_out():
-    assert sum(check(seed) for seed in range(20)) >= 12
+    assert sum(check(seed) for seed in range(10)) >= 6
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 6])
