@@ -69,10 +69,12 @@ def milliseconds(pilot: Autopilot) -> int:
 
 
 def global_position(pilot: Autopilot) -> Message | None:
-    """Return where it is on Earth; None until it knows."""
-    if pilot.uptime < pilot.settings.ready:
-        return None
+    """Return where it is on Earth; until it knows, ArduPilot tells 0 degrees of both, and PX4 nothing."""
     latitude, longitude = pilot.degrees()
+    if pilot.uptime < pilot.settings.ready:
+        if pilot.settings.firmware == PX4:
+            return None
+        latitude = longitude = 0.0
     up = pilot.settings.altitude + pilot.body.position[2]
     north, east, climb = pilot.body.motion
     return mavlink.MAVLink_global_position_int_message(

@@ -120,3 +120,11 @@ class Messages:
             return False
         self._orders[kind] = order
         return True
+
+
+def tells_place(message: Message) -> bool:
+    """Return whether a GLOBAL_POSITION_INT or LOCAL_POSITION_NED tells where the vehicle is.
+
+    ArduPilot sends 0 degrees north, 0 degrees east as long as it does not know, with the right height.
+    """
+    return message.get_type() != "GLOBAL_POSITION_INT" or bool(message.lat or message.lon)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ..places import distance
 from ..program import Geographic, Local, Place
+from .messages import tells_place
 from .ports import Address
 
 Message = Any
@@ -97,7 +98,7 @@ class Roaming:
 def sign_in(message: Message, now: float) -> Sign | None:
     """Return what a message tells of where the vehicle is; None if it tells nothing."""
     kind = message.get_type()
-    if kind == "GLOBAL_POSITION_INT":
+    if kind == "GLOBAL_POSITION_INT" and tells_place(message):
         place: Place = Geographic(message.lat * 1e-7, message.lon * 1e-7, message.relative_alt * 1e-3)
         return Sign(place, hypot(message.vx, message.vy, message.vz) * 0.01, message.time_boot_ms, now)
     if kind == "LOCAL_POSITION_NED":

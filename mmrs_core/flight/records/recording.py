@@ -12,6 +12,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..clock import Clock
 from ..links.link import Message
+from ..links.messages import tells_place
 from ..program import Geographic, Place
 from ..services.items import NAMES
 from ..vehicles.telemetry import NO_HEADING
@@ -170,10 +171,9 @@ class Recording:
         self._values[name] = value
 
     def _on_position(self, message: Message) -> None:
-        now = self._clock.now()
-        if (
-            message.get_type() == "GLOBAL_POSITION_INT"
-        ) != self._geographic or now - self._fixed < FIX_SECONDS:
+        now, geographic = self._clock.now(), message.get_type() == "GLOBAL_POSITION_INT"
+        wanted = geographic == self._geographic and tells_place(message)
+        if not wanted or now - self._fixed < FIX_SECONDS:
             return
         self._fixed = now
         # The link keeps a message once everybody has seen it: the state is still that of the one before.

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..links.link import Link
+from ..links.messages import tells_place
 from .texts import Texts
 
 PREARM = mavlink.MAV_SYS_STATUS_PREARM_CHECK
@@ -74,7 +75,8 @@ def unlocated(link: Link, *, geographic: bool) -> str:
 
 
 def _unlocated(link: Link, position: str, *, geographic: bool) -> Iterator[str]:
-    if link.latest(position) is None:
+    told = link.latest(position)
+    if told is None or not tells_place(told):
         yield f"it has not told where it is ({position})"
     yield from _estimate_trouble(link, geographic=geographic)
     yield from _fix_trouble(link, geographic)

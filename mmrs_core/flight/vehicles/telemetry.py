@@ -10,6 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import FENCE_BREACHED, POSITION_LOST
 from ..links.link import Link, Message
+from ..links.messages import tells_place
 from ..program import Geographic, Local, Place
 from .announcements import WORDS, Announcements
 from .detections import Detections
@@ -49,7 +50,7 @@ class Telemetry:
     def __init__(self, link: Link, home: Place) -> None:
         """Read a link; the frame of `home` decides which positions count."""
         self._link = link
-        self._home = home
+        self._place = home
         self._geographic = isinstance(home, Geographic)
         self._position = "GLOBAL_POSITION_INT" if self._geographic else "LOCAL_POSITION_NED"
         self.texts = Texts(link.clock)
@@ -79,7 +80,8 @@ class Telemetry:
 
     def placed(self) -> bool:
         """Return whether the vehicle has told where it is."""
-        return self._link.latest(self._position) is not None
+        found = self._link.latest(self._position)
+        return found is not None and tells_place(found)
 
     def ready(self) -> bool:
         """Return whether the vehicle knows where it is and its own checks pass."""
@@ -137,9 +139,11 @@ class Telemetry:
         return next((event for event, _ in WORDS if event in said), None)
 
     def here(self) -> Place:
-        """Return the position; home before there is one."""
+        """Return the last position that was told; home before there is one."""
         found = self._link.latest(self._position)
-        return self._home if found is None else place_in(found)
+        if found is not None and tells_place(found):
+            self._place = place_in(found)
+        return self._place
 
     @contextmanager
     def trail(self) -> Iterator[Trail]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 from ..links.link import Link, Message
+from ..links.messages import tells_place
 from ..program import Geographic, Local, Place
 
 
@@ -33,7 +34,9 @@ class Trail:
         """Return the positions since it was last asked, oldest first."""
         places = []
         while self._told:
-            places.append(place_in(self._told.popleft()))
+            message = self._told.popleft()
+            if tells_place(message):
+                places.append(place_in(message))
         return places
 
     def place_order(self) -> int:

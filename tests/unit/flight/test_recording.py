@@ -50,6 +50,11 @@ def test_a_heading_that_a_message_does_not_tell_stays_as_it_was(fixes):
     assert fix["heading"] == BEFORE.heading
 
 
+def test_zero_degrees_of_both_are_no_fix(fixes):
+    message = mavlink.MAVLink_global_position_int_message(0, 0, 0, 720_000, 100, 0, 0, 0, 18_000)
+    assert fixes(message, geographic=True) == []
+
+
 def test_a_local_fix_has_the_speed_of_its_message(fixes):
     (fix,) = fixes(
         mavlink.MAVLink_local_position_ned_message(0, 1.0, 2.0, -3.0, 0.6, 0.0, -0.8), geographic=False

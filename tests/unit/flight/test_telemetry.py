@@ -198,3 +198,25 @@ def test_long_texts_are_put_together_from_their_pieces(told):
     pieces = [text("x" * 50, id=7), text("and the end", id=7, seq=1)]
     (found,) = told(*pieces).texts.since(0.0)
     assert found.text == "x" * 50 + "and the end"
+
+
+def nowhere():
+    return mavlink.MAVLink_global_position_int_message(0, 0, 0, 720_000, 100, 0, 0, 0, 9000)
+
+
+def test_zero_degrees_of_both_are_no_place_but_what_ardupilots_tell_before_they_know_one(told):
+    telemetry = told(*READY[:3], nowhere())
+    assert not telemetry.placed()
+    assert telemetry.here() == HOME
+    assert telemetry.lacks() == ("it has not told where it is (GLOBAL_POSITION_INT)",)
+
+
+def test_a_vehicle_that_does_not_know_its_place_any_more_is_where_it_was_last():
+    with linked() as (link, wire):
+        telemetry = Telemetry(link, HOME)
+        wire.say(position())
+        eventually(telemetry.placed)
+        assert telemetry.here() == Geographic(42.37, 13.35, 30.0)
+        wire.say(nowhere())
+        eventually(lambda: not telemetry.placed())
+        assert telemetry.here() == Geographic(42.37, 13.35, 30.0)
