@@ -12,6 +12,7 @@ from random import Random
 
 import pytest
 from mmrs_auv.targets.can_c.target import CAN_C, files_of
+from mmrs_auv.vessel.body.ballast import Release, pressure_of_depth
 from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import STATUS_BASE
@@ -89,44 +90,52 @@ def told(program: Path, script: Script) -> list[list[str]]:
     return [block.splitlines() for block in blocks]
 
 
+class ReleaseByPressure(Release):
+    """A drop weight's release that knows of the depth what the bus says of it."""
+
+    deep = False
+
+    def run(self, now: float, depth: float) -> None:
+        super().run(now, 1.0 if self.deep else 0.0)
+
+
 class Compared:
     """The drives of a simulated vehicle, and a script of all that happens to them."""
 
     def __init__(self, sheet: Sheet, begin: int = 0) -> None:
         self.vehicle = Vehicle(sheet, Codec(sheet))
+        self.release = self.vehicle._release = ReleaseByPressure(sheet)
         self.script = Script(begin)
         self.expected: list[list[str]] = []
         self._count = len(sheet.thrusters)
         self._released = False
+        self._deep = pressure_of_depth(sheet)
+        self._codec = Codec(sheet)
 
     def hear(self, at: int, frame: Frame) -> None:
         self.script.hear(at, frame)
-        self._run(at)
+        self.vehicle._advance(at / 100.0)
         self.vehicle.hear(frame, at / 100.0)
+        said = self._codec.decode(frame)
+        if said is not None and said.name == "Pressure":
+            self.release.deep = said.values["Pressure"] > self._deep
         self._tell(())
 
     def tick(self, at: int) -> None:
         self.script.tick(at)
-        frames = self.vehicle.tick(at / 100.0)
-        self._run(at)
-        self._tell(frames)
+        self._tell(self.vehicle.tick(at / 100.0))
 
     def fail(self, number: int, failed: bool) -> None:
         self.script.fail(number, failed)
         dead = self.vehicle.faults.dead
         self.vehicle.faults.dead = dead | {number} if failed else dead - {number}
 
-    def _run(self, at: int) -> None:
-        for number, drive in enumerate(self.vehicle.drives):
-            drive.dead = number in self.vehicle.faults.dead
-            drive.run(at / 100.0)
-
     def _tell(self, frames: Iterable[Frame]) -> None:
         said = [each for each in frames if 0 <= each.id - STATUS_BASE < self._count]
         lines = [f"s {each.id:x} {each.data.hex()}" for each in said]
         if self.vehicle.released and not self._released:
             self._released = True
-            lines.append("r")
+            lines.insert(0, "r")
         outputs = (f"o {number} {_text(drive.thrust)}" for number, drive in enumerate(self.vehicle.drives))
         self.expected.append([*lines, *outputs])
 
@@ -150,6 +159,10 @@ def happenings(sheet: Sheet, seed: int, seconds: float, *, emergencies: bool = T
             thrust = random.choice([0.0, 1.0, -1.0, random.uniform(-1.0, 1.0)]) * thruster.max_thrust
             said = codec.encode(f"Thruster{number}Command", Thrust=thrust, Enable=random.random() < 0.9)
             compared.hear(at, _changed(said, random))
+        if random.random() < 0.05:
+            pressure = random.choice([0.0, 101_325.0, pressure_of_depth(sheet) // 1, 2e5, 2.0**32 - 2.0])
+            said = codec.encode("Pressure", Pressure=pressure + random.randint(0, 1), Temperature=4.0)
+            compared.hear(at, _changed(said, random))
         if random.random() < 0.01 and sheet.thrusters:
             compared.fail(random.randrange(len(sheet.thrusters)), random.random() < 0.4)
         if emergencies and at > seconds * 70 and random.random() < 0.004:
@@ -168,7 +181,8 @@ def _changed(frame: Frame, random: Random) -> Frame:
             for _ in range(random.randint(1, 3)):
                 data[random.randrange(len(data))] ^= 1 << random.randrange(8)
         case "length":
-            data = data[: random.randrange(len(data))] if random.random() < 0.5 else data + b"\0"
+            shorter = random.random() < 0.5 or len(data) == 8
+            data = data[: random.randrange(len(data))] if shorter else data + b"\0"
         case "extended":
             return Frame(frame.id, frame.data, extended=True)
         case "other":

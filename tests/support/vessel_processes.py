@@ -56,7 +56,7 @@ class Ear:
 class Boat:
     """A vehicle that runs."""
 
-    def __init__(self, sheet: Sheet, folder: Path) -> None:
+    def __init__(self, sheet: Sheet, folder: Path, drives: Path | None = None) -> None:
         self.file = folder / "sheet.json"
         self.file.write_text(to_json(sheet))
         self.hub = subprocess.Popen(
@@ -66,12 +66,17 @@ class Boat:
         assert self.hub.stdout is not None
         port = int(self.hub.stdout.readline().split()[2].rpartition(":")[2].rstrip(";"))
         self.channel = f"can0@127.0.0.1:{port}"
-        self.parts = {part: self.start(part) for part in PARTS}
+        without = () if drives is None else ("--without-drives",)
+        self.parts = {part: self.start(part, *(without if part == "vehicle" else ())) for part in PARTS}
+        if drives is not None:
+            self.parts["drives"] = subprocess.Popen(
+                [str(drives), "127.0.0.1", str(port)], stderr=subprocess.PIPE, text=True
+            )
         self.ear = Ear(sheet, open_port("socketcand", self.channel))
         self.connection = Connection(sheet, open_port("socketcand", self.channel))
         self.craft = self.connection.craft
 
-    def start(self, part: str) -> subprocess.Popen[str]:
+    def start(self, part: str, *more: str) -> subprocess.Popen[str]:
         words = [
             sys.executable,
             "-m",
@@ -81,6 +86,7 @@ class Boat:
             str(self.file),
             "--channel",
             self.channel,
+            *more,
         ]
         return subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
 
@@ -107,9 +113,9 @@ class Boat:
 
 
 @contextmanager
-def boat(sheet: Sheet, folder: Path) -> Iterator[Boat]:
-    """Have a vehicle run."""
-    found = Boat(sheet, folder)
+def boat(sheet: Sheet, folder: Path, drives: Path | None = None) -> Iterator[Boat]:
+    """Have a vehicle run; `drives`: a program that stands for those of its thrusters."""
+    found = Boat(sheet, folder, drives)
     try:
         yield found
     finally:

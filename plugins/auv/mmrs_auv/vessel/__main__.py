@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from queue import SimpleQueue
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ from .wire.codec import Codec
 from .wire.ports import CHANNEL, PortError, open_port
 
 if TYPE_CHECKING:
+    from .body.vehicle import Vehicle
     from .control.actuators import Drives
 
 PARTS = ("sensors", "actuators", "movement", "vehicle")
@@ -83,6 +85,14 @@ def _parser() -> argparse.ArgumentParser:
         metavar="MODULE:FUNCTION,OPTION=VALUE,...",
         help="of thrusters that go by other messages, such as mmrs_dronecan.speed_controllers:opened",
     )
+    parser.add_argument(
+        "--without-drives",
+        action="store_true",
+        help="the vehicle's thrusters push as drives that are other nodes of the bus say that they do",
+    )
+    parser.add_argument(
+        "--faults", action="store_true", help="faults of the vehicle are typed: see body/befalling.py"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of its instruments' noise and bias")
     parser.add_argument("--figures", type=Path, help="file for how late ticks were, at the end")
     return parser
@@ -114,7 +124,21 @@ def _node(given: argparse.Namespace, sheet: Sheet) -> Node:
 
     text = None if given.surroundings is None else given.surroundings.read_text(encoding="utf-8")
     found = around.Surroundings() if text is None else around.from_json(text)
-    return Vehicle(sheet, codec, found, given.seed)
+    vehicle = Vehicle(sheet, codec, found, given.seed, without_drives=given.without_drives)
+    return _befallen(sheet, vehicle) if given.faults else vehicle
+
+
+def _befallen(sheet: Sheet, vehicle: Vehicle) -> Node:
+    from .body.befalling import Befallen
+
+    lines: SimpleQueue[str] = SimpleQueue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            lines.put(line)
+
+    threading.Thread(target=read, name="typed lines", daemon=True).start()
+    return Befallen(sheet, vehicle, lines, lambda said: print(said, file=sys.stderr, flush=True))
 
 
 def _drives(text: str | None, sheet: Sheet) -> Drives | None:

@@ -26,6 +26,11 @@ bool outputs_failed(unsigned thruster)
     return failed[thruster];
 }
 
+bool outputs_deep(bool told)
+{
+    return told;
+}
+
 void outputs_release(void)
 {
     (void)printf("r\n");

@@ -10,8 +10,9 @@ from c_drives import STRICT, Compared, compiled, happenings, need_compiler, told
 from can_hub import Raw, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mmrs_auv.targets.can_c.target import CAN_C
+from mmrs_auv.targets.can_c.target import CAN_C, files_of
 from mmrs_auv.targets.can_c.words import block, number
+from mmrs_auv.vessel.body.ballast import pressure_of_depth
 from mmrs_auv.vessel.wire.check import check_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
@@ -35,9 +36,17 @@ HOSTILE = (
 )
 
 
+IMPATIENT = sheet(3, extra={"deadman.time": 0.25})
+
+
 @pytest.fixture(scope="module")
 def three(tmp_path_factory):
     return compiled(sheet(3), tmp_path_factory.mktemp("three"), "-fsanitize=undefined,address")
+
+
+@pytest.fixture(scope="module")
+def impatient(tmp_path_factory):
+    return compiled(IMPATIENT, tmp_path_factory.mktemp("impatient"), "-fsanitize=undefined,address")
 
 
 def agree(program, compared):
@@ -47,9 +56,9 @@ def agree(program, compared):
 @pytest.mark.parametrize(
     "seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(4, 60))]
 )
-def test_drives_do_what_those_of_the_simulated_vehicle_do(three, seed):
-    compared = happenings(sheet(3), seed, 8.0)
-    agree(three, compared)
+def test_drives_do_what_those_of_the_simulated_vehicle_do(impatient, seed):
+    compared = happenings(IMPATIENT, seed, 8.0)
+    agree(impatient, compared)
     states = {line[-6:-4] for lines in compared.expected for line in lines if line.startswith("s")}
     assert len(states) >= 3, "the script must bring about most states"
 
@@ -159,6 +168,46 @@ def test_what_is_the_users_is_said_to_be_so():
     assert [path for path, file in files.items() if file.once] == ["drives_alpha/outputs.c"]
     assert files["drives_alpha/outputs.c"].asks
     assert "drives_alpha/" in files["README.md"].content.decode()
+
+
+def abandoned(pressure, patience=5.0):
+    """Return drives that are commanded for a tenth of a second, at a pressure, and then no more."""
+    vehicle = sheet(3, extra={"deadman.time": patience})
+    compared, codec = Compared(vehicle), Codec(vehicle)
+    compared.hear(0, codec.encode("Pressure", Pressure=pressure, Temperature=10.0))
+    for at in (0, 5, 10):
+        compared.hear(at, codec.encode("Thruster0Command", Thrust=9.0, Enable=True))
+    for at in range(20, 700, 10):
+        compared.tick(at)
+    return compared
+
+
+def test_the_drop_weight_falls_once_nobody_commands_a_vehicle_down_there(three):
+    compared = abandoned(120_000.0)
+    agree(three, compared)
+    falls = [
+        line for line, lines in zip(compared.script.lines, compared.expected, strict=True) if "r" in lines
+    ]
+    assert falls == ["t 5100000"]
+
+
+@pytest.mark.parametrize("pressure", [101_325.0, pressure_of_depth(sheet(3)) // 1])
+def test_the_drop_weight_stays_where_it_is_not_deep(three, pressure):
+    compared = abandoned(pressure)
+    agree(three, compared)
+    assert not any("r" in lines for lines in compared.expected)
+
+
+def test_the_drop_weight_is_held_for_ever_where_a_sheet_says_so(tmp_path):
+    vehicle = sheet(3, extra={"deadman.time": 0.0})
+    compared = abandoned(120_000.0, patience=0.0)
+    agree(compiled(vehicle, tmp_path), compared)
+    assert not any("r" in lines for lines in compared.expected)
+
+
+def test_a_dead_mans_time_that_drives_cannot_measure_is_refused():
+    with pytest.raises(UnsupportedError, match=r"deadman.time: 5000 s is more than 2000 s"):
+        list(files_of(sheet(1, extra={"deadman.time": 5000.0}), "drives"))
 
 
 @pytest.fixture(scope="module")

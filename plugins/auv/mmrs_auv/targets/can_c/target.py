@@ -13,6 +13,7 @@ from mmrs_auv.targets.can_c.bus import codec_of
 from mmrs_auv.targets.can_c.words import block, number
 from mmrs_auv.targets.moves import MOVES
 from mmrs_auv.targets.places import templates_of
+from mmrs_auv.vessel.body.ballast import patience_of, pressure_of_depth
 from mmrs_auv.vessel.body.propulsion import curve_of
 from mmrs_auv.vessel.refusals import MOST_POWER
 from mmrs_auv.vessel.sheet import Sheet
@@ -24,9 +25,14 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 
 AS_THEY_ARE = ("drives.h", "drives.c", "outputs.h", "hub.c", "Makefile")
-ASKS = ("what sets the thrust of each motor, tells of its faults, and lets go of the drop weight",)
+ASKS = (
+    "what sets the thrust of each motor, tells of its faults and of depth, and lets go of the drop weight",
+)
 KNOWN = frozenset({*MOVES, (BEHAVIOUR, "Recharge")})
 """Moves in which thrusters do nothing but what they are told."""
+
+LONGEST = 2000.0
+"""Seconds that drives measure, at most: their microseconds have 32 bits."""
 
 CAPABILITIES = {
     "Behaviour.robots": "a folder each",
@@ -113,10 +119,19 @@ def _view(sheet: Sheet) -> dict[str, object]:
         )
     return {
         "robot": sheet.robot,
-        "watchdog": int(sheet.watchdog * 1e6 + 1e-3),
+        "watchdog": _microseconds(sheet.watchdog, "watchdog"),
+        "dead_man": _microseconds(patience_of(sheet), "deadman.time"),
+        "deep": pressure_of_depth(sheet),
         "most_power": MOST_POWER,
         "thrusters": thrusters,
     }
+
+
+def _microseconds(seconds: float, what: str) -> int:
+    if seconds > LONGEST:
+        why = f"{what}: {seconds:g} s is more than {LONGEST:g} s, which the drives' counter of 32 bits holds"
+        raise UnsupportedError(why, (why,))
+    return int(seconds * 1e6 + 1e-3)
 
 
 CAN_C = Target(

@@ -62,15 +62,40 @@ static void put_out(struct drive *drive, unsigned number)
     outputs_set(number, drive->thrust);
 }
 
+static void let_go(struct drives *drives)
+{
+    if (!drives->released) {
+        drives->released = true;
+        outputs_release();
+    }
+}
+
+static void mind_dead_man(struct drives *drives, uint32_t now)
+{
+#if VEHICLE_DEAD_MAN > 0
+    if (drives->commanded && now - drives->commanded_at >= VEHICLE_DEAD_MAN) {
+        drives->commanded = false;
+        drives->abandoned = true;
+    }
+#else
+    (void)now;
+#endif
+    if (drives->abandoned && outputs_deep(drives->deep)) {
+        let_go(drives);
+    }
+}
+
 static void look_after(struct drives *drives, uint32_t now)
 {
+    mind_dead_man(drives, now);
     for (unsigned number = 0; number < VEHICLE_THRUSTERS; number++) {
         run_out(&drives->drive[number], now);
         put_out(&drives->drive[number], number);
     }
 }
 
-static void obey(struct drive *drive, const struct vehicle_command *command, double most, uint32_t now)
+/* Return whether the command is valid. */
+static bool obey(struct drive *drive, const struct vehicle_command *command, double most, uint32_t now)
 {
     const uint8_t ahead = drive->counted ? (uint8_t)(command->counter - drive->last) : 0u;
     const bool valid = ahead >= 1u && ahead <= MOST_AHEAD;
@@ -84,6 +109,7 @@ static void obey(struct drive *drive, const struct vehicle_command *command, dou
         drive->enabled = command->enable;
         drive->wanted = command->enable ? fmax(-most, fmin(most, command->thrust)) : 0.0;
     }
+    return valid;
 }
 
 static void hear_command(
@@ -98,7 +124,11 @@ static void hear_command(
     if (command.raw < thruster->low || command.raw > thruster->high) {
         return;
     }
-    obey(drive, &command, thruster->max_thrust, now);
+    if (obey(drive, &command, thruster->max_thrust, now)) {
+        drives->commanded = true;
+        drives->abandoned = false;
+        drives->commanded_at = now;
+    }
     put_out(drive, number);
 }
 
@@ -114,9 +144,17 @@ static void hear_emergency(struct drives *drives, const struct drives_frame *fra
         drives->drive[number].stopped = true;
         put_out(&drives->drive[number], number);
     }
-    if (emergency.release != 0u && !drives->released) {
-        drives->released = true;
-        outputs_release();
+    if (emergency.release != 0u) {
+        let_go(drives);
+    }
+}
+
+static void hear_pressure(struct drives *drives, const struct drives_frame *frame)
+{
+    struct bus_pressure_t found;
+    if (is_sound(frame, BUS_PRESSURE_LENGTH) && bus_pressure_unpack(&found, frame->data, frame->length) == 0
+        && bus_pressure_temperature_is_in_range(found.temperature)) {
+        drives->deep = bus_pressure_pressure_decode(found.pressure) > VEHICLE_DEEP;
     }
 }
 
@@ -155,6 +193,10 @@ void drives_hear(struct drives *drives, const struct drives_frame *frame, uint32
     }
     if (frame->id == BUS_EMERGENCY_FRAME_ID) {
         hear_emergency(drives, frame);
+        return;
+    }
+    if (frame->id == BUS_PRESSURE_FRAME_ID) {
+        hear_pressure(drives, frame);
         return;
     }
     for (unsigned number = 0; number < VEHICLE_THRUSTERS; number++) {

@@ -40,6 +40,10 @@ struct drive {
 struct drives {
     struct drive drive[VEHICLE_THRUSTERS];
     bool released;
+    bool deep; /* as pressure said last */
+    bool commanded; /* whether a valid command came, and the dead man's time has not run out since */
+    bool abandoned; /* whether it ran out */
+    uint32_t commanded_at;
     bool told; /* whether due counts */
     uint32_t due;
 };

@@ -13,6 +13,11 @@ bool outputs_failed(unsigned thruster)
     return false; /* ask the motor controller for its faults here */
 }
 
+bool outputs_deep(bool told)
+{
+    return told; /* ask a pressure switch of this board, if it has one, that knows when the bus is gone */
+}
+
 void outputs_release(void)
 {
     /* let go of the drop weight here, if this board holds it */

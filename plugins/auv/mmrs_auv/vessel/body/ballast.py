@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
+from ..instruments import instruments_of
 from ..sheet import Sheet
+from .hydrodynamics import GRAVITY
 
 _PATIENCE, _DEEP, _SOON = 5.0, 0.5, 1e-9
+
+
+def patience_of(sheet: Sheet) -> float:
+    """Return seconds without a valid command after which the drop weight falls; 0: it never does."""
+    return max(0.0, sheet.extra.get("deadman.time", _PATIENCE))
+
+
+def pressure_of_depth(sheet: Sheet) -> float:
+    """Return the absolute pressure, Pa, beyond which a vehicle counts as deep."""
+    return instruments_of(sheet).pressure_air + sheet.water_density * GRAVITY * _DEEP
 
 
 class Release:
@@ -20,7 +32,7 @@ class Release:
 
     def __init__(self, sheet: Sheet) -> None:
         self.open = False
-        self._patience = sheet.extra.get("deadman.time", _PATIENCE)
+        self._patience = patience_of(sheet)
         self._commanded: float | None = None
 
     def command(self, now: float) -> None:

@@ -6,13 +6,14 @@ from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
 from ..sheet import Sheet, Vector
-from ..wire.catalogue import COMMAND_BASE, EMERGENCY_ID, VEHICLE, messages_of
+from ..wire.catalogue import COMMAND_BASE, EMERGENCY_ID, STATUS_BASE, VEHICLE, messages_of
 from ..wire.codec import Codec, Received, Value
 from ..wire.frame import Frame
 from .ballast import Release
 from .devices import Devices, Operation
 from .drive import Drive
 from .dynamics import Body, at_rest, body_of, floating_depth, lighter, over_ground, slopes, step
+from .outside import Outside
 from .propulsion import Propulsion, watts_of
 from .rotation import angles_of, of_angles, rows_of, to_body
 from .sensing import SENSORS, Faults, Sensing, Truth, antenna_of
@@ -49,6 +50,7 @@ class Vehicle:
         *,
         place: Vector | None = None,
         heading: float | None = None,
+        without_drives: bool = False,
     ) -> None:
         """Put a vehicle into the water, at rest over ground, level.
 
@@ -59,6 +61,8 @@ class Vehicle:
             seed: of the noise and bias of its instruments.
             place: north, east and depth, metres; home if None. It begins no higher than it floats.
             heading: degrees; that of home if None.
+            without_drives: whether its thrusters' drives are other nodes, which say what they put out. Its
+                own then only see to the drop weight.
 
         Raises:
             ValueError: the sheet has a dimension, mass or coefficient that can't be.
@@ -91,6 +95,10 @@ class Vehicle:
         }
         self._due = dict.fromkeys(self._periods, -inf)
         self._last: dict[str, Mapping[str, Value]] = {}
+        self._outside = Outside(sheet) if without_drives else None
+        if without_drives:
+            for number in range(len(self.drives)):
+                del self._periods[f"Thruster{number}Status"]
 
     @property
     def released(self) -> bool:
@@ -125,14 +133,17 @@ class Vehicle:
 
     def hear(self, frame: Frame, now: float) -> None:
         """Obey commands to thrusters and devices, and emergencies."""
-        number = frame.id - COMMAND_BASE
-        if not 0 <= number < len(self.drives) and frame.id not in (EMERGENCY_ID, DEVICE_COMMAND):
+        number, status = frame.id - COMMAND_BASE, frame.id - STATUS_BASE
+        told = self._outside is not None and 0 <= status < len(self.drives)
+        if not (told or 0 <= number < len(self.drives) or frame.id in (EMERGENCY_ID, DEVICE_COMMAND)):
             return
         received = self._codec.decode(frame)
         if received is None or self.charge <= 0.0:
             return
         self._advance(now)
-        if frame.id == EMERGENCY_ID:
+        if told and self._outside is not None:
+            self._outside.hear(status, received, now)
+        elif frame.id == EMERGENCY_ID:
             self._reason = str(received.values["Reason"])
             self._stop(release=bool(received.values["Release"]))
         elif frame.id == DEVICE_COMMAND:
@@ -174,7 +185,7 @@ class Vehicle:
 
     def _move(self) -> None:
         self._look_after_drives(self._time)
-        wanted = [drive.thrust for drive in self.drives]
+        wanted = self._thrusts()
         self._state = step(self._body, self._state, self._propulsion.step(wanted), STEP)
         self._steps += 1
         drawn = [watts_of(each, thrust) for each, thrust in zip(self._sheet.thrusters, wanted, strict=True)]
@@ -183,6 +194,15 @@ class Vehicle:
         if self.charge <= 0.0:
             self._stop(release=True)
         self._release.run(self._time, self._state[2])
+
+    def _thrusts(self) -> list[float]:
+        """Return newtons that the drives put out."""
+        if self._outside is None:
+            return [drive.thrust for drive in self.drives]
+        if self.charge <= 0.0:
+            return [0.0] * len(self.drives)
+        told = enumerate(self._outside.thrusts(self._time))
+        return [0.0 if number in self.faults.dead else thrust for number, thrust in told]
 
     def _look_after_drives(self, now: float) -> None:
         for number, drive in enumerate(self.drives):

@@ -1,0 +1,143 @@
+"""What befalls a simulated vehicle, in words that people type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import isfinite
+from queue import SimpleQueue
+from typing import TypeAlias
+
+from ..sheet import Sheet
+from ..wire.frame import Frame
+from .sensing import SENSORS
+from .vehicle import Vehicle
+
+FAULTS = "thruster-dead THRUSTER, frozen MESSAGE, silent MESSAGE, noisy MESSAGE TIMES, leak, battery PART"
+
+Act: TypeAlias = Callable[[Vehicle], None]
+
+
+def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
+    """Return what some words do to a vehicle: one of `FAULTS`, or ``mend`` and a fault without its figure.
+
+    A thruster is named by its identifier or its number on the bus.
+
+    Raises:
+        ValueError: they say nothing of that kind.
+    """
+    match words:
+        case ["thruster-dead", name]:
+            number = _thruster(sheet, name)
+            return lambda vehicle: vehicle.faults.dead.add(number)
+        case ["mend", "thruster-dead", name]:
+            number = _thruster(sheet, name)
+            return lambda vehicle: vehicle.faults.dead.discard(number)
+        case ["frozen" | "silent" as what, name]:
+            message = _message(name)
+            return lambda vehicle: _instruments(vehicle, what).add(message)
+        case ["mend", "frozen" | "silent" as what, name]:
+            message = _message(name)
+            return lambda vehicle: _instruments(vehicle, what).discard(message)
+        case ["noisy", name, times]:
+            message, amount = _message(name), _number(times, 1e6)
+            return lambda vehicle: vehicle.faults.noisy.update({message: amount})
+        case ["mend", "noisy", name]:
+            message = _message(name)
+            return lambda vehicle: _quieten(vehicle, message)
+        case ["leak"] | ["mend", "leak"]:
+            leak = len(words) == 1
+            return lambda vehicle: _leak(vehicle, leak)
+        case ["battery", part]:
+            left = _number(part, 1.0)
+            return lambda vehicle: _charge(vehicle, left * sheet.battery)
+    raise ValueError(f"{' '.join(words)}: no such fault; there are {FAULTS}, and mend FAULT but for the last")
+
+
+class Befallen:
+    """A simulated vehicle to which happens what is typed, at its next tick."""
+
+    name = Vehicle.name
+    period = Vehicle.period
+
+    def __init__(
+        self, sheet: Sheet, vehicle: Vehicle, lines: SimpleQueue[str], say: Callable[[str], None]
+    ) -> None:
+        """Host a vehicle; `say` is told why a line is none, and how the vehicle is where it is ``status``."""
+        self._sheet, self._vehicle, self._lines, self._say = sheet, vehicle, lines, say
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Let the vehicle hear."""
+        self._vehicle.hear(frame, now)
+
+    def tick(self, now: float) -> Sequence[Frame]:
+        """Let befall it what was typed, and go on."""
+        while not self._lines.empty():
+            line = self._lines.get()
+            try:
+                self._obey(line.split())
+            except ValueError as error:
+                self._say(str(error))
+        return self._vehicle.tick(now)
+
+    def _obey(self, words: Sequence[str]) -> None:
+        if list(words) == ["status"]:
+            self._say(status_of(self._sheet, self._vehicle))
+        elif words:
+            befalling(self._sheet, words)(self._vehicle)
+
+
+def status_of(sheet: Sheet, vehicle: Vehicle) -> str:
+    """Return where a vehicle is, and what is wrong with it."""
+    truth, faults = vehicle.truth, vehicle.faults
+    wrong = [
+        *(f"thruster {sheet.thrusters[number].id} dead" for number in sorted(faults.dead)),
+        *(f"{name} frozen" for name in sorted(faults.frozen)),
+        *(f"{name} silent" for name in sorted(faults.silent)),
+        *(f"{name} noisy" for name in sorted(faults.noisy)),
+        *(["leak"] if faults.leak else []),
+        *(["drop weight gone"] if vehicle.released and sheet.drop_weight else []),
+    ]
+    place = f"{truth.north:.1f} m north, {truth.east:.1f} m east, {truth.depth:.1f} m down"
+    charge = f"battery {vehicle.charge / sheet.battery:.0%}"
+    return f"{sheet.robot}: {truth.time:.1f} s, {place}, {charge}{''.join(f'; {each}' for each in wrong)}"
+
+
+def _thruster(sheet: Sheet, name: str) -> int:
+    ids = [each.id for each in sheet.thrusters]
+    if name in ids:
+        return ids.index(name)
+    if name.isascii() and name.isdecimal() and int(name) < len(ids):
+        return int(name)
+    raise ValueError(f"{name}: no such thruster; there are {', '.join(ids)}, by number 0 to {len(ids) - 1}")
+
+
+def _message(name: str) -> str:
+    if name not in SENSORS:
+        raise ValueError(f"{name}: no instrument's message; there are {', '.join(SENSORS)}")
+    return name
+
+
+def _number(text: str, most: float) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not (isfinite(number) and 0.0 <= number <= most):
+        raise ValueError(f"{text} is not a number from 0 to {most:g}")
+    return number
+
+
+def _instruments(vehicle: Vehicle, what: str) -> set[str]:
+    return vehicle.faults.frozen if what == "frozen" else vehicle.faults.silent
+
+
+def _quieten(vehicle: Vehicle, message: str) -> None:
+    vehicle.faults.noisy.pop(message, None)
+
+
+def _leak(vehicle: Vehicle, leak: bool) -> None:
+    vehicle.faults.leak = leak
+
+
+def _charge(vehicle: Vehicle, joules: float) -> None:
+    vehicle.charge = joules
