@@ -6,12 +6,19 @@ from collections.abc import Iterator
 
 from mmrs_auv.targets.imc.plans import LONGEST, plan_of
 from mmrs_auv.targets.imc.wiring import set_by
-from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of_hold
-from mmrs_core.behaviour.program import Action, Move, RobotProgram, Target, Transition
+from mmrs_auv.targets.moves import seconds_of_hold
+from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
+from mmrs_core.behaviour.program import Action, Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
-from mmrs_core.scene import Policy
+
+WORDING = Wording(
+    turn="which no manoeuvre of IMC does",
+    heading="which vehicles may leave unheeded",
+    object="which a plan cannot have looked for",
+    policy="settings of the vehicle",
+)
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
@@ -30,9 +37,7 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         yield f"robot '{robot.id}': flies, and heights of these plans count down from the water surface"
     elif not plan_of(context, input.program.name, robot.id).maneuvers:
         yield f"robot '{robot.id}': does nothing that a manoeuvre of IMC does"
-    of_type = context.type.policies if context.type is not None else ()
-    for policy in dict.fromkeys((*robot.policies, *of_type)):
-        yield f"robot '{robot.id}': {_described(policy)}"
+    yield from of_policies(robot, context, WORDING)
     for index, move in enumerate(robot.moves):
         for why in _of_move(move, context):
             yield f"{context.label(move)}: {why}"
@@ -42,31 +47,11 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
 
 
 def _of_move(move: Move, context: RobotContext) -> Iterator[str]:
-    known = MOVES.get(move.metaclasses[0])
-    if known is None:
-        yield f"{move.kind} is not known to this target"
-    if known == "go" and context.speed(move) is None:
-        yield "its speed is not known, because its robot type is not given"
-    if known == "turn":
-        yield "turns on the spot, which no manoeuvre of IMC does"
-    elif move.heading is not None:
-        yield "heading on the way, which vehicles may leave unheeded"
+    yield from of_movement(move, context, WORDING)
     if seconds_of_hold(move) > LONGEST:
         yield f"holds for {seconds_of_hold(move):g} s, of {LONGEST:,} at most"
-    target = move.target
-    if target is not None:
-        yield from _of_target(target, context)
     for action in (*move.before, *move.after):
         yield from _of_action(action, context)
-
-
-def _of_target(target: Target, context: RobotContext) -> Iterator[str]:
-    if target.description is not None:
-        yield f"object '{target.description}', which a plan cannot have looked for"
-    if target.position is not None and not context.vehicle.flies:
-        above = above_surface(target.position, context)
-        if above > 1e-6:
-            yield f"leads {above:g} m above the surface"
 
 
 def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
@@ -84,9 +69,4 @@ def _of_transition(transition: Transition) -> Iterator[str]:
     if transition.condition is not None:
         yield f"chooses by '{transition.condition}', of which vehicles know nothing"
     for policy in transition.policies:
-        yield _described(policy)
-
-
-def _described(policy: Policy) -> str:
-    after = "" if policy.after is None else f" after {policy.after:g} s"
-    return f"policy {policy.event}{after}: {policy.response}, which only settings of the vehicle can do"
+        yield of_policy(policy, WORDING)

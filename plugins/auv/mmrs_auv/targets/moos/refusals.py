@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from mmrs_auv.targets.moos.steps import Variables, course_of, posts_of, variables_for
-from mmrs_auv.targets.moves import MOVES, above_surface
+from mmrs_auv.targets.refusing import Wording, of_movement, of_policies, of_policy
 from mmrs_core.behaviour.program import Move, RobotProgram, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
-from mmrs_core.scene import Policy
+
+WORDING = Wording(
+    turn="which no behaviour of a helm does",
+    heading="where a helm looks ahead",
+    object="which a helm cannot have looked for",
+    policy="behaviours of yours",
+)
 
 
 def nodes_of(input: TargetInput) -> dict[str, str]:
@@ -33,35 +39,20 @@ def _of_robot(robot: RobotProgram, input: TargetInput, nodes: Mapping[str, str])
         yield f"robot '{robot.id}': flies, and depths of a helm count down from the water surface"
         return
     variables = variables_for(context, input, nodes)
-    of_type = context.type.policies if context.type is not None else ()
-    for policy in dict.fromkeys((*robot.policies, *of_type)):
-        yield f"robot '{robot.id}': {_described(policy)}"
+    yield from of_policies(robot, context, WORDING)
     for index, move in enumerate(robot.moves):
         for why in _of_move(move, context, variables):
             yield f"{context.label(move)}: {why}"
         transition = robot.transitions.get(index)
         for policy in transition.policies if transition is not None else ():
-            yield f"{context.label(move)}: {_described(policy)}"
+            yield f"{context.label(move)}: {of_policy(policy, WORDING)}"
     yield from _rings(robot, context)
     for move, why in course_of(context, variables).faults:
         yield f"{context.label(move)}: {why}"
 
 
 def _of_move(move: Move, context: RobotContext, variables: Variables) -> Iterator[str]:
-    known = MOVES.get(move.metaclasses[0])
-    if known is None:
-        yield f"{move.kind} is not known to this target"
-    if known == "go" and context.speed(move) is None:
-        yield "its speed is not known, because its robot type is not given"
-    if known == "turn":
-        yield "turns on the spot, which no behaviour of a helm does"
-    elif move.heading is not None:
-        yield "heading on the way, where a helm looks ahead"
-    if move.target is not None:
-        if move.target.description is not None:
-            yield f"object '{move.target.description}', which a helm cannot have looked for"
-        if move.target.position is not None and above_surface(move.target.position, context) > 1e-6:
-            yield f"leads {above_surface(move.target.position, context):g} m above the surface"
+    yield from of_movement(move, context, WORDING)
     for action in (*move.before, *move.after):
         posts = posts_of(action, context.type, variables)
         if isinstance(posts, str):
@@ -89,8 +80,3 @@ def _rings(robot: RobotProgram, context: RobotContext) -> Iterator[str]:
 
 def _ways(transition: Transition | None) -> tuple[int, ...]:
     return transition.ways if transition is not None else ()
-
-
-def _described(policy: Policy) -> str:
-    after = "" if policy.after is None else f" after {policy.after:g} s"
-    return f"policy {policy.event}{after}: {policy.response}, which only behaviours of yours can do"
