@@ -90,6 +90,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
     with ExitStack() as stack:
         stack.callback(venture.orders.close, "the run has ended")
         robots: dict[str, Backend] = {}
+        venture.orders.backends = robots
         under_way = any(record.robot in venture.inputs for record in venture.resumed)
         early = None if under_way else _EarlyOrders(venture, robots)
         try:
@@ -240,13 +241,13 @@ class _EarlyOrders:
         for order in self._open:
             for id in order.open:
                 if id not in unready or self._rests(id):
-                    self._confirm(order, id)
+                    order.confirm(id)
         self._open = [order for order in self._open if order.open]
         if self._ended.keys() >= set(self._venture.inputs):
             self._venture.say("stopped before anything moved")
             for order in self._open:
                 for id in order.open:
-                    self._confirm(order, id)
+                    order.confirm(id)
             self._record_ends()
             raise KeyboardInterrupt
 
@@ -266,7 +267,7 @@ class _EarlyOrders:
     def pass_on(self) -> None:
         """Have the interpreter obey what was ordered, and know the answers, before what was ordered since."""
         held = tuple(sorted(self.held))
-        first = (Order(HOLD, held, noted=set(held)),) if held else ()
+        first = (Order(HOLD, held),) if held else ()
         self._venture.orders.put_back((*first, *self._later))
 
     def give_up(self, why: str) -> None:
@@ -296,11 +297,6 @@ class _EarlyOrders:
         robot = self._robots.get(id)
         return isinstance(robot, Telling) and robot.told().get("armed") is False
 
-    def _confirm(self, order: Order, id: str) -> None:
-        order.confirm(id)
-        if id in self._robots:
-            order.note(id, self._robots[id])
-
     def _let_go(self, order: Order) -> None:
         for id in order.open:
             if id not in self.held:
@@ -311,7 +307,7 @@ class _EarlyOrders:
 
     def _take_back(self, robots: Collection[str], why: str) -> None:
         """Have robots be held no longer."""
-        self.held -= set(robots)
+        self.held.difference_update(robots)
         for order in self._open:
             for id in set(robots) & set(order.open) if order.kind == HOLD else ():
                 order.refuse(id, why)

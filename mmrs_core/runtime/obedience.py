@@ -36,7 +36,6 @@ class Obedience:
         begun = self._begin_all()
         for order in self._open:
             self._look(order)
-            self._note(order)
         self._open = [order for order in self._open if not order.settled.is_set()]
         return begun
 
@@ -52,7 +51,6 @@ class Obedience:
                     order.refuse(id, why)
                 else:
                     order.confirm(id)
-                self._note(order)
 
     def give_up(self) -> None:
         """Tell all orders that are still open that the run has ended."""
@@ -87,10 +85,6 @@ class Obedience:
             began = (order, robot.id) not in self._waiting
             if order is not by and order.kind in kinds and robot.id in order.open and began:
                 order.refuse(robot.id, f"{by.kind} was ordered since")
-
-    def _note(self, order: Order) -> None:
-        for id in {*order.confirmed, *order.refused}:
-            order.note(id, self._robots[id].backend if id in self._robots else None)
 
     def _in_doubt(self, id: str) -> bool:
         robot = self._robots.get(id)

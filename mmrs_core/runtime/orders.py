@@ -30,7 +30,7 @@ class Order:
         refused: by robot, why it does not obey.
         settled: set once every robot has done one or the other.
         told: called with a robot, and why it refuses, or None: it has obeyed.
-        noted: robots whose black boxes know of it.
+        backends: by robot; where they keep black boxes, these know what became of it before anybody is told.
         responses: by robot, that which shows that it obeys, where its program has ended, or is to end.
     """
 
@@ -44,7 +44,7 @@ class Order:
     refused: dict[str, str] = field(default_factory=dict)
     settled: threading.Event = field(default_factory=threading.Event)
     given: float = field(default_factory=time.monotonic)
-    noted: set[str] = field(default_factory=set)
+    backends: Mapping[str, object] = field(default_factory=dict)
     responses: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -64,17 +64,12 @@ class Order:
             self.refused[robot] = why
             self._settle(robot, why)
 
-    def note(self, robot: str, backend: object) -> None:
-        """Have a robot's black box know, once, what became of the order."""
-        if robot in self.noted:
-            return
-        self.noted.add(robot)
-        if isinstance(backend, Noting):
-            seconds, why = self.confirmed.get(robot), self.refused.get(robot, "")
-            content = ordered(self.kind, self.question, self.answer)
-            backend.note("order", content | {"confirmed": not why, "seconds": seconds, "why": why})
-
     def _settle(self, robot: str, why: str | None) -> None:
+        backend = self.backends.get(robot)
+        if isinstance(backend, Noting):
+            content = ordered(self.kind, self.question, self.answer)
+            told = {"confirmed": why is None, "seconds": self.confirmed.get(robot), "why": why or ""}
+            backend.note("order", content | told)
         self.told(robot, why)
         if not self.open:
             self.settled.set()
@@ -86,11 +81,13 @@ class Orders:
     Attributes:
         on_stop: the response of robots that are ordered to stop, a literal of PolicyResponse.
         called: called, from any thread, when there is a new one.
+        backends: of the robots that are there, by robot.
     """
 
     def __init__(self, on_stop: str = "HOLD") -> None:
         self.on_stop = on_stop
         self.called: Callable[[], None] = lambda: None
+        self.backends: Mapping[str, object] = {}
         self._waiting: deque[Order] = deque()
         self._closed = ""
 
@@ -116,7 +113,9 @@ class Orders:
         """
         if kind not in KINDS:
             raise ValueError(f"order '{kind}': there are {', '.join(KINDS)}")
-        order = Order(kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt)
+        order = Order(
+            kind, tuple(dict.fromkeys(robots)), question, answer, told, interrupt, backends=self.backends
+        )
         self._waiting.append(order)
         if self._closed:
             self.close(self._closed)

@@ -28,6 +28,17 @@ def test_an_order_ends_the_program_and_is_confirmed(live, kind, response, fault)
     assert (run.records[-1].label, run.records[-1].detail) == ("fault", fault)
 
 
+@pytest.mark.parametrize(("kind", "confirmed"), [(HOLD, True), (RETURN, True), (RESUME, False)])
+def test_a_black_box_knows_what_became_of_an_order_before_people_do(live, kind, confirmed):
+    run, walker = walking(live)
+    happened = []
+    walker.note = lambda what, content: happened.append((what, content.get("confirmed")))
+    order = run.orders.give(kind, ["r"], told=lambda robot, why: happened.append(("told", why is None)))
+    assert order.settled.wait(20.0)
+    answers = [each for each in happened if each[0] != "decision"]
+    assert answers == [("order", confirmed), ("told", confirmed)]
+
+
 @pytest.mark.parametrize("kind", [HOLD, RESUME, LAND, STOP])
 def test_no_order_is_obeyed_while_nobody_knows_whether_a_pilot_has_the_robot(live, kind):
     run, walker = walking(live)
