@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from .orders.orders import Inbox, Receipt
-from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering
+from .phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
 from .questions import Questions
 from .records.blackbox import plain
 from .steps.journal import Journal
@@ -31,6 +31,7 @@ class Crews:
     Attributes:
         inboxes: by robot. questions: that its choices ask, by robot.
         wake: by robot, what ends the present wait at once.
+        held: by robot, tells whether it is held, or is to be.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class Crews:
         asked = conditions or {}
         self.questions = {robot: Questions(asked.get(robot, ())) for robot in robots}
         self.wake: dict[str, Callable[[], None]] = {}
+        self.held: dict[str, Callable[[], bool]] = {}
         self.inboxes = {robot: self._inbox(robot) for robot in robots}
         self._phases = dict.fromkeys(robots, WAITS)
         self._manned: dict[str, tuple[Callable[[], State], Journal]] = {}
@@ -76,7 +78,8 @@ class Crews:
 
     def status(self, robot: str) -> Mapping[str, object]:
         """Return what there is to say of a robot, as JSON has it."""
-        phase = self._phases[robot]
+        held = robot in self.held and self.held[robot]()
+        phase = if_held(self._phases[robot]) if held else self._phases[robot]
         if robot not in self._manned:
             return {"phase": phase}
         told, journal = self._manned[robot]

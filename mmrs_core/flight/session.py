@@ -267,6 +267,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     watch = Watch(robot, options.clock, shared.stop)
     obedience = Obedience(inbox, options.clock, shared.stop, lambda line: say(f"{robot.id!r}: {line}"))
 
+    shared.crews.held[robot.id] = lambda: obedience.held
     stack.callback(obedience.close, "its program has ended")
     guard = guarding(watch, obedience)
     others = None if options.dry else shared.vehicles

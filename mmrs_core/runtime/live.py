@@ -93,6 +93,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         venture.orders.backends = robots
         under_way = any(record.robot in venture.inputs for record in venture.resumed)
         early = None if under_way else _EarlyOrders(venture, robots)
+        venture.standing.held = early.held if early is not None else ()
         try:
             _connect(robots, venture, backend, attention, stack, early)
             venture.standing.connect(robots)

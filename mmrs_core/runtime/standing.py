@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from mmrs_core.contributions.abilities import Telling
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.flight.faults import LINK_LOST
-from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering
+from mmrs_core.flight.phases import ENDED, LOST, SUSPENDED, WAITS, WORKS, answering, if_held
 from mmrs_core.runtime.robot import RunningRobot
 
 
 class Standing:
-    """Knows how robots are, in the words of generated controllers; any thread may ask."""
+    """Knows how robots are, in the words of generated controllers; any thread may ask.
+
+    Attributes:
+        held: robots that are to be held as soon as they could begin.
+    """
 
     def __init__(self) -> None:
         """Know of no robot yet."""
+        self.held: Collection[str] = ()
         self._backends: Mapping[str, Backend] | None = None
         self._robots: Mapping[str, RunningRobot] = {}
 
@@ -31,7 +36,9 @@ class Standing:
         """Return what there is to say of a robot, as JSON has it."""
         running = self._robots.get(robot)
         backend = (self._backends or {}).get(robot)
-        found: dict[str, object] = {"phase": self._phase(robot, running)}
+        phase = self._phase(robot, running)
+        held = running.held if running is not None else robot in self.held
+        found: dict[str, object] = {"phase": if_held(phase) if held else phase}
         if running is not None:
             found["move"] = running.move.id
         if isinstance(backend, Telling):

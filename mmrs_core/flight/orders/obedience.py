@@ -84,6 +84,11 @@ class Obedience:
         """Return whether there is a vehicle that may be told something."""
         return self._vehicle is not None
 
+    @property
+    def held(self) -> bool:
+        """Return whether it is held, or will be as soon as there is a vehicle; any thread may ask."""
+        return self._held or bool(self._early)
+
     def check(self) -> None:
         """Obey what was ordered since.
 

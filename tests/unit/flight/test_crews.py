@@ -6,7 +6,7 @@ import pytest
 
 from mmrs_core.flight.crews import Crews
 from mmrs_core.flight.orders.orders import Order
-from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
+from mmrs_core.flight.phases import ENDED, HELD, HELD_EARLY, SUSPENDED, WAITS, WORKS
 
 
 @pytest.fixture
@@ -27,6 +27,18 @@ def test_who_waits_for_a_battery_or_has_ended_does_not_work(crews, leave, phase)
     assert crews.status("beta") == {"phase": phase}
     assert crews.others_work("alpha") is (phase == WORKS)
     assert crews.others_work("beta")
+
+
+@pytest.mark.parametrize(
+    ("enter", "phase"),
+    [(None, HELD_EARLY), (Crews.engage, HELD), (Crews.suspend, SUSPENDED), (Crews.dismiss, ENDED)],
+)
+def test_people_who_ask_are_told_that_a_robot_is_held(crews, enter, phase):
+    crews.held["beta"] = lambda: True
+    if enter is not None:
+        enter(crews, "beta")
+    assert crews.status("beta") == {"phase": phase}
+    assert crews.status("alpha") == {"phase": WAITS}
 
 
 def test_a_robot_is_no_other_to_itself():

@@ -19,7 +19,7 @@ from mmrs_core.flight.judgement import Judgement
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.options import options_of, parser_for
 from mmrs_core.flight.orders.orders import Order
-from mmrs_core.flight.phases import ENDED, SUSPENDED, WAITS, WORKS
+from mmrs_core.flight.phases import ENDED, HELD, HELD_EARLY, SUSPENDED, WAITS, WORKS
 from mmrs_core.flight.program import Geographic, GoTo, Hold, Policy
 from mmrs_core.flight.records.log import read
 from mmrs_core.flight.session import Shared, run_robot
@@ -118,6 +118,22 @@ def test_an_order_before_there_is_a_vehicle_ends_the_program_and_is_confirmed(pr
     assert code.result(20.0) == 130
     assert (receipt.confirmed, receipt.why) == (True, "there was no vehicle yet")
     assert shared.slots.lost(["alpha"]) == "alpha"
+
+
+def test_a_robot_that_is_held_before_its_vehicle_speaks_says_so_until_it_goes_on(process, vehicle):
+    simulated, port = vehicle
+    simulated.faults.cut_link()
+    shared = process(robot_of(), port=port)
+    code = in_background(lambda: run_robot(robot_of(), shared))
+    give = shared.crews.inboxes["alpha"].give
+    give(Order("hold"))
+    until(lambda: phase(shared) == HELD_EARLY)
+    simulated.faults.mend_link()
+    until(lambda: phase(shared) == HELD)
+    receipt = give(Order("resume"))
+    until(lambda: receipt.confirmed is not None)
+    until(lambda: phase(shared) == WORKS)
+    assert code.result(30.0) == 0
 
 
 def test_a_vehicle_that_never_speaks_is_a_lost_link(process, capsys):

@@ -26,8 +26,12 @@ def connected(live, script, **more):
 
 def test_a_robot_that_is_held_before_anything_moves_stays_until_it_may_go_on(live):
     run = connected(live, Script(ready=0.3))
-    assert list(run.order(HOLD, "a").confirmed) == ["a"]
+    standing, order = run.venture.standing, run.orders.give(HOLD, ["a"])
+    run.wait_for(lambda: standing.status("a")["phase"] == "is held before it begins")
+    assert standing.status("b")["phase"] == "waits for its vehicle"
+    run.wait_for(lambda: list(order.confirmed) == ["a"])
     run.wait_for(lambda: "b end walk" in run.shown())
+    assert standing.status("a")["phase"] == "is held"
     assert "a end walk" not in run.shown()
     run.order(RESUME, "a")
     assert run.end().outcome is Outcome.SUCCESS
