@@ -278,7 +278,8 @@ def simulate(
         observe: called with each step before it has an effect, to write a log.
 
     Raises:
-        UsageError: if there is no such backend, or it does not simulate or know an option.
+        UsageError: if there is no such backend, or it does not simulate or know an option, or no Choice asks
+            for what is assumed.
         UnsupportedError: if the behaviour holds what nobody contributed.
     """
     from mmrs_core.runtime.run import simulate as simulated
@@ -338,11 +339,15 @@ def conditions_for(
     Args:
         assume: fixed answers, by condition identifier.
         asks: whether there is an operator who answers questions.
+
+    Raises:
+        UsageError: if no Choice asks for what is assumed.
     """
     from mmrs_core.flight.conditions import question_of
-    from mmrs_core.runtime.conditions import asked_by, standard_conditions
+    from mmrs_core.runtime.conditions import asked_by, refuse_unasked, standard_conditions
     from mmrs_core.runtime.run import assumed
 
+    refuse_unasked(program, assume)
     asked = (each for each in asked_by(program) if asks or not question_of(each))
     standard = standard_conditions(asked)
     return {**standard, **contributions.conditions, **assumed(assume)}

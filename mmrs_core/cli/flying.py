@@ -85,7 +85,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     Raises:
         typer.BadParameter: if an option makes no sense.
         LinkLostError: if a robot does not answer at first.
-        UsageError: if there is no such backend.
+        UsageError: if there is no such backend, or no Choice asks for what is assumed.
         UnsupportedError: if the backend cannot do what the behaviour holds.
     """
     program = loaded.program
@@ -96,6 +96,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
     resumed = resumed_steps(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
     orders = Orders(stop_response(wishes.on_stop))
+    conditions = conditions_for(program, workshop.contributions, wishes.assume, asks=True)
     with ExitStack() as stack:
         clock = RealClock(wishes.speedup, end_of(resumed, wishes.folder))
         wrap = bus_faults(wishes.options.get("inject", ""), program, wishes.bus.shared, clock, stack)
@@ -109,7 +110,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
             program,
             inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
             bus,
-            conditions_for(program, workshop.contributions, wishes.assume, asks=True),
+            conditions,
             clock=clock,
             orders=orders,
             run=run,

@@ -69,11 +69,10 @@ def fly(
     """Return the simulated run of a behaviour.
 
     Raises:
-        typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
-        UsageError: if there is no such backend, or it does not simulate or know its options.
+        UsageError: if there is no such backend, or it does not simulate or know its options, or no Choice
+            asks for one of the conditions.
         UnsupportedError: if it does not know what the behaviour holds.
     """
-    refuse_unasked(program, conditions)
     return workshop.stage(
         "simulate",
         "simulating",
@@ -87,19 +86,6 @@ def fly(
             observe=workshop.onlookers.see_step,
         ),
     )
-
-
-def refuse_unasked(program: Program, conditions: Mapping[str, bool]) -> None:
-    """Do nothing if every one of the conditions decides a Choice.
-
-    Raises:
-        typer.BadParameter: if nothing in the behaviour asks for one of them.
-    """
-    asked = {each.condition for robot in program.robots for each in robot.transitions.values()} - {None}
-    unasked = [identifier for identifier in conditions if identifier not in asked]
-    if unasked:
-        known = ", ".join(sorted(map(repr, asked))) or "none at all"
-        raise typer.BadParameter(f"no choice asks for condition {unasked[0]!r}; asked for: {known}")
 
 
 def write_logs(

@@ -22,12 +22,22 @@ class Judgement:
         objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
         return [
             *(fault for name in sorted(conditions_of(robots)) if (fault := self._undecided(name))),
+            *self._unasked(robots),
             *(fault for name in sorted(objects) if (fault := self._not_found(name))),
         ]
 
     def decides(self, robots: Sequence[Robot]) -> dict[str, Condition]:
         """Return what decides each choice of these robots: the user's function, or a standard condition."""
         return {name: self.conditions.get(name) or standard(name) for name in conditions_of(robots)}
+
+    def _unasked(self, robots: Sequence[Robot]) -> list[str]:
+        """Return what is decided for nobody; while other robots run elsewhere, it may be for them."""
+        if {name for robot in robots for name in robot.fleet} - {robot.id for robot in robots}:
+            return []
+        asked = conditions_of(robots)
+        known = ", ".join(map(repr, sorted(asked))) or "none at all"
+        unasked = sorted(set(self.conditions) - asked)
+        return [f"conditions.py: no choice asks for {name!r}; asked for: {known}" for name in unasked]
 
     def _undecided(self, name: str) -> str:
         if self.conditions.get(name) is undecided:

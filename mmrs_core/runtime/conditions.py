@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.contributions.execution import Condition, Fault, RobotState
-from mmrs_core.errors import LinkLostError
+from mmrs_core.errors import LinkLostError, UsageError
 from mmrs_core.flight.conditions import is_standard, standard, truth
 from mmrs_core.flight.faults import CONDITION_FAILED, FAILURES
+from mmrs_core.languages.naming import nearest
 
 
 def standard_conditions(identifiers: Iterable[str]) -> dict[str, Condition]:
@@ -27,6 +28,21 @@ def asked_by(program: Program) -> tuple[str, ...]:
     """Return the identifiers of all conditions that a program asks for, sorted."""
     asked = {each.condition for robot in program.robots for each in robot.transitions.values()}
     return tuple(sorted(identifier for identifier in asked if identifier is not None))
+
+
+def refuse_unasked(program: Program, identifiers: Collection[str]) -> None:
+    """Do nothing if a program asks for each of these conditions.
+
+    Raises:
+        UsageError: if it does not; tells what it asks for.
+    """
+    asked = asked_by(program)
+    for identifier in identifiers:
+        if identifier not in asked:
+            known, guess = ", ".join(map(repr, asked)) or "none at all", nearest(identifier, asked)
+            raise UsageError(
+                f"no choice asks for condition {identifier!r}; asked for: {known}{guess and '; ' + guess}"
+            )
 
 
 def decided(condition: Condition, know: Callable[[], RobotState]) -> bool | Fault | None:

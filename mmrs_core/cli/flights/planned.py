@@ -12,10 +12,10 @@ from mmrs_core.cli.flights.answers import choosing_as
 from mmrs_core.cli.flights.values import Flight, Flown
 from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.output import progress
-from mmrs_core.cli.simulation import refuse_unasked
 from mmrs_core.contributions.rules import MoveKind, most_specific
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import conditions_for
+from mmrs_core.runtime.conditions import refuse_unasked
 from mmrs_core.runtime.run import Run, simulate
 from mmrs_core.scene import Name, Position
 
@@ -61,7 +61,7 @@ def planned_for(
         assume: what conditions answer that the flight never asked, by identifier.
 
     Raises:
-        typer.BadParameter: if nothing in the behaviour asks for one of the conditions.
+        UsageError: if no Choice asks for one of the conditions.
     """
     program, place = loaded.program, loaded.place
     contributed = workshop.contributions

@@ -1,9 +1,13 @@
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from mmrs_core.contributions.execution import RobotState
-from mmrs_core.runtime.conditions import standard_conditions
+from mmrs_core.errors import UsageError
+from mmrs_core.runtime.conditions import refuse_unasked, standard_conditions
+from mmrs_core.testing.small_programs import hold, program, robot
 
 
 def state(**known):
@@ -41,3 +45,22 @@ def test_a_question_waits_for_its_answer(answer):
 )
 def test_other_identifiers_are_nobodys(identifier):
     assert standard_conditions([identifier]) == {}
+
+
+CHOOSES = program(robot("r", [hold("h"), hold("x")], choices={"h": ("sunny", "x", "stop")}), robot("s", []))
+
+
+def test_what_some_robot_asks_may_be_answered_beforehand():
+    refuse_unasked(CHOOSES, {"sunny": True})
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        (CHOOSES, "no choice asks for condition 'suny'; asked for: 'sunny'; did you mean sunny?"),
+        (program(robot("s", [])), "no choice asks for condition 'suny'; asked for: none at all"),
+    ],
+)
+def test_an_answer_that_no_choice_asks_for_is_refused_with_what_is_asked(asked, told):
+    with pytest.raises(UsageError, match=f"^{re.escape(told)}$"):
+        refuse_unasked(asked, {"suny": True})

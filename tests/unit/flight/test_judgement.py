@@ -1,0 +1,34 @@
+"""What controllers refuse to begin without, or with."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from flight_crew import robot_of
+
+from mmrs_core.flight.judgement import Judgement
+from mmrs_core.flight.program import Choose
+
+ASKS = "battery-below:0.3"
+
+
+def robot(id="alpha", fleet=("alpha", "beta"), asks=""):
+    """Return a robot of a fleet; `asks`: the condition of its first choice."""
+    made = replace(robot_of(), id=id, fleet=fleet)
+    if not asks:
+        return made
+    first = replace(made.steps[0], then=Choose(asks, made.steps[1].move, made.steps[-1].move))
+    return replace(made, steps=(first, *made.steps[1:]))
+
+
+def decides(*names):
+    return Judgement(dict.fromkeys(names, lambda state: True), {})
+
+
+def test_a_condition_that_no_choice_of_a_whole_fleet_asks_for_is_refused_since_it_may_be_misspelt():
+    (fault,) = decides("battery-below:0.30").faults([robot(asks=ASKS), robot("beta")])
+    assert fault == f"conditions.py: no choice asks for 'battery-below:0.30'; asked for: '{ASKS}'"
+
+
+def test_conditions_of_robots_that_run_elsewhere_may_be_there():
+    assert decides(ASKS, "calm").faults([robot(asks=ASKS)]) == []
