@@ -8,6 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import typer
+
 from mmrs_core.cli.output import tell
 from mmrs_core.runtime.orders import Orders
 
@@ -21,15 +23,22 @@ Status = Callable[[str], Mapping[str, object]]
 def hear_orders(
     folder: Path, run: str, robots: Sequence[str], orders: Orders, status: Status
 ) -> Iterator[None]:
-    """Listen for orders as long as the context lasts; say so where that cannot be."""
+    """Listen for orders as long as the context lasts; say so where that cannot be.
+
+    Raises:
+        typer.BadParameter: if another process runs one of these robots with its logs in that folder.
+    """
     if find_spec("pymavlink") is None:
         tell("no orders are heard: that needs pymavlink; pip install 'mmrs-core[mavlink]'")
         yield
         return
-    from mmrs_core.flight.control import Control
+    from mmrs_core.flight.control import Control, Taken
 
     inboxes = {robot: _inbox(robot, orders) for robot in robots}
-    control = Control(folder, run, inboxes, status)
+    try:
+        control = Control(folder, run, inboxes, status)
+    except Taken as error:
+        raise typer.BadParameter(f"--log {folder}: {error}") from error
     try:
         yield
     finally:

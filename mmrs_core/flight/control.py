@@ -20,7 +20,7 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from errno import EEXIST
 from pathlib import Path
@@ -41,6 +41,10 @@ CONNECTIONS = 16
 Status = Callable[[str], Mapping[str, object]]
 
 
+class Taken(Exception):  # noqa: N818  # what the robot is
+    """Another process runs a robot with its logs in the same folder."""
+
+
 class Control:
     """Listens for orders in threads of its own, and hands them to the robots' inboxes."""
 
@@ -54,6 +58,7 @@ class Control:
             status: what there is to say of a robot, as JSON has it; called from any thread.
 
         Raises:
+            Taken: another process runs one of these robots with its logs in that folder.
             OSError: the channel cannot be opened or announced.
         """
         self._inboxes = dict(inboxes)
@@ -70,7 +75,8 @@ class Control:
         }
         try:
             self._path = _announce(folder, json.dumps(facts) + "\n")
-        except OSError:
+            _refuse_rivals(self._path, self._inboxes)
+        except (OSError, Taken):
             self._server.close()
             raise
         self._closing = False
@@ -207,6 +213,23 @@ def _announce(folder: Path, text: str) -> Path:
             file.write(text)
         return path
     raise FileExistsError(EEXIST, "already there, of a process that still runs", str(usual))
+
+
+def _refuse_rivals(own: Path, robots: Collection[str]) -> None:
+    """Take an announcement away again where another process runs one of its robots.
+
+    Raises:
+        Taken: one does.
+    """
+    for path in sorted({*own.parent.glob(PATTERN)} - {own}):
+        try:
+            facts = _object(path.read_bytes())
+        except (OSError, ValueError):
+            continue  # it is being written, by somebody who looks at ours then, or taken away
+        if shared := [robot for robot in robots if robot in facts.get("robots", ())]:
+            own.unlink()
+            names = f"{', '.join(map(ascii, shared))} {'is' if len(shared) == 1 else 'are'}"
+            raise Taken(f"{names} run by process {facts.get('pid')} already ({path.name}): end that first")
 
 
 def _was_left(path: Path) -> bool:

@@ -10,7 +10,7 @@ from contextlib import ExitStack
 
 from .bus import Recorded
 from .conditions import Condition
-from .control import Control
+from .control import Control, Taken
 from .crews import Crews
 from .injection import Rehearsal
 from .judgement import Judgement, conditions_of
@@ -71,7 +71,7 @@ def main(
         )
         stack.callback(rehearsal.close)
         rehearsal.start()
-        _open_control(options, crews, stack)
+        _open_control(parser, options, crews, stack)
         _stop_on_signals(stop, abandon)
         codes = _run_all(robots, shared)
     return next((code for code in (LINK, INTERRUPTED, FAILED) if code in codes), OK)
@@ -140,9 +140,11 @@ def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
     return Radios(options.clock, reach.signer, reach.retries, wrap)
 
 
-def _open_control(options: Options, crews: Crews, stack: ExitStack) -> None:
+def _open_control(parser: argparse.ArgumentParser, options: Options, crews: Crews, stack: ExitStack) -> None:
     try:
         control = Control(options.log, options.run, crews.inboxes, crews.status)
+    except Taken as error:
+        parser.error(f"--log {options.log}: {error}")
     except OSError as error:
         say(f"{options.log}: no orders can be given while this runs: {error.strerror or error}")
         return

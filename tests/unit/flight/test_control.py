@@ -14,7 +14,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from mmrs_core.flight.control import Control
+from mmrs_core.flight.control import Control, Taken
 from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable
 from mmrs_core.flight.orders.ordering import give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
@@ -259,6 +259,13 @@ def test_an_announcement_that_is_being_written_is_left_alone(tmp_path, opened, i
     opened(inboxes)
     assert len(list(tmp_path.iterdir())) == 2
     assert len(list(give(tmp_path, "status"))) == 2
+
+
+def test_a_robot_is_run_by_one_process_at_a_time(tmp_path, opened, inboxes):
+    opened(inboxes)
+    with pytest.raises(Taken, match=rf"'alpha' is run by process {os.getpid()} already \(control.json\)"):
+        Control(tmp_path, "run-0", {"alpha": Inbox("alpha"), "gamma": Inbox("gamma")}, lambda robot: {})
+    assert [path.name for path in tmp_path.glob("control*.json")] == ["control.json"]
 
 
 def test_nothing_is_left_of_a_channel_that_was_closed(tmp_path, inboxes):
