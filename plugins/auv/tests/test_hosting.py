@@ -16,6 +16,7 @@ from mmrs_auv.vessel.hosting import (
     serve,
 )
 from mmrs_auv.vessel.instruments import instruments_of
+from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 
 
@@ -130,9 +131,24 @@ def test_time_told_on_the_bus_is_time_heard(now: float) -> None:
     assert clock_time(clock_frame(now)) == pytest.approx(now)
 
 
+def test_time_is_told_as_the_database_says() -> None:
+    sheet = pool_sheet()
+    heard = Codec(sheet).decode(clock_frame(12.345, 300))
+    assert heard is not None
+    assert (heard.values["Time"], heard.sequence) == (pytest.approx(12.345), 44)
+
+
 def test_other_frames_tell_no_time() -> None:
-    assert clock_time(Frame(2, b"1234")) is None
-    assert clock_time(Frame(1, b"123")) is None
+    told = clock_frame(5.0)
+    assert clock_time(Frame(2, told.data)) is None
+    assert clock_time(Frame(1, told.data[:-1])) is None
+
+
+def test_a_wrong_bit_does_not_make_time_jump() -> None:
+    told = clock_frame(5.0, 7)
+    number = int.from_bytes(told.data, "little")
+    for bit in range(8 * len(told.data)):
+        assert clock_time(Frame(told.id, (number ^ 1 << bit).to_bytes(6, "little"))) is None
 
 
 def test_a_node_by_the_bus_ticks_when_it_is_told_so() -> None:

@@ -11,6 +11,7 @@ from typing import Literal, Protocol
 
 from .node import Node
 from .wire.catalogue import CLOCK_ID, NODES
+from .wire.check import check_of
 from .wire.frame import Frame
 
 MICROSECONDS = 1_000_000
@@ -181,16 +182,28 @@ class Rehearsal:
                 node.hear(arrived, now)
 
 
-def clock_frame(now: float) -> Frame:
+def tells_time(frame: Frame) -> bool:
+    """Return whether a frame is of those by which hosts share simulated time, which no vehicle has."""
+    if frame.extended:
+        return 0 <= frame.id - SEEN_BASE < len(NODES)
+    return frame.id == CLOCK_ID
+
+
+def clock_frame(now: float, counter: int = 0) -> Frame:
     """Return the frame that tells simulated time, seconds."""
-    return Frame(CLOCK_ID, (round(now * 1000.0) & 0xFFFFFFFF).to_bytes(4, "little"))
+    said = (round(now * 1000.0) & 0xFFFFFFFF).to_bytes(4, "little") + bytes((counter % 256,))
+    return Frame(CLOCK_ID, said + bytes((check_of(CLOCK_ID, said),)))
 
 
 def clock_time(frame: Frame) -> float | None:
-    """Return what time a frame tells, seconds, or None if it tells none."""
-    if frame.id != CLOCK_ID or frame.extended or len(frame.data) != 4:
+    """Return what time a frame tells, seconds, or None if it tells none that can be believed."""
+    return None if frame.id != CLOCK_ID or frame.extended else _time_in(frame.data)
+
+
+def _time_in(data: bytes) -> float | None:
+    if len(data) != 6 or check_of(CLOCK_ID, data[:-1]) != data[-1]:
         return None
-    return int.from_bytes(frame.data, "little") / 1000.0
+    return int.from_bytes(data[:4], "little") / 1000.0
 
 
 def serve(
@@ -259,10 +272,10 @@ def _serve_leading(
         given_up = max(on, time.monotonic()) + PATIENCE
         while not stop.is_set():
             while (frame := port.receive(0.0)) is not None:
-                if frame.extended and 0 <= frame.id - SEEN_BASE < len(NODES):
-                    seen[frame.id] = int.from_bytes(frame.data, "little") / 1000.0
-                else:
+                if not (frame.extended and 0 <= frame.id - SEEN_BASE < len(NODES)):
                     node.hear(frame, now)
+                elif (at := _time_in(frame.data)) is not None:
+                    seen[frame.id] = at
             real = time.monotonic()
             behind = [each for each, at in seen.items() if due - at > LAG * node.period + 1e-6]
             if real >= on and (not behind or real >= given_up):
@@ -273,7 +286,7 @@ def _serve_leading(
         if late is not None:
             late(time.monotonic() - on)
         now = due
-        port.send(clock_frame(now))
+        port.send(clock_frame(now, ticks))
         for said in node.tick(now):
             port.send(said)
         ticks += 1

@@ -12,6 +12,7 @@ MOST_THRUSTERS, MOST_DEVICES = 32, 256
 LEAST_THRUST, MOST_THRUST = 0.01, 32767.0
 MOST_POWER, MOST_DEPTH, MOST_SPEED, MOST_PLACE = 6553.5, 8388.607, 5.1, 8388.607
 MOST_BIT_RATE, LEAST_WATCHDOG, MOST_WATCHDOG = 1_000_000, 0.1, 60.0
+MOST_LEVER = 1000.0
 LONGEST_NAME = 64
 """Figures that do not fit are refused. Power, depth, speed and place: what the fields of messages hold."""
 
@@ -73,7 +74,7 @@ def _hull(sheet: Sheet) -> Iterator[str]:
 
 def _thruster(thruster: Thruster) -> Iterator[str]:
     yield from _name("id", thruster.id)
-    yield from _vector("position", thruster.position)
+    yield from _vector("position", thruster.position, most=MOST_LEVER)
     wrong = tuple(_vector("direction", thruster.direction))
     yield from wrong
     if not wrong and abs(hypot(*thruster.direction) - 1.0) > 1e-3:

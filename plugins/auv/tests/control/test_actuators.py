@@ -43,6 +43,11 @@ class Bench:
     def trusted(self) -> None:
         self.say("Depth", Depth=1.0, Uncertainty=0.1, Trusted=True)
 
+    def drives(self, *numbers: int) -> None:
+        """Have those drives say that they push; all, if none is said."""
+        for number in numbers or range(len(self.sheet.thrusters)):
+            self.say(f"Thruster{number}Status", Thrust=7.0, Power=0.0, Drive="RUNS")
+
     def tick(self) -> None:
         self.now += TICK
         self.said = []
@@ -167,12 +172,26 @@ def test_a_wrench_beyond_what_thrusters_give_is_told_so() -> None:
 def test_a_silent_drive_counts_as_dead_until_it_is_heard_again() -> None:
     bench = Bench()
     bench.push(0.5, 20.0)
-    bench.say("Thruster3Status", Thrust=7.0, Power=0.0, Drive="RUNS")
-    bench.push(1.0, 20.0)
+    bench.drives()
+    bench.push(0.3, 20.0)
+    bench.drives(0, 1, 2, 4, 5)
+    bench.push(0.4, 20.0)
     assert bench.commanded()[3][0] == 0.0
-    bench.say("Thruster3Status", Thrust=7.0, Power=0.0, Drive="RUNS")
+    bench.drives()
     bench.push(0.3, 20.0)
     assert bench.commanded()[3][0] > 1.0
+
+
+def test_a_drive_that_was_never_heard_counts_as_dead_where_others_are_heard() -> None:
+    bench = Bench()
+    for _ in range(10):
+        bench.drives(0, 2, 3, 4, 5)
+        bench.push(0.1, 20.0)
+    assert bench.commanded()[1][0] == 0.0
+    assert bench.last["Reach"]["Thrusters"] == 5.0
+    bench.drives()
+    bench.push(0.3, 20.0)
+    assert bench.commanded()[1][0] > 1.0
 
 
 def test_power_stays_within_its_limit_and_depth_goes_before_speed() -> None:

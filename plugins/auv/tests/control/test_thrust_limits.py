@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mmrs_auv.testing import pool_sheet
@@ -55,6 +57,13 @@ def test_power_is_that_of_the_robot_type_at_operating_and_at_peak_thrust() -> No
     limits = ThrustLimits(pool_sheet())
     assert limits.power(np.array((18.0, 0, 0, 0, 0, 0))) == pytest.approx(90.0)
     assert limits.power(np.array((0, -35.0, 0, 0, 0, 0))) == pytest.approx(230.0)
+
+
+def test_power_follows_from_peak_power_where_operating_power_is_none() -> None:
+    sheet = pool_sheet()
+    thrusters = tuple(replace(each, operating_power=0.0) for each in sheet.thrusters)
+    limits = ThrustLimits(replace(sheet, thrusters=thrusters))
+    assert limits.power(np.array((35.0, 0, 0, 0, 0, 0))) == pytest.approx(230.0)
 
 
 @pytest.mark.parametrize("name", ["peak.time", "rise.time", "power.limit"])

@@ -100,6 +100,28 @@ def test_ranges_come_from_peak_thrust() -> None:
     assert (second.scale, second.minimum, second.maximum) == (0.002, -50.0, 50.0)
 
 
+def test_a_wrench_holds_all_that_thrusters_give() -> None:
+    strong = [
+        thruster(number, direction=direction, position=(2.0, 1.0, 0.0), max_thrust=2000.0)
+        for number, direction in enumerate(
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+        )
+    ]
+    usual, great = (
+        {
+            f"{name}.{each.name}": each.maximum
+            for name in ("WrenchForce", "WrenchMoment")
+            for each in loaded(vehicle).get_message_by_name(name).signals
+        }
+        for vehicle in (sheet(), sheet(thrusters=tuple(strong)))
+    )
+    assert usual["WrenchForce.Surge"] == 655.34
+    assert great["WrenchForce.Surge"] >= 4000.0
+    assert great["WrenchForce.Heave"] >= 2000.0
+    assert great["WrenchMoment.Pitch"] >= 4000.0
+    assert great["WrenchMoment.Yaw"] >= 8000.0
+
+
 def test_named_values_have_their_names_in_value_tables() -> None:
     reason = loaded(sheet()).get_message_by_name("Emergency").get_signal_by_name("Reason")
     assert reason.choices is not None

@@ -141,6 +141,8 @@ def test_a_client_of_python_can_is_told_by_an_error_frame_and_goes_on() -> None:
     [
         "< send 100 2 5 >",
         "< send 100 9 1 2 3 4 5 6 7 8 9 >",
+        "< send 100 12 1 2 3 4 5 6 7 8 9 a b c >",
+        "< send 100 01 1 >",
         "< send 100 1 xyz >",
         "< send 100 1 100 >",
         "< send 800 1 1 >",

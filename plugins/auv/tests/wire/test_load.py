@@ -30,7 +30,7 @@ def test_what_is_only_said_when_there_is_something_to_say_counts_for_nothing() -
 
 def test_the_first_message_waits_for_one_frame_and_the_others_for_all_before() -> None:
     shares = load_of(sheet(2)).shares
-    assert shares[0].latest == pytest.approx((135 + 95) / 500_000)
+    assert shares[0].latest == pytest.approx((135 + 115) / 500_000)
     latest = [each.latest for each in shares if each.period]
     assert latest == sorted(latest, key=lambda each: each or 0.0)
 

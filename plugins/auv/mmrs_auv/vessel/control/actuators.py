@@ -9,7 +9,7 @@ import numpy as np
 
 from ..instruments import instruments_of
 from ..sheet import Sheet
-from ..wire.catalogue import ACTUATORS, BEAT_PERIOD, COMMAND_PERIOD, STATUS_PERIOD, by_id
+from ..wire.catalogue import ACTUATORS, BEAT_PERIOD, COMMAND_PERIOD, MOST_UPTIME, STATUS_PERIOD, by_id
 from ..wire.codec import Codec, Received
 from ..wire.frame import Frame
 from . import failsafe
@@ -185,7 +185,7 @@ class Actuators:
             self._due["Beat"] = now + BEAT_PERIOD
             fault = "NONE" if all(working) else "THRUSTER_FAULT"
             state = "RUNS" if self.emergency is None else "FAILS_SAFE"
-            uptime = now - (self._began or 0.0)
+            uptime = min(now - (self._began or 0.0), MOST_UPTIME)
             said.append(
                 self._codec.encode(
                     "ActuatorsBeat", State=state, Uptime=uptime, Reason=self.emergency or fault

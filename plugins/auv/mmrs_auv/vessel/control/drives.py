@@ -12,7 +12,7 @@ from ..wire.frame import Frame
 from .allocation import Array
 
 SILENT = 0.5
-"""Seconds without a status after which a drive that gave some counts as dead."""
+"""Seconds without a status after which a drive counts as dead, where any drive gives some."""
 
 IDLE, ASKED = 0.02, 0.1
 """Parts of peak thrust: below the first a drive gives nothing; above the second it was asked for some."""
@@ -80,13 +80,14 @@ class Watch:
         self._most = [each.max_thrust for each in sheet.thrusters]
         self.working = [True] * count
         self._last: list[Status | None] = [None] * count
-        self._heard = [0.0] * count
+        self._heard: list[float] = []
         self._gave: list[float | None] = [None] * count
         self._lame = [False] * count
 
     def take(self, status: Status, now: float) -> None:
         """Note what a drive says."""
         self._last[status.number] = status
+        self._heard = self._heard or [now] * len(self._last)
         self._heard[status.number] = now
 
     def judge(self, asked: Array, now: float) -> list[bool] | None:
@@ -99,10 +100,10 @@ class Watch:
 
     def _works(self, number: int, asked: float, now: float) -> bool:
         status = self._last[number]
-        if status is None:
-            return True
-        if status.fault or now - self._heard[number] > SILENT:
+        if self._heard and now - self._heard[number] > SILENT:
             return False
+        if status is None or status.fault:
+            return status is None
         most = self._most[number]
         gives = status.thrust is None or not status.runs or abs(status.thrust) > IDLE * most
         if gives or abs(asked) < ASKED * most:

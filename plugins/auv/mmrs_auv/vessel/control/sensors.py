@@ -8,12 +8,13 @@ import numpy as np
 
 from ..instruments import instruments_of
 from ..sheet import Sheet
-from ..wire.catalogue import BEAT_PERIOD, SENSORS, STATE_PERIOD, STATUS_BASE, by_id
+from ..wire.catalogue import BEAT_PERIOD, MOST_UPTIME, SENSORS, STATE_PERIOD, STATUS_BASE, by_id
 from ..wire.codec import Codec, Received
 from ..wire.frame import Frame
 from . import failsafe
 from .allocation import Array
 from .attitude import AttitudeFilter
+from .drives import SILENT
 from .plausibility import Channel
 from .reckoning import Reckoning
 from .vertical import Vertical
@@ -51,6 +52,7 @@ class Sensors:
         self._log_noise = instruments.log_noise
         self._water = WaterSpeed(sheet)
         self._thrusts: Array = np.zeros(len(sheet.thrusters))
+        self._thrusts_at: Array = np.full(len(sheet.thrusters), -np.inf)
         self._attitude = AttitudeFilter(sheet.heading, instruments)
         self._vertical = Vertical(sheet, instruments)
         self.reckoning = Reckoning(sheet.home[0], sheet.home[1], instruments)
@@ -75,7 +77,7 @@ class Sensors:
         if hearer is not None:
             hearer(found, now)
         else:
-            self._thrusts[number] = found.values["Thrust"]
+            self._thrusts[number], self._thrusts_at[number] = found.values["Thrust"], now
 
     def tick(self, now: float) -> list[Frame]:
         """Bring the state up to now, and say it."""
@@ -87,7 +89,8 @@ class Sensors:
         period = self.period
         self._attitude.advance(period)
         yaw_rate = radians(self._attitude.rates[2])
-        self._water.advance(self._thrusts, yaw_rate, self._vertical.depth, period)
+        thrusts = np.where(now - self._thrusts_at <= SILENT, self._thrusts, 0.0)
+        self._water.advance(thrusts, yaw_rate, self._vertical.depth, period)
         self._flow[:2] += yaw_rate * period * np.array((self._flow[1], -self._flow[0]))
         self._vertical.advance(float(self._water.acceleration[2]), now, period)
         compass = radians(self._attitude.angles[2])
@@ -110,7 +113,7 @@ class Sensors:
         roll, pitch, yaw = np.clip(self._attitude.rates, -320.0, 320.0).tolist()
         return [
             encode("Position", North=float(place[0]), East=float(place[1])),
-            encode("Depth", Depth=min(max(self._vertical.depth, -1000.0), 1000.0),
+            encode("Depth", Depth=min(max(self._vertical.depth, -MOST_PLACE), MOST_PLACE),
                    Uncertainty=min(self.reckoning.uncertainty, MOST_UNCERTAIN), Trusted=self._trusted(now)),
             encode("Pose", Roll=float(angles[0]), Pitch=float(angles[1]), Heading=heading),
             encode("Velocity", Surge=surge, Sway=sway, Heave=heave),
@@ -130,7 +133,7 @@ class Sensors:
         if now + 1e-6 >= self._due["Beat"]:
             self._due["Beat"] = now + BEAT_PERIOD
             state, reason = ("RUNS", "NONE") if self._trusted(now) else ("FAILS_SAFE", "SENSORS_SILENT")
-            uptime = now - (self._began or 0.0)
+            uptime = min(now - (self._began or 0.0), MOST_UPTIME)
             said.append(self._codec.encode("SensorsBeat", State=state, Uptime=uptime, Reason=reason))
         return said
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from math import log
-
 import numpy as np
 
-from ..sheet import Sheet, Thruster
+from ..body.propulsion import curve_of
+from ..sheet import Sheet
 from .allocation import Array
 
 PEAK_TIME, RISE_TIME = 10.0, 0.4
@@ -35,8 +34,8 @@ class ThrustLimits:
         self._most = np.array(
             [max(each.max_thrust, each.operating_thrust) for each in sheet.thrusters], float
         )
-        self._exponents = np.array([_exponent(each) for each in sheet.thrusters], float)
-        self._powers = np.array([each.operating_power for each in sheet.thrusters], float)
+        curves = [curve_of(each) for each in sheet.thrusters]
+        self._watts, self._newtons, self._exponents = np.array(curves, float).reshape(-1, 3).T
         self._heat = np.zeros(len(sheet.thrusters))
         self._hot = np.zeros(len(sheet.thrusters), bool)
 
@@ -58,18 +57,7 @@ class ThrustLimits:
 
     def power(self, thrusts: Array) -> float:
         """Return the watts that thrusts take together."""
-        return float(np.sum(self._powers * (np.abs(thrusts) / self._operating) ** self._exponents))
-
-
-def _exponent(thruster: Thruster) -> float:
-    """Return the power of thrust by which a thruster's consumption grows from operating to peak thrust."""
-    if thruster.max_thrust <= thruster.operating_thrust or thruster.max_power <= thruster.operating_power:
-        return 1.5
-    return min(
-        3.0,
-        log(thruster.max_power / thruster.operating_power)
-        / log(thruster.max_thrust / thruster.operating_thrust),
-    )
+        return float(np.sum(self._watts * (np.abs(thrusts) / self._newtons) ** self._exponents))
 
 
 def _positive(sheet: Sheet, name: str, default: float) -> float:

@@ -10,7 +10,16 @@ import numpy as np
 from ..control.allocation import DEGREES, Allocation, Array
 from ..goals import GOAL_PERIOD, Goal, goal_of, within_rating
 from ..sheet import Sheet
-from ..wire.catalogue import BEAT_PERIOD, COMMAND_PERIOD, COMMON, MOVEMENT, by_id
+from ..wire.catalogue import (
+    BEAT_PERIOD,
+    COMMAND_PERIOD,
+    FORCE_ID,
+    MOMENT_ID,
+    MOST_UPTIME,
+    MOVEMENT,
+    by_id,
+    messages_of,
+)
 from ..wire.codec import Codec, Received
 from ..wire.frame import Frame
 from .abilities import abilities_of
@@ -53,7 +62,10 @@ class Movement:
         self._loops = Loops(self._abilities, served)
         self._patience = sheet.extra.get("movement.patience", PATIENCE)
         self._most = {
-            field.name: field.high for each in COMMON for field in each.fields if each.id in (0x80, 0x81)
+            field.name: field.high
+            for each in messages_of(sheet)
+            for field in each.fields
+            if each.id in (FORCE_ID, MOMENT_ID)
         }
         self._hearers = by_id({
             "Position": self._hear_state, "Depth": self._hear_depth, "Pose": self._hear_state,
@@ -153,7 +165,7 @@ class Movement:
             said.append(self._told())
         if now + 1e-6 >= self._due["Beat"]:
             self._due["Beat"] = now + BEAT_PERIOD
-            uptime = now - (self._began or 0.0)
+            uptime = min(now - (self._began or 0.0), MOST_UPTIME)
             reason = self._emergency or ("COMMANDS_SILENT" if self._fallback else "NONE")
             state = "RUNS" if reason == "NONE" else "FAILS_SAFE"
             said.append(self._codec.encode("MovementBeat", State=state, Uptime=uptime, Reason=reason))

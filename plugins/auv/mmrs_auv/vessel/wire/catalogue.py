@@ -7,7 +7,7 @@ on the bus. Every message carries a counter and a check over its identifier and 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import TypeVar
@@ -20,8 +20,11 @@ Kind = TypeVar("Kind")
 VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION = "Vehicle", "Sensors", "Actuators", "Movement", "Decision"
 NODES = (VEHICLE, SENSORS, ACTUATORS, MOVEMENT, DECISION)
 
-CLOCK_ID, EMERGENCY_ID, GOAL_POSE_ID = 0x001, 0x010, 0x401
+CLOCK_ID, EMERGENCY_ID, FORCE_ID, MOMENT_ID, GOAL_POSE_ID = 0x001, 0x010, 0x080, 0x081, 0x401
 COMMAND_BASE, STATUS_BASE, HEARTBEAT_BASE = 0x100, 0x140, 0x700
+
+MOST_UPTIME = (2**28 - 1) * 0.001
+"""Seconds of uptime that a beat holds; it stays at that afterwards."""
 
 COMMAND_PERIOD, STATUS_PERIOD, SENSOR_PERIOD, STATE_PERIOD, BEAT_PERIOD = 0.05, 0.1, 0.05, 0.05, 0.5
 SEQUENCE, CHECK = "Sequence", "Check"
@@ -120,16 +123,24 @@ def _goal_pose(scale: float) -> Message:
                    comment="repeated; Goal changes when another goal begins")  # fmt: skip
 
 
+def _wrench(newtons: float, newton_metres: float) -> tuple[Message, Message]:
+    """Return the messages of a force and its moment, with so much in a step of each."""
+    level = tuple(_signed(name, 16, newtons, "N") for name in ("Surge", "Sway"))
+    force = (*level, _signed("Heave", 15, newtons, "N"), _flag("Enable"))
+    return (
+        Message(FORCE_ID, "WrenchForce", MOVEMENT, force, COMMAND_PERIOD,
+                comment="force on the body; obeyed when its moment comes"),
+        Message(MOMENT_ID, "WrenchMoment", MOVEMENT, _turns(newton_metres, "N.m"), COMMAND_PERIOD,
+                comment="moment on the body; its counter is that of its force"),
+    )  # fmt: skip
+
+
 COMMON = (
-    Message(CLOCK_ID, "Clock", VEHICLE, (_unsigned("Time", 32, 0.001, "s"),), None, guarded=False,
+    Message(CLOCK_ID, "Clock", VEHICLE, (_unsigned("Time", 32, 0.001, "s"),), None,
             comment="simulated time: nodes that go by it tick when it has come"),
     Message(EMERGENCY_ID, "Emergency", DECISION, (_named("Reason", 8, *REASONS), _flag("Release")), None,
             comment="thrust zero at once; Release: let go of the drop weight. Any node sends it."),
-    Message(0x080, "WrenchForce", MOVEMENT,
-            (_signed("Surge", 16, 0.02, "N"), _signed("Sway", 16, 0.02, "N"), _signed("Heave", 15, 0.02, "N"),
-             _flag("Enable")), COMMAND_PERIOD, comment="force on the body; obeyed when its moment comes"),
-    Message(0x081, "WrenchMoment", MOVEMENT, _turns(0.01, "N.m"),
-            COMMAND_PERIOD, comment="moment on the body; its counter is that of its force"),
+    *_wrench(0.02, 0.01),
     Message(0x0A0, "Reach", ACTUATORS,
             (*(_flag(degree) for degree in ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")),
              _flag("Limited", "the wrench asks for more than thrusters may give"),
@@ -200,6 +211,23 @@ def depth_step(max_depth: float) -> float:
     return max(1, ceil(max_depth * 100.0 / 65535.0)) / 100.0
 
 
+def wrench_steps(thrusters: Sequence[Thruster]) -> tuple[float, float]:
+    """Return how many newtons and newton metres a step of a wrench is: all that thrusters give has room."""
+    forces, moments = [0.0] * 3, [0.0] * 3
+    for each in thrusters:
+        arm, push = each.position, each.direction
+        for axis, (one, other) in enumerate(((1, 2), (2, 0), (0, 1))):
+            forces[axis] += each.max_thrust * abs(push[axis])
+            moments[axis] += each.max_thrust * abs(arm[one] * push[other] - arm[other] * push[one])
+    force = max(forces[0], forces[1], 2.0 * forces[2])  # heave has a bit less
+    return _step(0.02, force), _step(0.01, max(moments))
+
+
+def _step(least: float, most: float) -> float:
+    """Return a step, in thousandths, by which 16 bits with a sign hold as much as that."""
+    return max(round(least * 1000.0), ceil(most * 1000.0 / 32766.0)) / 1000.0
+
+
 def messages_of(sheet: Sheet) -> tuple[Message, ...]:
     """Return all messages of a vehicle, by identifier.
 
@@ -212,9 +240,9 @@ def messages_of(sheet: Sheet) -> tuple[Message, ...]:
         for number, thruster in enumerate(sheet.thrusters)
         for message in (_command(number, thruster), _status(number, thruster))
     ]
-    common = [each for each in COMMON if each.id != GOAL_POSE_ID]
-    pose = _goal_pose(depth_step(sheet.max_depth))
-    return tuple(sorted((*common, pose, *BEATS, *own), key=lambda message: message.id))
+    scaled = (_goal_pose(depth_step(sheet.max_depth)), *_wrench(*wrench_steps(sheet.thrusters)))
+    by_number = {each.id: each for each in (*COMMON, *scaled, *BEATS, *own)}
+    return tuple(by_number[number] for number in sorted(by_number))
 
 
 def _thrust(thruster: Thruster) -> Field:

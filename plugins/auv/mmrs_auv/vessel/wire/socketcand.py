@@ -44,7 +44,7 @@ def frame_of(parts: list[str]) -> Frame:
     id, length, data = parts[0], parts[1], parts[2:]
     if not _ID.fullmatch(id) or not all(map(_BYTE.fullmatch, data)):
         raise ValueError("no identifier or bytes in hexadecimal digits")
-    if length not in "012345678" or int(length) != len(data):
+    if length not in tuple("012345678") or int(length) != len(data):
         raise ValueError("not as many bytes as it says, or more than 8")
     number, extended = int(id, 16), len(id) == 8
     if number >= 1 << (29 if extended else 11):
