@@ -265,6 +265,7 @@ def simulate(
     contributions: Contributions,
     *,
     backend: str = "simulation",
+    own_backends: Mapping[str, str] | None = None,
     options: Mapping[str, str] | None = None,
     assume: Mapping[str, bool] | None = None,
     observe: Callable[[StepRecord], None] | None = None,
@@ -273,7 +274,8 @@ def simulate(
 
     Args:
         backend: name of what moves the robots; its time is simulated.
-        options: of the backend.
+        own_backends: by robot, that of those that are moved by another one.
+        options: of the backends; ``ROBOT:KEY`` is for that of one robot.
         assume: fixed answers by condition identifier, which go before contributed conditions.
         observe: called with each step before it has an effect, to write a log.
 
@@ -287,7 +289,7 @@ def simulate(
 
     return simulated(
         program,
-        backend=backend_named(backend, contributions),
+        backend=backend_for(program, contributions, backend, own_backends or {}),
         options=options,
         types=place.types,
         robot_kinds=contributions.robot_kinds,
@@ -360,6 +362,22 @@ def backend_named(name: str, contributions: Contributions) -> BackendFactory:
         UsageError: if there is none.
     """
     return _named("backend", name, contributions.backends)
+
+
+def backend_for(
+    program: Program, contributions: Contributions, usual: str, own: Mapping[str, str]
+) -> BackendFactory:
+    """Return what moves the robots of a program: the usual backend, or their own, by names.
+
+    Raises:
+        UsageError: if there is no such backend or robot, or simulated time would meet real time.
+    """
+    if not own:
+        return backend_named(usual, contributions)
+    from mmrs_core.runtime.mixed import mixed
+
+    owned = {robot: backend_named(name, contributions) for robot, name in own.items()}
+    return mixed(backend_named(usual, contributions), owned, [robot.id for robot in program.robots])
 
 
 def _named(sort: str, name: str, contributed: Mapping[str, Contributed]) -> Contributed:

@@ -16,6 +16,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.sitl.battery import load_at
 from mmrs_core.sitl.parameters import defaults
 from mmrs_core.sitl.settings import Settings
+from mmrs_core.sitl.sights import Sight
 from mmrs_core.sitl.vehicle import SimulatedVehicle
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Berth:
 
     Attributes:
         kind: ``copter``, ``sub`` or ``rover``.
-        home: latitude and longitude, degrees.
+        home: latitude and longitude, degrees. offset: of it from the mission's origin, metres north and east.
         energy: seconds of hovering in a full battery; recharge: seconds until it is full; 0: never.
     """
 
@@ -47,6 +48,7 @@ class Berth:
     home: tuple[float, float]
     energy: float = USUAL_ENERGY
     recharge: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +58,7 @@ class Berths:
     Attributes:
         ground: where a ground station listens beside them; empty: there is none.
         energy, recharge: for all of them; None: as each berth says.
+        sights: what there is to be seen, from the mission's origin.
     """
 
     port: int
@@ -72,6 +75,7 @@ class Berths:
     energy: float | None
     recharge: float | None
     parameters: tuple[str, ...]
+    sights: tuple[Sight, ...] = ()
 
     def vehicles(self, berths: Sequence[Berth]) -> tuple[tuple[str, SimulatedVehicle], ...]:
         """Return a vehicle for each robot, and say how it is reached.
@@ -111,6 +115,10 @@ class Berths:
                 energy=berth.energy if self.energy is None else self.energy,
                 recharge=berth.recharge if self.recharge is None else self.recharge,
                 parameters=dict(map(_parameter, self.parameters)),
+                sights=tuple(
+                    replace(each, north=each.north - berth.offset[0], east=each.east - berth.offset[1])
+                    for each in self.sights
+                ),
             )
             _refuse_unknown(settings)
             return SimulatedVehicle(
@@ -187,10 +195,11 @@ def berths_of(settings: CliSettings, path: Path) -> list[Berth]:
     lost = [name for name, _, home, _ in crew if home is None]
     if lost:
         raise UnsupportedError(f"{path}: no home for {', '.join(lost)}")
-    places = degrees_of([home[:2] for _, _, home, _ in crew if home is not None], frame)
+    homes = [home[:2] for _, _, home, _ in crew if home is not None]
+    places = degrees_of(homes, frame)
     return [
-        Berth(name, kind, place, *battery)
-        for (name, kind, _, battery), place in zip(crew, places, strict=True)
+        Berth(name, kind, place, *battery, (north, east))
+        for (name, kind, _, battery), place, (east, north) in zip(crew, places, homes, strict=True)
     ]
 
 

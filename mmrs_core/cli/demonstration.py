@@ -33,8 +33,8 @@ class Manner:
 
     Attributes:
         also: a shorter name of it; may be empty.
-        backend: what moves the robots, in simulated time.
-        options: of the backend.
+        backend: what moves the robots, in simulated time. own: by robot, what moves those that differ.
+        options: of the backends; ``ROBOT:KEY`` is for that of one robot.
         targets: what is generated.
     """
 
@@ -42,6 +42,7 @@ class Manner:
     backend: str = "simulation"
     options: Mapping[str, str] = field(default_factory=dict)
     targets: tuple[str, ...] = TARGETS
+    own: Mapping[str, str] = field(default_factory=dict)
 
 
 def manner_of(folder: Path) -> Manner:
@@ -59,7 +60,8 @@ def manner_of(folder: Path) -> Manner:
             key: str(value).replace("{folder}", str(folder)) for key, value in found["options"].items()
         }
         targets = tuple(map(str, found.get("targets", TARGETS)))
-        return Manner(str(found.get("also", "")), str(found["backend"]), options, targets)
+        own = {robot: str(name) for robot, name in found.get("own", {}).items()}
+        return Manner(str(found.get("also", "")), str(found["backend"]), options, targets, own)
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         raise UnreadableError(f"{file}: cannot be used: {error}") from error
 
@@ -147,13 +149,14 @@ def demonstrate(journey: Journey, folder: Path, manner: Manner = Manner()) -> De
             else ""
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
-    run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options))
+    run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
     logs = write_logs(run, program, folder / "logs", place.types)
     files.append(("what each robot did", folder / "logs", len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
     replayed = replay(program, read_logs([folder / "logs"]))
-    return Demonstration(journey, run, replayed, folder, tuple(files), left_out, manner.backend)
+    backends = " and ".join(dict.fromkeys((manner.backend, *manner.own.values())))
+    return Demonstration(journey, run, replayed, folder, tuple(files), left_out, backends)
 
 
 def _rendered(journey: Journey, target: str) -> tuple[tuple[GeneratedFile, ...], tuple[str, ...]]:

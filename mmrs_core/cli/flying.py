@@ -24,10 +24,17 @@ from mmrs_core.cli.observing import Observer
 from mmrs_core.cli.onlookers import Gallery
 from mmrs_core.cli.orders_heard import hear_orders
 from mmrs_core.cli.output import say, tell, unfailing
-from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, robots_of, stop_response
+from mmrs_core.cli.wishes import (
+    Wishes,
+    check_mavlink,
+    links_of,
+    options_of_robots,
+    robots_of,
+    stop_response,
+)
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
-from mmrs_core.pipeline import backend_named, conditions_for, inputs_of
+from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture, run_live
 from mmrs_core.runtime.orders import STOP, Orders
@@ -89,13 +96,13 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         UnsupportedError: if the backend cannot do what the behaviour holds.
     """
     program = loaded.program
-    backend = backend_named(wishes.backend, workshop.contributions)
+    backend = backend_for(program, workshop.contributions, wishes.backend, wishes.own_backends)
     here = robots_of(program, wishes.robots)
     links = links_of(wishes.links, here)
     check_mavlink(wishes, links, here)
     resumed = resumed_steps(program, wishes, here)
     run = resumed[0].run if resumed else wishes.run
-    orders = Orders(stop_response(wishes.on_stop))
+    orders, options = Orders(stop_response(wishes.on_stop)), options_of_robots(wishes, here)
     conditions = conditions_for(program, workshop.contributions, wishes.assume, asks=True)
     with ExitStack() as stack:
         clock = RealClock(wishes.speedup, end_of(resumed, wishes.folder))
@@ -108,7 +115,7 @@ def carry_out(workshop: Workshop, loaded: Loaded, wishes: Wishes) -> Result:
         observer = Observer(gallery, writer, program)
         venture = Venture(
             program,
-            inputs_of(program, loaded.place, workshop.contributions, options=wishes.options, robots=here),
+            inputs_of(program, loaded.place, workshop.contributions, options=options, robots=here),
             bus,
             conditions,
             clock=clock,

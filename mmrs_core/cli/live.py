@@ -21,8 +21,13 @@ def run(
         Path, typer.Option("--log", metavar="DIR", help="Where to write logs and black boxes.")
     ] = Path("logs"),
     backend: Annotated[
-        str, typer.Option("--backend", metavar="NAME", help="What drives the robots.")
-    ] = "mavlink",
+        _Texts,
+        typer.Option(
+            "--backend",
+            metavar="[ROBOT=]NAME",
+            help="What drives the robots, or one of them; may be repeated. [mavlink]",
+        ),
+    ] = None,
     connect: Annotated[
         _Texts,
         typer.Option(
@@ -90,7 +95,12 @@ def run(
     context: Context = None,
     robots: Robots = None,
     backend_option: Annotated[
-        _Texts, typer.Option("--backend-option", metavar="KEY=VALUE", help="Of the backend; may be repeated.")
+        _Texts,
+        typer.Option(
+            "--backend-option",
+            metavar="[ROBOT:]KEY=VALUE",
+            help="Of the backend of all robots, or of one; may be repeated.",
+        ),
     ] = None,
     json: Json = False,
 ) -> int:
@@ -105,10 +115,11 @@ def run(
     from mmrs_core.cli.buses import BusWishes
     from mmrs_core.cli.flying import carry_out
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.simulation import answers, options_of
-    from mmrs_core.cli.wishes import Wishes
+    from mmrs_core.cli.simulation import answers, backends_of, options_of
+    from mmrs_core.cli.wishes import MAVLINK, Wishes
 
     workshop = Workshop(settings_of(call))
+    usual, own = backends_of(backend, MAVLINK)
     given = dict(options_of(backend_option))
     if signing_key is not None:
         given["signing-key"] = str(signing_key)
@@ -116,7 +127,8 @@ def run(
         given["inject"] = ",".join(inject)
     wishes = Wishes(
         folder=log,
-        backend=backend,
+        backend=usual,
+        own_backends=own,
         options=given,
         links=tuple(connect or ()),
         robots=tuple(only or ()),

@@ -23,11 +23,20 @@ def simulate(
     robots: Robots = None,
     assume: Assume = None,
     backend: Annotated[
-        str, typer.Option("--backend", metavar="NAME", help="What moves the robots, in simulated time.")
-    ] = "simulation",
+        list[str] | None,
+        typer.Option(
+            "--backend",
+            metavar="[ROBOT=]NAME",
+            help="What moves the robots, or one of them, in simulated time; may be repeated. [simulation]",
+        ),
+    ] = None,
     backend_option: Annotated[
         list[str] | None,
-        typer.Option("--backend-option", metavar="KEY=VALUE", help="Of the backend; may be repeated."),
+        typer.Option(
+            "--backend-option",
+            metavar="[ROBOT:]KEY=VALUE",
+            help="Of the backend of all robots, or of one; may be repeated.",
+        ),
     ] = None,
     json: Json = False,
 ) -> int:
@@ -39,6 +48,7 @@ def simulate(
     from mmrs_core.cli.simulation import (
         Chosen,
         answers,
+        backends_of,
         fly,
         options_of,
         run_lines,
@@ -47,7 +57,8 @@ def simulate(
     )
 
     workshop = Workshop(settings_of(call))
-    conditions, chosen = answers(assume), Chosen(backend, options_of(backend_option))
+    usual, own = backends_of(backend, "simulation")
+    conditions, chosen = answers(assume), Chosen(usual, options_of(backend_option), own)
     loaded = load_behaviour(workshop, behaviour_file(behaviour), context=context, robots=robot_files(robots))
     if output is not None:
         refuse_inputs((output / log_name(robot.id) for robot in loaded.program.robots), workshop.inputs)

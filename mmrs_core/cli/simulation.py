@@ -40,10 +40,31 @@ def answers(given: Sequence[str] | None) -> Mapping[str, bool]:
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """The backend of a run. Attributes: its name, and its options by key."""
+    """The backends of a run.
+
+    Attributes:
+        backend: name of the usual one. own: by robot, those of others.
+        options: by key; ``ROBOT:KEY`` is for the backend of one robot.
+    """
 
     backend: str = "simulation"
     options: Mapping[str, str] = field(default_factory=dict)
+    own: Mapping[str, str] = field(default_factory=dict)
+
+
+def backends_of(given: Sequence[str] | None, usual: str) -> tuple[str, Mapping[str, str]]:
+    """Return the usual backend, and those that robots have for themselves, from ``[ROBOT=]NAME``.
+
+    Raises:
+        typer.BadParameter: if two are usual, or a robot has two.
+    """
+    own: dict[str, str] = {}
+    for robot, sign, name in (each.rpartition("=") for each in given or ()):
+        if robot in own:
+            whose = f"'{robot}'" if sign else "all other robots"
+            raise typer.BadParameter(f"--backend {name}: {whose} have {own[robot]} already")
+        own[robot] = name
+    return own.pop("", usual), own
 
 
 def options_of(given: Sequence[str] | None) -> Mapping[str, str]:
@@ -81,6 +102,7 @@ def fly(
             place,
             workshop.contributions,
             backend=chosen.backend,
+            own_backends=chosen.own,
             options=chosen.options,
             assume=conditions,
             observe=workshop.onlookers.see_step,

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import Json, settings_of
+
+if TYPE_CHECKING:
+    from mmrs_core.sitl.sights import Sight
 
 _Texts = list[str] | None
 FIRST_PORT, PORT_STEP = 14_550, 10
@@ -94,6 +97,12 @@ def sitl(
             help="After so many seconds under way, for so long; may be repeated. --fault list: all of them.",
         ),
     ] = None,
+    surroundings: Annotated[
+        Path | None,
+        typer.Option(
+            "--surroundings", metavar="FILE", help="What there is to be detected in photos; of a mission's."
+        ),
+    ] = None,
     seconds: Annotated[
         float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
     ] = 0.0,
@@ -128,6 +137,7 @@ def sitl(
         energy=energy,
         recharge=recharge,
         parameters=tuple(parameter or ()),
+        sights=_sights(surroundings),
     )
     if behaviour is not None:
         _refuse_beside(call, behaviour, ("count", "home", "kind"))
@@ -140,6 +150,18 @@ def sitl(
     if json:
         say_json({"vehicles": rehearsal.deeds(), "connect": berths.arguments(given)})
     return code
+
+
+def _sights(path: Path | None) -> tuple[Sight, ...]:
+    from mmrs_core.errors import UnreadableError
+    from mmrs_core.sitl.sights import sights_in
+
+    try:
+        return sights_in(path) if path is not None else ()
+    except OSError as error:
+        raise UnreadableError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise UnreadableError(str(error)) from error
 
 
 def _refuse_beside(call: typer.Context, behaviour: Path, names: tuple[str, ...]) -> None:

@@ -11,7 +11,9 @@ import typer
 
 from mmrs_core.behaviour.program import Program
 from mmrs_core.cli.buses import BusWishes
+from mmrs_core.runtime.mixed import options_for
 
+MAVLINK = "mavlink"
 ON_STOP = {"hold": "HOLD", "return": "RETURN", "land": "LAND"}
 _SERIAL = re.compile(r"/|COM\d+", re.IGNORECASE)
 """How names of serial devices begin."""
@@ -23,7 +25,8 @@ class Wishes:
 
     Attributes:
         folder: of the logs.
-        options: of the backend.
+        backend: the usual one. own_backends: by robot, those of others.
+        options: of the backends; ``ROBOT:KEY`` is for that of one robot.
         links: as in ``--connect``.
         robots: those that this process runs; none: all.
         patience: seconds to wait for the order to resume once nobody else works.
@@ -32,7 +35,8 @@ class Wishes:
     """
 
     folder: Path
-    backend: str = "mavlink"
+    backend: str = MAVLINK
+    own_backends: Mapping[str, str] = field(default_factory=dict)
     options: Mapping[str, str] = field(default_factory=dict)
     links: tuple[str, ...] = ()
     robots: tuple[str, ...] = ()
@@ -76,15 +80,17 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
         typer.BadParameter: if there are any.
         OSError: if a key cannot be read.
     """
-    if wishes.backend != "mavlink":
+    flying = _by_mavlink(wishes, robots)
+    if not flying:
         return
     from mmrs_core.flight.injection import injections
     from mmrs_core.flight.links.ports import address_of, split_system
 
-    _refuse_options(wishes.options)
+    for robot in flying:
+        _refuse_options(options_for(robot, wishes.options))
     _refuse_key(wishes.options.get("signing-key"))
     reached: dict[tuple[str, int], str] = {}
-    for robot, text in links.items():
+    for robot, text in ((each, links[each]) for each in flying if each in links):
         try:
             url, system = split_system(text)
             if address_of(url) is None and not _SERIAL.match(url):
@@ -98,6 +104,18 @@ def check_mavlink(wishes: Wishes, links: Mapping[str, str], robots: tuple[str, .
             injections([inject], {robot: links.get(robot, "") for robot in robots})
         except ValueError as error:
             raise typer.BadParameter(f"--inject {error}") from error
+
+
+def options_of_robots(wishes: Wishes, robots: tuple[str, ...]) -> dict[str, str]:
+    """Return the options of backends; where these differ, the key to sign with is for MAVLink's only."""
+    options = dict(wishes.options)
+    if wishes.own_backends and (key := options.pop("signing-key", None)) is not None:
+        options |= {f"{robot}:signing-key": key for robot in _by_mavlink(wishes, robots)}
+    return options
+
+
+def _by_mavlink(wishes: Wishes, robots: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(each for each in robots if wishes.own_backends.get(each, wishes.backend) == MAVLINK)
 
 
 def _refuse_options(given: Mapping[str, str]) -> None:

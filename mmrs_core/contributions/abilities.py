@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from mmrs_core.contributions.execution import Sample
+from mmrs_core.scene import Position
 
 
 @runtime_checkable
@@ -125,6 +126,15 @@ class Noting(Protocol):
 
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Keep something that the interpreter decided, was ordered, or waited for; raises nothing."""
+        ...
+
+
+@runtime_checkable
+class Learning(Protocol):
+    """A backend that goes by what other robots have detected."""
+
+    def learn(self, places: Mapping[str, Position]) -> None:
+        """Take note of where robots that notified this one have detected things, by name."""
         ...
 
 

@@ -100,7 +100,7 @@ class BackendInput:
     """All that a backend may use.
 
     Attributes:
-        options: as in ``--backend-option``.
+        options: as in ``--backend-option``, those of this robot.
         policies: of the robot, in the order in which they go: the first for an event counts.
         areas: of the context as drawn; empty where none was given.
         live: of a run in real time; None in simulated time.

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from mmrs_core.behaviour.program import SlotId
 from mmrs_core.flight.bus.words import CommandId as CommandId
+from mmrs_core.flight.bus.words import Find as Find
 from mmrs_core.flight.bus.words import SlotState as SlotState
 
 
@@ -49,12 +50,19 @@ class Bus(Protocol):
     or withdrawn its notify, or is lost.
     """
 
-    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+    def prepare(
+        self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...] = ()
+    ) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
         Owners that share a process answer, and apply what is sent, before the call returns, in one
-        instant. A command is applied once, however often it arrives.
+        instant. A command is applied once, however often it arrives. With the notify goes what its sender
+        knows to have been detected: owners know it before anybody sees the slots set.
         """
+        ...
+
+    def finds(self, robot: str) -> tuple[Find, ...]:
+        """Return what those that notified a robot of this process had detected."""
         ...
 
     def state(self, slot: SlotId) -> SlotState:

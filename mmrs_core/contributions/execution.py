@@ -23,7 +23,8 @@ class RobotState:
         energy: joules left; inf for a wired robot, None where nothing is known.
         charge: part of the battery that is left, 0 to 1; None where nothing is known.
         wind: metres per second; None where nothing is known.
-        detected: names of what the robot has detected so far.
+        detected: names of what the robot has detected so far. places: where, as far as it knows.
+        found: names of what it, or a robot that has notified it since, has detected.
         answers: what the operator has answered, by question, and no choice has used up.
     """
 
@@ -36,6 +37,8 @@ class RobotState:
     wind: float | None = None
     detected: frozenset[str] = frozenset()
     answers: Mapping[str, bool] = field(default_factory=dict)
+    places: Mapping[str, Position] = field(default_factory=dict)
+    found: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,8 @@
 """Conditions of choices that need nobody to write them: their identifiers say what they ask.
 
 ``battery-below:0.3`` holds with less than that part of the battery left, ``wind-above:8`` in wind of
-more metres per second, ``detected:NAME`` once the vehicle has told that it detected that, and
+more metres per second, ``detected:NAME`` once the vehicle has told that it detected that,
+``found:NAME`` once that, or a robot that has notified this one since, has detected it, and
 ``answer:QUESTION`` if the operator answers yes. Where there is no figure to go by, or no answer yet,
 they are undecided, and the robot waits.
 """
@@ -38,6 +39,11 @@ class Known(Protocol):
         ...
 
     @property
+    def found(self) -> frozenset[str]:
+        """Return the names of what it, or a robot that has notified it since, has detected."""
+        ...
+
+    @property
     def answers(self) -> Mapping[str, bool]:
         """Return what the operator has answered, by question, and no choice has used up."""
         ...
@@ -45,7 +51,7 @@ class Known(Protocol):
 
 Standard: TypeAlias = Callable[[Known], bool | None]
 
-BATTERY, WIND, DETECTED, ANSWER = "battery-below", "wind-above", "detected", "answer"
+BATTERY, WIND, DETECTED, FOUND, ANSWER = "battery-below", "wind-above", "detected", "found", "answer"
 
 
 def standard(identifier: str) -> Standard:
@@ -121,6 +127,10 @@ def _detected(name: str) -> Standard:
     return lambda known: name in known.detected
 
 
+def _found(name: str) -> Standard:
+    return lambda known: name in known.found
+
+
 def _answer(question: str) -> Standard:
     return lambda known: known.answers.get(question)
 
@@ -136,5 +146,6 @@ _MAKE: Mapping[str, Callable[[str], Standard]] = {
     BATTERY: _battery,
     WIND: _wind,
     DETECTED: _detected,
+    FOUND: _found,
     ANSWER: _answer,
 }

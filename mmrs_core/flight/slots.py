@@ -32,9 +32,17 @@ class Slots(Protocol):
         ...
 
     def notify(
-        self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
+        self,
+        sender: str,
+        slots: Iterable[tuple[str, str]],
+        active: bool,
+        record: Record,
+        guard: Guard,
+        detected: Iterable[str] = (),
     ) -> None:
         """Have slots set: ask their owners, record the notification, send it; return when all have it.
+
+        With it go the names of what the sender, and those that notified it, have detected.
 
         `guard` is called again and again until then, with the owners that have not answered; it raises
         what should end the attempt. What was recorded is sent all the same, as long as this process lives.
@@ -47,6 +55,10 @@ class Slots(Protocol):
 
     def active(self, robot: str, names: Iterable[str]) -> bool:
         """Return whether all of a robot's slots of these names are active now."""
+        ...
+
+    def found(self, robot: str) -> frozenset[str]:
+        """Return the names of what those that notified a robot had detected."""
         ...
 
     def await_change(self, seconds: float) -> None:
@@ -95,11 +107,19 @@ class BusSlots:
         return self.node.tick()
 
     def notify(
-        self, sender: str, slots: Iterable[tuple[str, str]], active: bool, record: Record, guard: Guard
+        self,
+        sender: str,
+        slots: Iterable[tuple[str, str]],
+        active: bool,
+        record: Record,
+        guard: Guard,
+        detected: Iterable[str] = (),
     ) -> None:
         """Ask the owners, record the notification, send it; return when all have it."""
         id = CommandId(self._run, sender, self.node.incarnation, next(self._numbers))
-        delivery = self.node.prepare(id, tuple(slots), active)
+        told = {find[0]: find for find in self.node.finds(sender)}
+        finds = {**{name: (name, None) for name in sorted(detected)}, **told}
+        delivery = self.node.prepare(id, tuple(slots), active, tuple(finds.values()))
         try:
             lamport = self.node.tick(self._granted(delivery, guard))
             record(lamport)
@@ -125,6 +145,10 @@ class BusSlots:
     def active(self, robot: str, names: Iterable[str]) -> bool:
         """Return whether all of a robot's slots of these names are active now."""
         return all(self.node.state((robot, name)).active for name in names)
+
+    def found(self, robot: str) -> frozenset[str]:
+        """Return the names of what those that notified a robot had detected."""
+        return frozenset(name for name, _ in self.node.finds(robot))
 
     def await_change(self, seconds: float) -> None:
         """Wait until something changes, but no longer than so many real seconds."""

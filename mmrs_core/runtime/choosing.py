@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.abilities import Noting
 from mmrs_core.contributions.backends import Backend
-from mmrs_core.contributions.execution import Fault
+from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.flight.conditions import awaiting, question_of
 from mmrs_core.flight.questions import Questions
 from mmrs_core.runtime.conditions import decided
@@ -42,15 +43,17 @@ class Choosing:
         if self._chosen is not None:
             return self._chosen
         heard = self.questions.heard()
-        holds = decided(
-            self._rules.conditions[identifier], lambda: replace(self._backend.state(now), answers=heard)
-        )
+        holds = decided(self._rules.conditions[identifier], lambda: self._known(now, heard))
         if holds is None:
             self._tell_undecided(identifier, wait)
         elif isinstance(holds, bool):
             self._chosen = holds
             self.questions.use_up(heard)
         return holds
+
+    def _known(self, now: float, heard: Mapping[str, bool]) -> RobotState:
+        state = self._backend.state(now)
+        return replace(state, answers=heard, found=state.detected | self._rules.told())
 
     def _tell_undecided(self, identifier: str, wait: Wait) -> None:
         if wait.question == identifier:

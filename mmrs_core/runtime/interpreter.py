@@ -9,6 +9,7 @@ backend, the bus or an order wakes it.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping
+from functools import partial
 from math import inf
 
 from mmrs_core.behaviour.program import Program
@@ -18,14 +19,14 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus, CommandId
 from mmrs_core.contributions.execution import Clock, Condition, Fault
-from mmrs_core.errors import UnsupportedError
 from mmrs_core.runtime.agenda import Agenda
 from mmrs_core.runtime.attention import BUS
+from mmrs_core.runtime.finding import finds_of, names_told, teach
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.robot import RunningRobot
-from mmrs_core.runtime.rules import Rules
+from mmrs_core.runtime.rules import Rules, refuse_unknown
 from mmrs_core.runtime.stopping import Stopping
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Policy
@@ -64,7 +65,7 @@ def interpret(
             are not the program's.
         UnsupportedError: if a condition is unknown; lists all of them.
     """
-    _refuse_unknown(program, backends, conditions)
+    refuse_unknown(program, backends, conditions)
     robots = []
     for robot in program.robots:
         if robot.id in backends:
@@ -76,30 +77,13 @@ def interpret(
                 program.reserve,
                 live,
                 terms.say,
+                partial(names_told, robot.id, bus),
             )
             robots.append(RunningRobot(robot, backends[robot.id], bus, rules))
             robots[-1].restore(record for record in terms.resumed if record.robot == robot.id)
     terms.standing.begin(robots)
     over = {id: why for id, why in over_by(program, terms.resumed).items() if id not in backends}
     return _Run(program, robots, bus, clock, terms, over).go()
-
-
-def _refuse_unknown(
-    program: Program, backends: Mapping[str, Backend], conditions: Mapping[str, Condition]
-) -> None:
-    known = {robot.id for robot in program.robots}
-    for id in backends:
-        if id not in known:
-            raise ValueError(f"robot '{id}': not in the behaviour")
-    unknown = [
-        f"robot '{robot.id}', after move '{robot.moves[source].id}': condition '{transition.condition}'"
-        for robot in program.robots
-        if robot.id in backends
-        for source, transition in sorted(robot.transitions.items())
-        if transition.condition is not None and transition.condition not in conditions
-    ]
-    if unknown:
-        raise UnsupportedError(f"{len(unknown)} choices have conditions that nobody decides", unknown)
 
 
 class _Run:
@@ -154,6 +138,7 @@ class _Run:
             self._peers.retire(id, failed=bool(why))
             self._bus.leave(id)
         for robot in self._robots:
+            teach(robot.id, robot.backend, self._bus)
             if robot.point.is_final:
                 self._peers.retire(robot.id, failed=robot.point.phase is Phase.FAILED)
                 self._bus.leave(robot.id)
@@ -193,7 +178,8 @@ class _Run:
         if step.sets:
             if robot.notify.delivery is None:
                 id = CommandId(self._terms.run, robot.id, self._terms.incarnation, robot.number)
-                robot.notify.delivery = self._bus.prepare(id, step.sets, step.active)
+                finds = finds_of(robot.id, robot.backend, self._bus, robot.looked)
+                robot.notify.delivery = self._bus.prepare(id, step.sets, step.active, finds)
             if robot.notify.delivery.lamport is None:
                 return False
             least = robot.notify.delivery.lamport
@@ -202,6 +188,8 @@ class _Run:
         lamport = max((robot.lamport + 1, least, *(clock + 1 for clock in clocks)))
         if waits and not self._bus.passed(waits, lamport):
             return False
+        if waits:
+            teach(robot.id, robot.backend, self._bus)
         robot.lamport = lamport
         return True
 

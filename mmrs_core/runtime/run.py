@@ -16,6 +16,7 @@ from mmrs_core.contributions.wiring import Wirings
 from mmrs_core.errors import UnsupportedError, UsageError
 from mmrs_core.runtime.clock import SimulatedClock
 from mmrs_core.runtime.interpreter import interpret
+from mmrs_core.runtime.mixed import options_for, refuse_strange
 from mmrs_core.runtime.slots import InProcessBus
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
 from mmrs_core.scene import Area, Name, Policy, RobotType
@@ -116,7 +117,9 @@ def inputs_of(
 
     Raises:
         UnsupportedError: if a robot type is missing.
+        UsageError: if an option is for a robot that there is not.
     """
+    refuse_strange(options, [robot.id for robot in program.robots])
     found: dict[str, BackendInput] = {}
     for robot in program.robots:
         robot_type = _type_of(types, robot.id, robot.type_name)
@@ -128,7 +131,7 @@ def inputs_of(
             robot_kinds,
             move_kinds,
             environment,
-            options,
+            options_for(robot.id, options),
             policies,
             areas,
             device_actions=device_actions or {},

@@ -4,13 +4,15 @@ A robot follows the path of each move at the commanded speed, in the time that t
 wind and current slow it down where it would have to be faster than it can. Its batteries fall by mean
 power and time, faster in a climb and against the wind (`mmrs_core.runtime.legs`); on the ground, a
 robot that flies takes nothing. Holding a position in more wind than the type's `positionHold` is a
-fault. An object whose place nobody knows is taken to be where the robot looks for it.
+fault. An object whose place nobody knows is taken to be where the robot looks for it. Where there are
+surroundings, a robot that flies detects what lies below it whenever one of its devices does something.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from math import hypot, inf
+from pathlib import Path
 
 from mmrs_core.behaviour.as_scene import robot_of
 from mmrs_core.behaviour.policies import in_precedence
@@ -18,7 +20,7 @@ from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move
 from mmrs_core.contributions.backends import BackendFactory, BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.contributions.rules import MoveKind
-from mmrs_core.errors import UsageError
+from mmrs_core.errors import UnreadableError, UsageError
 from mmrs_core.runtime.battery import SLACK, Battery
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of, move_kinds_of
@@ -36,9 +38,11 @@ from mmrs_core.runtime.legs import (
     wind,
 )
 from mmrs_core.scene import Position
+from mmrs_core.sitl.sights import Sight, seen, sights_in
 
 RECHARGE = (BEHAVIOUR, "Recharge")
 STOP = (BEHAVIOUR, "Stop")
+SURROUNDINGS = "surroundings"
 
 
 class SimulatedRobot:
@@ -54,13 +58,15 @@ class SimulatedRobot:
         Raises:
             UnsupportedError: if nobody contributed what moves its robot, or one of its moves or
                 actions; lists them.
-            UsageError: if an option is given: there are none.
+            UsageError: if an option other than ``surroundings`` is given.
+            UnreadableError: if that is no such file.
         """
-        if given.options:
-            option = sorted(given.options)[0]
+        for option in sorted(set(given.options) - {SURROUNDINGS}):
             raise UsageError(
                 f"option '{option}': the simulation has none of that name: it has no links, disk or clock"
             )
+        self._sights = _sights(given.options.get(SURROUNDINGS))
+        self._places: dict[str, Position] = {}
         self._given, self._robot = given, robot_of(given.robot, given.type, given.program.position_error)
         self._kinematics, self._kinds = kinematics_of(given), move_kinds_of(given)
         policies = in_precedence(given.robot.policies, given.policies)
@@ -103,6 +109,7 @@ class SimulatedRobot:
                 self._fault = Fault("DEVICE_SILENT", f"'{action.device}' does not do '{action.name}'")
                 return
             seconds = supported.duration
+            self._look(now)
         self._stay(now, seconds)
 
     def wait(self, now: float) -> None:
@@ -137,7 +144,13 @@ class SimulatedRobot:
         leg = self._leg(now)
         speed = leg.speed if now < leg.end else 0.0
         return RobotState(
-            now, leg.position(now), speed, leg.heading(now), self._battery.energy(leg.charge_at(now))
+            now,
+            leg.position(now),
+            speed,
+            leg.heading(now),
+            self._battery.energy(leg.charge_at(now)),
+            detected=frozenset(self._places),
+            places=self._places,
         )
 
     def stop(self, now: float, response: str = "HOLD") -> None:
@@ -163,6 +176,13 @@ class SimulatedRobot:
                 if not samples or samples[-1] != sample:
                     samples.append(sample)
         return tuple(samples)
+
+    def _look(self, now: float) -> None:
+        """Detect what lies below."""
+        east, north, up = self._leg(now).position(now)
+        surface = self._given.program.frame.surface
+        for each in seen(self._sights, north, east, up - surface) if self._state == "airborne" else ():
+            self._places[each.name] = (each.east, each.north, surface - each.depth)
 
     def _travel(
         self, move: Move, kind: MoveKind, path: tuple[Position, ...], now: float, through: bool
@@ -292,6 +312,15 @@ class SimulatedRobot:
             if self._legs[index].empty_at < self._legs[index].end:
                 self._legs[index:] = [self._legs[index].until(self._legs[index].empty_at)]
                 return
+
+
+def _sights(path: str | None) -> tuple[Sight, ...]:
+    try:
+        return sights_in(Path(path)) if path is not None else ()
+    except OSError as error:
+        raise UnreadableError(f"{path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise UnreadableError(str(error)) from error
 
 
 SIMULATION = BackendFactory(

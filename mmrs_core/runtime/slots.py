@@ -8,7 +8,7 @@ from pathlib import Path
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.program import Program, RobotProgram, SlotId
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.buses import CommandId, SlotState
+from mmrs_core.contributions.buses import CommandId, Find, SlotState
 from mmrs_core.errors import InternalError
 from mmrs_core.flight.bus import Carrier, Delivery, FileJournal, Member, Node, Owned, Recorded
 from mmrs_core.flight.slots import SETTLING_SECONDS
@@ -26,7 +26,9 @@ class ProgramBus:
         self.node = node
         self._known = {(robot.id, slot) for robot in program.robots for slot in robot.slots}
 
-    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+    def prepare(
+        self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...] = ()
+    ) -> Delivery:
         """Ask the owners of slots for setting them; owners of this process have answered at return.
 
         Raises:
@@ -34,7 +36,11 @@ class ProgramBus:
         """
         for slot in slots:
             self._refuse_unknown(slot)
-        return self.node.prepare(id, slots, active)
+        return self.node.prepare(id, slots, active, finds)
+
+    def finds(self, robot: str) -> tuple[Find, ...]:
+        """Return what those that notified a robot of this process had detected."""
+        return self.node.finds(robot)
 
     def state(self, slot: SlotId) -> SlotState:
         """Return the state of a slot of this process's robots.

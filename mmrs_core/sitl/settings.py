@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from mmrs_core.sitl.sights import Sight
+
 KINDS = ("copter", "sub", "rover")
 ARDUPILOT, PX4 = "ardupilot", "px4"
 
@@ -32,6 +34,7 @@ class Settings:
         seed: of the gusts; vehicles with different system ids meet different ones all the same.
         rate: of its telemetry until somebody asks for another, hertz.
         values: by name, what it publishes as NAMED_VALUE_FLOAT, given seconds.
+        sights: what it may detect in its photos; from its home.
         refuse: commands that it does not know.
         silent: commands that it never answers.
         mavlink: version of MAVLink that its port speaks and never leaves, 1 or 2.
@@ -58,6 +61,7 @@ class Settings:
     seed: int = 0
     rate: float = 4.0
     values: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
+    sights: tuple[Sight, ...] = ()
     refuse: frozenset[int] = frozenset()
     silent: frozenset[int] = frozenset()
     mavlink: int = 2

@@ -9,8 +9,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl import telemetry
 from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.camera import Photo
 from mmrs_core.sitl.commands import ACCEPTED, complaint
 from mmrs_core.sitl.settings import PX4
+from mmrs_core.sitl.sights import seen
 
 Message = Any
 
@@ -100,7 +102,16 @@ class Streams:
             taken = pilot.camera.photos[-pilot.camera.untold]
             pilot.camera.untold -= 1
             self._send(telemetry.photo(pilot, taken))
+            self._tell_detections(taken)
         self._complain()
+
+    def _tell_detections(self, taken: Photo) -> None:
+        """Tell what a photo shows, and where that is if there is room for it."""
+        for each in seen(self._pilot.settings.sights, *taken.place):
+            latitude, longitude = self._pilot.degrees_at((each.north, each.east, 0.0))
+            text = f"detected {each.name}"
+            placed = f"{text} at {latitude:.6f},{longitude:.6f}"
+            self._pilot.say(mavlink.MAV_SEVERITY_NOTICE, placed if len(placed) <= TEXT_BYTES else text)
 
     def _complain(self) -> None:
         pilot = self._pilot

@@ -23,7 +23,7 @@ from .reading import written
 from .sending import Sending
 from .troubles import Keeping, Net, Tell, tell_people
 from .watching import OTHERWISE, TWICE, Unwelcome, Watching, refuse_oddities
-from .words import Answer, Begin, CommandId, Commit, Meet, Request, SlotId, SlotState
+from .words import Answer, Begin, CommandId, Commit, Find, Meet, Request, SlotId, SlotState
 
 
 class Node:
@@ -169,12 +169,20 @@ class Node:
         """Return the robots whose slots a robot of this process sets or resets."""
         return self._members[robot].targets
 
-    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+    def prepare(
+        self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...] = ()
+    ) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
-        Where there are robots of other processes, run and incarnation are those of this node.
+        Where there are robots of other processes, run and incarnation are those of this node. With the
+        notify goes what its sender knows to have been detected.
         """
-        return self._notifying.prepare(id, slots, active)
+        return self._notifying.prepare(id, slots, active, finds)
+
+    def finds(self, robot: str) -> tuple[Find, ...]:
+        """Return what those that notified a robot of this process had detected."""
+        with self.lock:
+            return self._owners.finds(robot)
 
     def state(self, slot: SlotId) -> SlotState:
         """Return the state of a slot of this process's robots.

@@ -13,12 +13,14 @@ from .words import (
     LARGEST,
     LONGEST,
     LONGEST_NAME,
+    MOST_FINDS,
     MOST_SLOTS,
     Answer,
     Begin,
     CommandId,
     Commit,
     Ended,
+    Find,
     Leave,
     Meet,
     Prepare,
@@ -154,10 +156,38 @@ def recorded_in(content: Mapping[str, Any], name: str) -> tuple[tuple[str, bool,
     return tuple(_recorded(each) for each in found)
 
 
+def finds_in(content: Mapping[str, Any]) -> tuple[Find, ...]:
+    """Return what was detected, and where; nothing where an object does not say.
+
+    Raises:
+        Unreadable: it is no list of that.
+    """
+    found = content.get("finds", [])
+    if not isinstance(found, list) or len(found) > MOST_FINDS:
+        raise Unreadable(f"finds: no list of at most {MOST_FINDS}")
+    return tuple(map(_find, found))
+
+
+def _find(each: object) -> Find:
+    if not isinstance(each, list) or len(each) != 2:
+        raise Unreadable("finds: no lists of name and place")
+    name, place = text_in({"finds": each[0]}, "finds"), each[1]
+    if place is None:
+        return name, None
+    if not isinstance(place, list) or len(place) != 3:
+        raise Unreadable("finds: no place of three numbers")
+    east, north, up = (_real_in({"finds": number}, "finds") for number in place)
+    return name, (east, north, up)
+
+
 def _seconds_in(content: Mapping[str, Any], name: str) -> float:
-    found = content.get(name, 0.0)
+    return _real_in(content, name, 0.0)
+
+
+def _real_in(content: Mapping[str, Any], name: str, usual: float | None = None) -> float:
+    found = content.get(name, usual)
     if not isinstance(found, int | float) or isinstance(found, bool) or not abs(found) < LARGEST:
-        raise Unreadable(f"{name}: no number of seconds")
+        raise Unreadable(f"{name}: no number")
     return float(found)
 
 
@@ -168,7 +198,7 @@ def _prepare(id: CommandId, content: Mapping[str, Any]) -> Request:
 
 def _commit(id: CommandId, content: Mapping[str, Any]) -> Request:
     slots, active = names_in(content, "slots"), flag_in(content, "active")
-    return Commit(id, slots, active, number_in(content, "lamport"))
+    return Commit(id, slots, active, number_in(content, "lamport"), finds_in(content))
 
 
 def _begin(id: CommandId, content: Mapping[str, Any]) -> Request:

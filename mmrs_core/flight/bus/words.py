@@ -8,11 +8,15 @@ from typing import TypeAlias
 
 SlotId: TypeAlias = tuple[str, str]
 
+Find: TypeAlias = "tuple[str, tuple[float, float, float] | None]"
+"""What was detected, and where: metres east, north and up of the mission's origin; None: nobody knows."""
+
 LONGEST = 65_536
 """Bytes of the longest message; a longer one is refused unread."""
 
 LONGEST_NAME = 1_000
 MOST_SLOTS = 1_000
+MOST_FINDS = 100
 LARGEST = 1 << 52
 """The largest number: JSON readers of other languages know no whole numbers beyond."""
 
@@ -72,12 +76,17 @@ class Prepare:
 
 @dataclass(frozen=True, slots=True)
 class Commit:
-    """Has an owner set slots; whole in itself, since the owner may have been restarted meanwhile."""
+    """Has an owner set slots; whole in itself, since the owner may have been restarted meanwhile.
+
+    Attributes:
+        finds: what the sender, or those that notified it, had detected by then.
+    """
 
     id: CommandId
     slots: tuple[str, ...]
     active: bool
     lamport: int
+    finds: tuple[Find, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,6 +95,7 @@ class Doing:
             action.active,
             lambda lamport: self._journal.write("ntf", detail, slots, lamport),
             self._waits.delivery(),
+            self._vehicle.state().detected,
         )
 
 

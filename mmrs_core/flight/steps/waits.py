@@ -139,10 +139,12 @@ class Waits:
 
     def _asked(self, condition: str) -> bool | None:
         heard = self._desk.questions.heard()
-        state = replace(self._vehicle.state(), answers=heard)
+        known = self._vehicle.state()
+        found = known.detected | self._desk.slots.found(self._robot.id)
+        state = replace(known, answers=heard, found=found)
         try:
-            found = self._desk.conditions[condition](state)
-            holds = None if found is None else truth(found)
+            said = self._desk.conditions[condition](state)
+            holds = None if said is None else truth(said)
         except FAILURES as error:
             raise Fault(CONDITION_FAILED, f"condition {condition!r} fails: {error!r}") from error
         if holds is not None:

@@ -57,7 +57,7 @@ class Telemetry:
         link.observe(self.texts)
         self.announcements = Announcements(link.clock, self.texts)
         link.observe(self.announcements)
-        self._detections = Detections()
+        self._detections = Detections(lambda: self.here() if self.placed() else None)
         link.observe(self._detections)
 
     def state(self) -> State:
@@ -72,6 +72,7 @@ class Telemetry:
             wind=None if wind is None else wind[0],
             wind_from=None if wind is None else wind[1],
             detected=self._detections.names,
+            places=self._detections.places,
         )
 
     def lacks(self) -> tuple[str, ...]:

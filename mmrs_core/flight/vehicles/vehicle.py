@@ -19,7 +19,8 @@ class State:
         heading: degrees clockwise from north. energy: part of the battery that is left, 0 to 1, or
             None where the vehicle does not say.
         wind: metres per second; wind_from: degrees clockwise from north; None where nobody knows.
-        detected: names of what the vehicle has detected so far.
+        detected: names of what the vehicle has detected so far. places: where, as far as it knows.
+        found: names of what it, or a robot that has notified it since, has detected.
         answers: what the operator has answered, by question, and no choice has used up.
         mode: in the runtime's words (``guided``, ``auto``, ``hold``, ``land`` …) or, where it has none
             for it, the vehicle's number. armed: whether the motors may run.
@@ -35,6 +36,8 @@ class State:
     wind: float | None = None
     wind_from: float | None = None
     detected: frozenset[str] = frozenset()
+    places: Mapping[str, Place] = field(default_factory=dict)
+    found: frozenset[str] = frozenset()
     answers: Mapping[str, bool] = field(default_factory=dict)
 
     @property

@@ -154,8 +154,17 @@ class MavlinkBackend:
             None if known.energy is None or self._with.joules is None else known.energy * self._with.joules
         )
         place = self._with.ground.position(known.place)
+        places = {name: self._with.ground.position(each) for name, each in known.places.items()}
         return RobotState(
-            now, place, known.speed, known.heading, energy, known.energy, known.wind, known.detected
+            now,
+            place,
+            known.speed,
+            known.heading,
+            energy,
+            known.energy,
+            known.wind,
+            known.detected,
+            places=places,
         )
 
     def told(self) -> Mapping[str, object]:

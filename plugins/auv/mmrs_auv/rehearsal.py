@@ -78,6 +78,11 @@ class Berth:
         codes = {part: process.poll() for part, process in self._processes.items()}
         return {part: code for part, code in codes.items() if code is not None}
 
+    @property
+    def ids(self) -> Mapping[str, int]:
+        """Return the system's number of each process, by part."""
+        return {part: process.pid for part, process in self._processes.items()}
+
     def close(self) -> None:
         """End all of it; the hub last."""
         for part in (*PARTS, "hub"):

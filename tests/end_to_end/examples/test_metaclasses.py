@@ -16,6 +16,7 @@ MISSIONS = (
     "outfall",
     "pool-course",
     "two-auv-survey",
+    "lost-float",
 )
 LANGUAGES = (
     "urn:mmrs:mission:1.0",

@@ -14,7 +14,9 @@ from mmrs_core.contributions.execution import Condition
 from mmrs_core.runtime.run import simulate
 from mmrs_core.scene import Serve, Step
 
-JUSTIFIED_UNKNOWNS = {name: {"range"} for name in ("Objects in the pool", "Outfall", "Course", "Two fields")}
+JUSTIFIED_UNKNOWNS = {
+    name: {"range"} for name in ("Objects in the pool", "Outfall", "Course", "Two fields", "Lost float")
+}
 
 
 def test_it_is_valid_without_a_warning(example):
@@ -141,6 +143,7 @@ def test_samples_cover_every_field_of_the_carbon_dioxide_mission(taken):
         ("outfall", {"auv"}),
         ("pool-course", {"auv"}),
         ("two-auv-survey", {"auv"}),
+        ("lost-float", {"multicopter", "auv"}),
     ],
 )
 def test_the_kinds_of_robots_are_those_that_the_example_is_for(taken, name, kinds):

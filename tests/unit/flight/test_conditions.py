@@ -6,10 +6,11 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.conditions import is_standard, question_of, standard
-from mmrs_core.flight.program import Local
+from mmrs_core.flight.program import Geographic, Local
 from mmrs_core.flight.vehicles.detections import Detections
 from mmrs_core.flight.vehicles.vehicle import State
 
+GEOGRAPHIC = Geographic(42.0, 13.0, 20.0)
 HERE = State(0.0, Local(0.0, 0.0, 5.0), 0.0, 0.0, None)
 
 
@@ -76,3 +77,33 @@ def test_what_is_sent_detects_nothing():
     detections = Detections()
     detections(mavlink.MAVLink_statustext_message(6, b"detected us"), True)
     assert detections.names == set()
+
+
+def text(words):
+    return mavlink.MAVLink_statustext_message(6, words.encode())
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "place"),
+    [
+        ("detected buoy 7", "buoy 7", GEOGRAPHIC),
+        ("detected buoy at 42.5,-13.25", "buoy", Geographic(42.5, -13.25, 0.0)),
+        ("detected buoy at 92.5,13.25", "buoy at 92.5,13.25", GEOGRAPHIC),
+        ("detected man at sea", "man at sea", GEOGRAPHIC),
+    ],
+)
+def test_what_was_detected_is_where_the_vehicle_says_or_was(words, name, place):
+    detections = Detections(lambda: GEOGRAPHIC)
+    detections(text(words), False)
+    assert detections.places == {name: place}
+
+
+def test_a_vehicle_without_a_place_on_earth_detects_where_it_is():
+    detections = Detections(lambda: HERE.place)
+    detections(text("detected buoy at 42.5,13.25"), False)
+    assert detections.places == {"buoy": HERE.place}
+
+
+def test_what_notifies_told_was_found():
+    assert standard("found:buoy")(HERE) is False
+    assert standard("found:buoy")(replace(HERE, found=frozenset({"buoy"}))) is True

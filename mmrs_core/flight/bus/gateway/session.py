@@ -12,7 +12,7 @@ from typing import IO, Any
 from ..meeting import Incomplete, begin_together
 from ..node import Node
 from ..outgoing.delivery import Delivery
-from ..reading import Unreadable, flag_in, names_in, number_in, object_in, text_in
+from ..reading import Unreadable, finds_in, flag_in, names_in, number_in, object_in, text_in
 from ..troubles import Net, tell_people
 from ..words import LONGEST, MOST_SLOTS, REACH, CommandId
 
@@ -123,7 +123,7 @@ class Session:
                 raise Unreadable(f"slots: {self._robot!r} never sets any of {robot!r}")
         self._latest = number
         id = CommandId(self._run, self._robot, "", number)
-        self._deliveries[number] = self._node.prepare(id, slots, active)
+        self._deliveries[number] = self._node.prepare(id, slots, active, finds_in(content))
         return {"is": "asked", "number": number}
 
     def _send(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -144,7 +144,9 @@ class Session:
         return found
 
     def _state(self, content: Mapping[str, Any]) -> Mapping[str, object]:
-        return {"is": "state", "slots": json.loads(self._node.shown(self._robot))}
+        finds = self._node.finds(self._robot)
+        told = {"finds": [list(find) for find in finds]} if finds else {}
+        return {"is": "state", "slots": json.loads(self._node.shown(self._robot)), **told}
 
     def _pass(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         slots = [(self._robot, name) for name in names_in(content, "slots")]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from ..words import Answer, CommandId, Commit, Prepare, Request, Withdraw
+from ..words import Answer, CommandId, Commit, Find, Prepare, Request, Withdraw
 
 ROUND_SECONDS, LONGEST_ROUND = 0.6, 5.0
 """How long owners have to answer before all are asked anew, growing with each round: radios are slow."""
@@ -57,6 +57,7 @@ class Errand:
         clock: Callable[[], int],
         chance: random.Random,
         reach: int,
+        finds: tuple[Find, ...] = (),
     ) -> None:
         """Ask nobody yet.
 
@@ -67,12 +68,13 @@ class Errand:
             clock: the least logical time that the sender can use now.
             chance: for pauses.
             reach: how far beyond the time granted the notify may be recorded.
+            finds: what the sender knows to have been detected.
         """
         self.id, self.active = id, active
         self.phase, self.due, self.lamport = Phase.PAUSING, 0.0, 0
         self.refusals: dict[str, str] = {}
         self._parts, self._clock, self._chance = dict(parts), clock, chance
-        self._reach = reach
+        self._reach, self._finds = reach, finds
         self._most = 0
         self._round = self._tries = 0
         self._busy, self._floor = False, 0
@@ -162,7 +164,7 @@ class Errand:
     def _commits(self, now: float) -> list[Message]:
         self.due = now + self._pause() + 0.05
         return [
-            self._to(owner, Commit(self.id, self._parts[owner], self.active, self.lamport))
+            self._to(owner, Commit(self.id, self._parts[owner], self.active, self.lamport, self._finds))
             for owner in sorted(self._open)
         ]
 

@@ -10,7 +10,7 @@ from functools import partial
 
 from ..owners.owners import Owners
 from ..watching import Watching
-from ..words import LARGEST, REACH, CommandId, SlotId
+from ..words import LARGEST, MOST_FINDS, REACH, CommandId, Find, SlotId
 from .delivery import Delivery
 from .errands import Errand
 from .outbox import Outbox
@@ -49,10 +49,13 @@ class Notifying:
         self._owners, self._watching, self._outbox = owners, watching, outbox
         self._pump, self._chance, self._alone = pump, chance, alone
 
-    def prepare(self, id: CommandId, slots: tuple[SlotId, ...], active: bool) -> Delivery:
+    def prepare(
+        self, id: CommandId, slots: tuple[SlotId, ...], active: bool, finds: tuple[Find, ...]
+    ) -> Delivery:
         """Ask the owners of slots for setting them; returns at once.
 
-        Where there are robots of other processes, run and incarnation are those of this process.
+        Where there are robots of other processes, run and incarnation are those of this process. Of the
+        finds, the last `MOST_FINDS` go with it.
         """
         parts: dict[str, tuple[str, ...]] = {}
         for owner, slot in slots:
@@ -60,7 +63,8 @@ class Notifying:
         if not self._alone:
             id = replace(id, run=self._run, incarnation=self._owners.incarnation)
             self._take_part(id.sender)
-        errand = Errand(id, parts, active, self._least, self._chance, LARGEST if self._alone else REACH)
+        reach = LARGEST if self._alone else REACH
+        errand = Errand(id, parts, active, self._least, self._chance, reach, finds[-MOST_FINDS:])
         with self._lock:
             for owner in parts:
                 if self._watching.has_ended(owner) and owner not in self._owners:

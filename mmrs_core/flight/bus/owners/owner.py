@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..reading import Unreadable
-from ..words import REACH, Answer, Begin, CommandId, Commit, Prepare, SlotState, Withdraw
+from ..words import REACH, Answer, Begin, CommandId, Commit, Find, Prepare, SlotState, Withdraw
 from .journal import Journal
 from .latest import Latest, Starts
 from .remembered import (
@@ -67,6 +67,7 @@ class Owner:
         start: number of the last start that the journal tells of; 0: there was none.
         lamport: the latest logical time of robots that told this one that they have ended.
         used: whether the journal tells of anything but starts.
+        finds: by name, what those that notified this robot had detected.
     """
 
     def __init__(
@@ -96,6 +97,7 @@ class Owner:
         self.robot = owned.robot
         self.start = self.lamport = 0
         self.used = False
+        self.finds: dict[str, Find] = {}
         self._owned, self._run, self._journal, self._trusting = owned, run, journal, trusting
         self._lost = lost or (lambda sender, now: False)
         self._slots = {name: Slot(SlotState(lamport=floor)) for name in owned.slots}
@@ -267,6 +269,7 @@ class Owner:
     def _apply(self, sent: Commit) -> None:
         self._applied.add(sent.id)
         self._settle(sent.id)
+        self.finds.update({find[0]: find for find in sent.finds})
         for name in sent.slots:
             slot = self._slots[name]
             slot.free(sent.id)

@@ -7,7 +7,7 @@ import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ..watching import Watching
-from ..words import Answer, Begin, CommandId, Commit, Prepare, SlotId, SlotState, Withdraw
+from ..words import Answer, Begin, CommandId, Commit, Find, Prepare, SlotId, SlotState, Withdraw
 from .journal import Journal
 from .members import Member, Recorded
 from .owner import Owner
@@ -95,6 +95,10 @@ class Owners:
             KeyError: it belongs to no robot of this process.
         """
         return self._owners[slot[0]].state(slot[1], now)
+
+    def finds(self, robot: str) -> tuple[Find, ...]:
+        """Return what those that notified a robot of this process had detected."""
+        return tuple(self._owners[robot].finds.values())
 
     def shown(self, robot: str, now: float) -> str:
         """Return the state of a robot's slots as a JSON object."""

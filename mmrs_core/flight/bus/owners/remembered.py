@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from ..reading import Unreadable, flag_in, names_in, number_in, recorded_in, text_in
+from ..reading import Unreadable, finds_in, flag_in, names_in, number_in, recorded_in, text_in
 from ..words import Begin, CommandId, Commit, Prepare, Withdraw
 
 Line = Mapping[str, Any]
@@ -51,13 +51,14 @@ def left_in(line: Line) -> tuple[str, int]:
 def set_line(sent: Commit) -> Line:
     """Return that slots were set."""
     line = {"set": list(sent.slots), "active": sent.active, "lamport": sent.lamport}
-    return {**line, **_shown(sent.id)}
+    finds = {"finds": [list(each) for each in sent.finds]} if sent.finds else {}
+    return {**line, **finds, **_shown(sent.id)}
 
 
 def set_in(line: Line, slots: Collection[str]) -> Commit:
     """Return what set slots; `slots`: names that there are."""
     names, active = _names_in(line, "set", slots), flag_in(line, "active")
-    return Commit(_id_in(line), names, active, number_in(line, "lamport"))
+    return Commit(_id_in(line), names, active, number_in(line, "lamport"), finds_in(line))
 
 
 def freed_line(given_up: Withdraw) -> Line:

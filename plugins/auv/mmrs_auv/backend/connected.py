@@ -13,7 +13,7 @@ from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.vessel.api import Connection
 from mmrs_auv.vessel.eyes import Detections
-from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_auv.vessel.wire.ports import CHANNEL, Port, open_port
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.contributions.backends import BackendInput, Live
@@ -137,8 +137,8 @@ class ConnectedRobot(CanRobot):
             return None
         return Fault("REFUSED", f"the vehicle is {away:.0f} m from its home: bring it home before it begins")
 
-    def _detected(self) -> frozenset[str]:
-        return frozenset() if self._eyes is None else self._eyes.seen()
+    def _detected(self) -> Mapping[str, Vector]:
+        return {} if self._eyes is None else self._eyes.places()
 
 
 def connected(given: BackendInput, live: Live) -> ConnectedRobot:

@@ -55,7 +55,12 @@ class Waters:
 
 
 class Duties:
-    """Knows what a robot's moves and actions are to its vehicle."""
+    """Knows what a robot's moves and actions are to its vehicle.
+
+    Attributes:
+        charged: called when batteries were charged.
+        told: by name, where other robots have detected objects: metres north, east and below the surface.
+    """
 
     def __init__(self, given: BackendInput, sheet: Sheet, waters: Waters, sight: Sight | None) -> None:
         """Know them; without a `sight`, objects are where they are expected.
@@ -67,6 +72,8 @@ class Duties:
         self._kinds = move_kinds_of(given)
         self._kinematics = kinematics_of(given)
         self.charged: Callable[[], None] = lambda: None
+        self.told: dict[str, Vector] = {}
+        self._found: dict[str, Vector] = {}
         strange = tuple(self._strange())
         if strange:
             raise UnsupportedError(
@@ -123,20 +130,27 @@ class Duties:
         assert target is not None
         assert target.position is not None
         assert self._sight is not None
-        kind, home = self._kinds[move.id], self._given.robot.home
+        kind, home, name = self._kinds[move.id], self._given.robot.home, target.description or ""
 
         def way(place: Vector, found: bool) -> Duty:
+            if found:
+                self._found[name] = place
             aimed = replace(move, target=replace(target, position=self._waters.above(place)))
             path = kind.path(aimed, here, home)
             if path is None:
                 raise FailureError(NO_PROGRESS, f"no way to {place}")
-            look = aimed.heading
-            if look is not None and found and look.target.description == target.description:
-                look = replace(look, target=aimed.target or look.target)
-            return self._travel(replace(aimed, heading=look), path, through=False)
+            return self._travel(aimed, path, through=False)
 
         expected = self._waters.below(target.position)
-        return Seek(target.description or "", expected, target.tolerance, self._sight, way)
+        told = self._place(name, expected) if name in self.told else None
+        return Seek(name, expected, target.tolerance, self._sight, way, told)
+
+    def _place(self, name: str, expected: Vector) -> Vector:
+        """Return where an object was found, or was detected by others: at the depth expected."""
+        if name in self._found:
+            return self._found[name]
+        north, east, _ = self.told.get(name, expected)
+        return (north, east, expected[2])
 
     def _is_sought(self, move: Move) -> bool:
         return self._sight is not None and move.target is not None and move.target.description is not None
@@ -147,7 +161,8 @@ class Duties:
     def _look(self, heading: Heading) -> Look | None:
         if heading.target.position is None:
             return None
-        north, east, _ = self._waters.below(heading.target.position)
+        expected = self._waters.below(heading.target.position)
+        north, east, _ = self._place(heading.target.description or "", expected)
         return Look(north, east, heading.angle_degrees)
 
     def _strange(self) -> Iterator[str]:

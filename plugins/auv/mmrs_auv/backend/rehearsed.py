@@ -100,9 +100,10 @@ class Stage:
                 )
         return None
 
-    def in_sight(self) -> frozenset[str]:
-        """Return the names of what cameras see now."""
-        return frozenset(each.name for each in self.surroundings.things if self.sees(each.name) is not None)
+    def in_sight(self) -> dict[str, Vector]:
+        """Return what cameras see now, and where, as far as the vehicle knows its own place."""
+        found = ((each.name, self.sees(each.name)) for each in self.surroundings.things)
+        return {name: place for name, place in found if place is not None}
 
 
 class Cameras:
@@ -172,7 +173,6 @@ class RehearsedRobot(CanRobot):
         self.stage = stage
         self.notes: list[str] = []
         self._samples: list[Sample] = []
-        self._seen: set[str] = set()
         sight = stage.sees if options.objects in ("seen", "cameras") else None
         duties = Duties(given, sheet, Waters(given.program.frame.surface), sight)
         duties.charged = self._charge
@@ -213,7 +213,6 @@ class RehearsedRobot(CanRobot):
         while now - self.stage.rehearsal.now > TICK:
             self.stage.advance(min(now, self.stage.rehearsal.now + SAMPLE))
             self._sample()
-        self._seen |= self.stage.in_sight()
         super()._look(now)
 
     def _sample(self) -> None:
@@ -223,8 +222,8 @@ class RehearsedRobot(CanRobot):
         if not self._samples or time >= self._samples[-1].time + SAMPLE:
             self._samples.append(Sample(time, east, north, up, self.stage.vehicle.charge))
 
-    def _detected(self) -> frozenset[str]:
-        return frozenset(self._seen)
+    def _detected(self) -> Mapping[str, Vector]:
+        return self.stage.in_sight()
 
     def _charge(self) -> None:
         self.stage.vehicle.charge = self._sheet.battery

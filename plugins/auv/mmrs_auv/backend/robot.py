@@ -8,10 +8,10 @@ from typing import Protocol
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.decision.duties import Duty, FailureError, Ready, Stay, Surface
+from mmrs_auv.vessel.decision.duties import OBJECT_NOT_FOUND, Duty, FailureError, Ready, Stay, Surface
 from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from mmrs_auv.vessel.movement.abilities import abilities_of
-from mmrs_auv.vessel.sheet import Sheet
+from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_core.behaviour.policies import AFTER, patience, response_to
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
@@ -63,6 +63,8 @@ class CanRobot:
         self._response, self._instead = "", ""
         self._silent_device: Fault | None = None
         self._now = 0.0
+        self._told: dict[str, Position] = {}
+        self._places: dict[str, Position] = {}
         self._place: Position = given.robot.home or (0.0, 0.0, given.program.frame.surface)
 
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
@@ -107,6 +109,14 @@ class CanRobot:
         self.note("decision", {"what": found.event, "why": found.reason, "response": "CONTINUE"})
         self._helm.bear(found.event)
         return True
+
+    def learn(self, places: Mapping[str, Position]) -> None:
+        """Seek objects first where other robots have detected them."""
+        for name, place in places.items():
+            if self._told.get(name) != place:
+                self._told[name] = place
+                self._duties.told[name] = self._waters.below(place)
+                self.note("told", {"object": name, "east": place[0], "north": place[1]})
 
     def wait(self, now: float) -> None:
         """Hold the pose: the last goal stays in force."""
@@ -224,20 +234,28 @@ class CanRobot:
             self._place = self._waters.above((known.north, known.east, known.depth))
         speed = hypot(known.surge, known.sway, known.heave)
         energy = None if known.charge is None else known.charge * self._sheet.battery
+        self._places.update({name: self._waters.above(place) for name, place in self._detected().items()})
         return RobotState(
-            now, self._place, speed, known.heading, energy, known.charge, detected=self._detected()
+            now,
+            self._place,
+            speed,
+            known.heading,
+            energy,
+            known.charge,
+            detected=frozenset(self._places),
+            places=dict(self._places),
         )
 
-    def _detected(self) -> frozenset[str]:
-        """Return what was detected so far."""
-        return frozenset()
+    def _detected(self) -> Mapping[str, Vector]:
+        """Return what is seen now, and where: metres north, east and below the surface."""
+        return {}
 
     def _here(self) -> Position:
         return self._state(self._now, self._craft.state()).position
 
     def _fault(self, found: FailureError) -> Fault:
-        if found.event == CRASHED:
-            return Fault(CRASHED, found.reason, "SURFACE")
+        if found.event in (CRASHED, OBJECT_NOT_FOUND):
+            return Fault(found.event, found.reason, "SURFACE")
         borne = response_to(found.event, self._policies) == "CONTINUE"
         if found.event == LINK_LOST and borne:
             # That policy is about radio; nobody controls a vehicle whose own bus is silent.

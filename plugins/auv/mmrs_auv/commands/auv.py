@@ -15,6 +15,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from mmrs_core.behaviour.log import SUFFIX, log_name
 from mmrs_core.cli.output import say
 from mmrs_core.errors import UnreadableError
 
@@ -102,4 +103,30 @@ def sitl(
         words += ["--speedup", f"{speedup:g}"] if speedup != 1.0 else []
         say(" ".join(map(quote, words)))
         keep(berths, time.monotonic() + (seconds or inf), stopped)
+    return 0
+
+
+@app.command("sheet")
+def sheet(
+    path: Annotated[Path, typer.Argument(metavar="PROJECT|BEHAVIOUR", help="Whose vehicles are meant.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Where to write a file for each vehicle.")
+    ] = Path("sheets"),
+) -> int:
+    """Write what each vehicle is made of, as its control layer and its eyes take it with --sheet.
+
+    Example: mmrs auv sheet examples/pool-course -o sheets
+    """
+    from mmrs_auv.commands.modelled import sheets_in
+    from mmrs_auv.vessel.sheet import to_json
+
+    sheets = sheets_in(path)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        for robot, found in sheets.items():
+            file = output / f"{log_name(robot).removesuffix(SUFFIX)}.json"
+            file.write_text(to_json(found), encoding="utf-8")
+            say(f"written: {file}")
+    except OSError as error:
+        raise UnreadableError(f"{output}: {error.strerror}") from error
     return 0

@@ -181,9 +181,14 @@ class Detections:
 
     def seen(self) -> frozenset[str]:
         """Return the names of the objects that are seen."""
+        return frozenset(self.places())
+
+    def places(self) -> dict[str, Vector]:
+        """Return where the objects are that are seen: metres north, east and below the surface."""
         with self._lock:
             names = list(self._kept)
-        return frozenset(name for name in names if self.place(name) is not None)
+        found = ((name, self.place(name)) for name in names)
+        return {name: place for name, place in found if place is not None}
 
     def take(self, data: bytes) -> None:
         """Take a datagram; what is no detection is counted in `bad`."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from mmrs_core.flight.bus.owners.journal import FileJournal
@@ -285,3 +287,19 @@ def test_a_line_of_a_journal_that_makes_no_sense_is_told_with_its_place(journal,
 
 
 WHO = {"run": "run", "sender": "a", "incarnation": "1", "sequence": 1}
+
+
+SEEN, HEARD = ("float", (3.0, 4.0, -2.0)), ("whale", None)
+
+
+def test_what_senders_have_detected_is_kept_with_their_notifies(owner, journal):
+    owner.commit(replace(commit(3), finds=(SEEN, HEARD)))
+    owner.commit(replace(commit(5, 2), finds=(("whale", (1.0, 1.0, 0.0)),)))
+    kept = {"float": SEEN, "whale": ("whale", (1.0, 1.0, 0.0))}
+    assert owner.finds == kept
+    assert Owner(OWNED, "run", journal).finds == kept
+
+
+def test_what_strangers_say_to_have_detected_is_not_kept(owner):
+    assert owner.commit(replace(commit(3, sender="z"), finds=(SEEN,))).what == "refused"
+    assert not owner.finds

@@ -12,6 +12,7 @@ from mmrs_core.flight.bus.reading import Unreadable, answer_in, request_in, writ
 from mmrs_core.flight.bus.words import (
     LARGEST,
     LONGEST,
+    MOST_FINDS,
     Answer,
     Begin,
     CommandId,
@@ -27,9 +28,11 @@ NUMBERS = st.integers(0, LARGEST)
 NAMES = st.text(max_size=30)
 IDS = st.builds(CommandId, NAMES, NAMES, NAMES, NUMBERS)
 SLOTS = st.lists(NAMES, min_size=1, max_size=4, unique=True).map(tuple)
+PLACES = st.tuples(*[st.floats(-1e6, 1e6)] * 3)
+FINDS = st.lists(st.tuples(NAMES, st.none() | PLACES), max_size=3).map(tuple)
 REQUESTS = st.one_of(
     st.builds(Prepare, IDS, NUMBERS, SLOTS, st.booleans(), NUMBERS),
-    st.builds(Commit, IDS, SLOTS, st.booleans(), NUMBERS),
+    st.builds(Commit, IDS, SLOTS, st.booleans(), NUMBERS, FINDS),
     st.builds(Withdraw, IDS, NUMBERS),
     st.builds(Begin, IDS, st.lists(st.tuples(NAMES, st.booleans(), NUMBERS), max_size=3).map(tuple)),
     st.builds(Leave, IDS, NUMBERS),
@@ -100,3 +103,29 @@ def test_nothing_but_a_refusal_comes_of_any_json(value):
     except Unreadable:
         return
     raise AssertionError("was read")
+
+
+@pytest.mark.parametrize(
+    "finds",
+    [
+        3,
+        [["float"]],
+        [[7, None]],
+        [["float", [1.0, 2.0]]],
+        [["float", [1.0, 2.0, "deep"]]],
+        [["float", [1.0, 2.0, True]]],
+        [["float", "there"]],
+        [["float", None]] * (MOST_FINDS + 1),
+    ],
+)
+def test_what_was_detected_is_read_only_if_it_is_that(finds):
+    text = written(Commit(CommandId("run", "a", "1", 1), ("go",), True, 3))
+    with pytest.raises(Unreadable, match="finds"):
+        request_in(json.dumps({**json.loads(text), "finds": finds}))
+
+
+def test_what_was_detected_may_be_left_out():
+    sent = Commit(CommandId("run", "a", "1", 1), ("go",), True, 3)
+    content = json.loads(written(sent))
+    del content["finds"]
+    assert request_in(json.dumps(content)) == sent

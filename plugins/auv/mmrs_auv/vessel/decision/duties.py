@@ -243,7 +243,10 @@ Sight = Callable[[str], "Vector | None"]
 
 
 class Seek:
-    """Go to an object, wherever it is seen within so many metres of where it is expected."""
+    """Go to an object, wherever it is seen within so many metres of where it is expected.
+
+    What looks the same and is farther away is passed by.
+    """
 
     def __init__(
         self,
@@ -252,6 +255,7 @@ class Seek:
         tolerance: float | None,
         sight: Sight,
         way: Callable[[Vector, bool], Duty],
+        told: Vector | None = None,
     ) -> None:
         """Seek an object.
 
@@ -261,16 +265,24 @@ class Seek:
             tolerance: None: it may be anywhere.
             sight: who sees it.
             way: how to get to it where it is; False: to where it is expected, to see it from there.
+            told: where somebody else has seen it, so that it is looked for there; None: nobody has.
         """
         self._name, self._expected, self._tolerance = name, expected, tolerance
         self._sight, self._way = sight, way
-        self._towards = way(expected, False)
+        self._told, self._far = told, ""
+        self._towards = way(expected if told is None else told, False)
         self._found = False
         self._figures = [False, True]
         self._searching = False
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Set out, or go on."""
+        """Set out, or go on.
+
+        Raises:
+            FailureError: others have seen it farther from where it is expected than it may be.
+        """
+        if self._told is not None and self._is_far(self._told):
+            raise FailureError(OBJECT_NOT_FOUND, self._far)
         if self._searching and not self._found:
             self._search(craft)
         else:
@@ -278,8 +290,8 @@ class Seek:
 
     def done(self, craft: Craft, now: float) -> bool:
         """Return whether the vehicle is there."""
-        if not self._found and (place := self._sight(self._name)) is not None:
-            self._refuse_far(place)
+        place = None if self._found else self._sight(self._name)
+        if place is not None and not self._is_far(place):
             self._found, self._towards = True, self._way(place, True)
             self._towards.begin(craft, now)
             return False
@@ -291,7 +303,9 @@ class Seek:
         elif craft.state().progress not in ("REACHED", "FAILED"):
             return False
         if not self._figures:
-            raise FailureError(OBJECT_NOT_FOUND, f"object {self._name!r} is not seen where it is expected")
+            raise FailureError(
+                OBJECT_NOT_FOUND, self._far or f"object {self._name!r} is not seen where it is expected"
+            )
         self._searching = True
         self._search(craft, self._figures.pop(0))
         return False
@@ -302,9 +316,10 @@ class Seek:
         heading = None if along else here.heading
         craft.search(here.north, here.east, max(0.0, here.depth), heading=heading)
 
-    def _refuse_far(self, place: Vector) -> None:
+    def _is_far(self, place: Vector) -> bool:
+        """Return whether that cannot be the object, since it is too far from where it is expected."""
         away = dist(place, self._expected)
-        if self._tolerance is not None and away > self._tolerance:
-            raise FailureError(
-                OBJECT_NOT_FOUND, f"object {self._name!r} is {away:.1f} m from where it is expected"
-            )
+        if self._tolerance is None or away <= self._tolerance:
+            return False
+        self._far = f"object {self._name!r} is {away:.1f} m from where it is expected"
+        return True
