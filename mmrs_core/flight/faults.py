@@ -54,6 +54,10 @@ class Refused(Fault):
         super().__init__(REFUSED, message)
 
 
+class Unanswered(Refused):
+    """The vehicle says nothing where it should: no answer to a command, no image, no value."""
+
+
 class Strange(Refused):
     """The vehicle is not the robot's, or somebody else may have it: it must be told nothing."""
 

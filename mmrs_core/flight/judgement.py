@@ -19,7 +19,7 @@ class Judgement:
 
     def faults(self, robots: Sequence[Robot]) -> list[str]:
         """Return what is missing for these robots."""
-        objects = {found for r in robots for s in r.steps for found in _objects(s.movement)}
+        objects = {found for r in robots for s in r.steps for found in objects_of(s.movement)}
         return [
             *(fault for name in sorted(conditions_of(robots)) if (fault := self._undecided(name))),
             *self._unasked(robots),
@@ -57,7 +57,8 @@ def conditions_of(robots: Sequence[Robot]) -> set[str]:
     return {step.then.condition for robot in robots for step in robot.steps if isinstance(step.then, Choose)}
 
 
-def _objects(movement: Movement) -> list[str]:
+def objects_of(movement: Movement) -> list[str]:
+    """Return the descriptions of the objects that a movement leads to or points at."""
     look = movement.look if isinstance(movement, GoTo | Turn) else None
     targets = [look.at if look else None, movement.at if isinstance(movement, GoTo) else None]
     return [target.description for target in targets if isinstance(target, Object)]

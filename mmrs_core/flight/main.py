@@ -7,6 +7,7 @@ import signal
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from typing import TYPE_CHECKING
 
 from .bus import Recorded
 from .conditions import Condition
@@ -14,8 +15,6 @@ from .control import Control, Taken
 from .crews import Crews
 from .injection import Rehearsal
 from .judgement import Judgement, conditions_of
-from .links.ports import Port
-from .links.radios import Radios
 from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
@@ -25,6 +24,10 @@ from .session import Shared, Vehicles, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
 from .steps.resuming import slots_of
+
+if TYPE_CHECKING:
+    from .links.ports import Port
+    from .links.radios import Radios
 
 
 def main(
@@ -59,7 +62,7 @@ def main(
             judgement=judgement,
             decides=judgement.decides(robots),
             rehearsal=rehearsal,
-            radios=_radios(options, rehearsal),
+            radios=None if vehicles is not None or options.dry else _radios(options, rehearsal),
             crews=(
                 crews := Crews(
                     [robot.id for robot in robots], {robot.id: conditions_of([robot]) for robot in robots}
@@ -132,6 +135,8 @@ def _recorded(robots: Sequence[Robot], options: Options) -> dict[str, Recorded]:
 
 
 def _radios(options: Options, rehearsal: Rehearsal) -> Radios:
+    from .links.radios import Radios  # MAVLink's library need not be there where no robot speaks it
+
     reach = options.reach
 
     def wrap(port: Port, url: str) -> Port:

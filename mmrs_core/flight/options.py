@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .bus import PATIENCE
 from .clock import Clock
@@ -15,10 +15,12 @@ from .faults import Fault
 from .injection import HELP, Injections, injections
 from .links.ports import address_of, split_system
 from .links.retries import ANSWER_SECONDS, ITEM_SECONDS, TRIES, Retries
-from .links.signing import Signer, signer_for
 from .program import Robot
 from .records.blackbox import black_box_path, last_time, plan_of
 from .records.log import read
+
+if TYPE_CHECKING:
+    from .links.signing import Signer
 
 FIRST_PORT = 14_550
 PORT_STEP = 10
@@ -304,6 +306,8 @@ def _link(parser: argparse.ArgumentParser, text: str) -> tuple[str, int]:
 def _signer(parser: argparse.ArgumentParser, path: Path | None) -> Signer | None:
     if path is None:
         return None
+    from .links.signing import signer_for  # needs MAVLink's library
+
     try:
         return signer_for(path)
     except (OSError, ValueError) as error:

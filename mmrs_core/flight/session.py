@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
-from math import inf
 from traceback import format_exception
+from typing import TYPE_CHECKING
 
 from .bus import begin_together
 from .conditions import Condition
@@ -18,15 +18,12 @@ from .desk import Desk, Meet
 from .faults import CRASHED, FAILURES, Alone, Fault, Refused, Strange
 from .injection import Rehearsal
 from .judgement import Judgement
-from .links.link import Link
-from .links.radios import Radios
 from .options import Options
 from .orders.obedience import Obedience, Ordered
 from .orders.orders import RESUME, RETURN
-from .program import Geographic, Place, Robot
+from .program import Place, Robot
 from .records.blackbox import BlackBox, black_box_path
 from .records.log import Log
-from .records.recording import Recording
 from .records.start import start_of
 from .screen import say
 from .slots import BusSlots
@@ -38,9 +35,11 @@ from .steps.pilot import Pilot
 from .steps.resuming import progress_of
 from .steps.watch import Watch
 from .vehicles.dry import DryVehicle
-from .vehicles.mavlink_vehicle import MavlinkVehicle
-from .vehicles.recognition import recognise, system_of
 from .vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from .linked import Linked
+    from .links.radios import Radios
 
 GLANCE_SECONDS = 0.2
 
@@ -56,6 +55,7 @@ class Shared:
     """What all robots of a process share.
 
     Attributes:
+        radios: None: no robot speaks MAVLink.
         stop: set when they are to stop. abandon: set when even vehicles that others have are to be left.
         vehicles: None: vehicles that speak MAVLink.
     """
@@ -64,7 +64,7 @@ class Shared:
     slots: BusSlots
     judgement: Judgement
     decides: Mapping[str, Condition]
-    radios: Radios
+    radios: Radios | None
     rehearsal: Rehearsal
     crews: Crews
     stop: threading.Event
@@ -271,8 +271,15 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     stack.callback(obedience.close, "its program has ended")
     guard = guarding(watch, obedience)
     others = None if options.dry else shared.vehicles
-    link = None if options.dry or others is not None else _link(robot, shared, guard, stack)
-    vehicle = _vehicle(robot, options, guard, link) if others is None else others(robot, options, guard, box)
+    linked = None if options.dry or others is not None else _linked(robot, shared, guard, stack)
+    link = None if linked is None else linked.link
+    vehicle: Vehicle
+    if linked is not None:
+        vehicle = linked.vehicle
+    elif others is not None:
+        vehicle = others(robot, options, guard, box)
+    else:
+        vehicle = DryVehicle(options.clock, robot.home, guard)
     desk = Desk(
         clock=options.clock,
         slots=shared.slots,
@@ -284,17 +291,16 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         say=say,
         questions=shared.crews.questions[robot.id],
         meet=_meeting(robot, shared),
-        recognise=_recognition(robot, options, link, vehicle, obedience, watch),
+        recognise=_recognition(robot, options, linked, vehicle, obedience, watch),
         abandon=shared.abandon,
         dry=options.dry,
     )
     box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), link))
-    if link is not None and isinstance(vehicle, MavlinkVehicle):
-        watch.begin(link, vehicle)
-        geographic = isinstance(robot.home, Geographic)
-        link.observe(Recording(box, options.clock, vehicle.state, geographic=geographic))
-        shared.rehearsal.attend(robot.id, link)
-        shared.crews.wake[robot.id] = link.wake
+    if linked is not None:
+        watch.begin(linked.link, linked.vehicle)
+        linked.record(box, robot, options)
+        shared.rehearsal.attend(robot.id, linked.link)
+        shared.crews.wake[robot.id] = linked.link.wake
     pilot = Pilot(robot, vehicle, desk, watch, obedience, fence=options.fence)
     watch.current = lambda: pilot.waits.policies
     watch.track = lambda: pilot.track
@@ -315,24 +321,22 @@ def _meeting(robot: Robot, shared: Shared) -> Meet | None:
 def _recognition(
     robot: Robot,
     options: Options,
-    link: Link | None,
+    linked: Linked | None,
     vehicle: Vehicle,
     obedience: Obedience,
     watch: Watch,
 ) -> Callable[[bool, Sequence[Place]], None]:
     """Return what makes sure that the vehicle is the robot's, before anybody may tell it anything."""
-    system = system_of(black_box_path(options.log / robot.log)) if options.resume else 0
 
     def rests() -> bool:
-        heard = link is not None and link.latest("HEARTBEAT") is not None
+        heard = linked is not None and linked.link.latest("HEARTBEAT") is not None
         return heard and not vehicle.state().armed
 
     def look(under_way: bool, starts: Sequence[Place]) -> None:
         obedience.begin(None, rests)
-        if link is not None and isinstance(vehicle, MavlinkVehicle):
+        if linked is not None:
             watch.strange = True
-            near = inf if under_way and vehicle.state().armed else options.tolerances.home
-            recognise(link, vehicle, robot, near, starts, under_way=under_way, system=system)
+            linked.recognise(robot, options, under_way, starts)
             watch.strange = False
         obedience.begin(vehicle)
 
@@ -346,30 +350,11 @@ def _box(robot: Robot, options: Options, stack: ExitStack) -> BlackBox:
     return box
 
 
-def _vehicle(robot: Robot, options: Options, guard: Callable[[], None], link: Link | None) -> Vehicle:
-    if link is None:
-        return DryVehicle(options.clock, robot.home, guard)
-    near = options.tolerances
-    return MavlinkVehicle(
-        link,
-        robot.vehicle,
-        robot.home,
-        acceptance=near.place,
-        travel=robot.travel,
-        home_tolerance=near.home,
-        tell=lambda line: say(f"{robot.id!r}: {line}"),
-    )
+def _linked(robot: Robot, shared: Shared, guard: Callable[[], None], stack: ExitStack) -> Linked:
+    from .linked import linked  # MAVLink's library need not be there where no robot speaks it
 
-
-def _link(robot: Robot, shared: Shared, guard: Callable[[], None], stack: ExitStack) -> Link:
-    options, reach = shared.options, shared.options.reach
-    url, system = reach.urls[robot.id], reach.systems[robot.id]
-    link = shared.radios.open(url, system)
-    stack.callback(link.close)
-    link.guard = guard
-    say(f"{robot.id!r}: waits for {f'system {system}' if system else 'a vehicle'} at {url}")
-    shared.radios.meet(link, url, reach.patience * options.clock.speedup)
-    return link
+    assert shared.radios is not None
+    return linked(robot, shared.options, shared.radios, guard, stack)
 
 
 def _counts(dropped: Mapping[str, int]) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mmrs_auv.targets.ada.target import ADA
 from mmrs_auv.targets.can_c.target import CAN_C
+from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_auv.targets.imc.target import IMC
 from mmrs_auv.targets.moos.target import MOOS
 
@@ -28,7 +29,7 @@ def test_the_page_is_current(update_golden):
 
 
 def test_the_page_about_plans_for_underwater_vehicles_is_current(update_golden):
-    targets = (ADA, CAN_C, IMC, MOOS)
+    targets = (ADA, CAN_C, CAN_PYTHON, IMC, MOOS)
     tables = {target.name: capabilities_of(target) for target in targets}
     page = page_of(tables, {target.name: target.description for target in targets})
     made = page.replace("# Capabilities of the targets\n", "# Capabilities: underwater vehicles\n", 1)

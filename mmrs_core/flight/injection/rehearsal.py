@@ -5,16 +5,18 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Collection, Iterable, Mapping
 from math import inf
+from typing import TYPE_CHECKING
 
 from ..bus.carriers.carrier import Carrier
 from ..clock import Clock
-from ..links.link import Link
 from ..links.ports import Port
-from . import gps
 from .carrier import InjectedCarrier
 from .port import InjectedPort, Line
 from .process import Effect, effect_of
 from .spec import OF_BUS, OF_PROCESS, OF_STATIONS, OF_VEHICLE, Injection, Injections
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 Note = Callable[[str, Mapping[str, object]], None]
 """Records a fault made on purpose: its text, and what is to be said about it."""
@@ -66,14 +68,14 @@ class Rehearsal:
             self._notes.pop(robot, None)
             self._links.pop(robot, None)
 
-    def wrap(self, port: Port, robots: Collection[str]) -> Port:
-        """Return a port that these robots share, with the faults of their links."""
+    def wrap(self, port: Port, robots: Collection[str], line: type[Line] = Line) -> Port:
+        """Return a port that these robots share, with the faults of their links, each way by a `line`."""
         faults = self._injections.of_link(robots)
         if not faults:
             return port
         seed = f"{self._injections.seed} {' '.join(sorted(robots))}"
-        incoming = Line([f for f in faults if f.name != "cut-out"], self._clock, f"{seed} in")
-        outgoing = Line([f for f in faults if f.name != "cut-in"], self._clock, f"{seed} out")
+        incoming = line([f for f in faults if f.name != "cut-out"], self._clock, f"{seed} in")
+        outgoing = line([f for f in faults if f.name != "cut-in"], self._clock, f"{seed} out")
 
         def told(counts: Mapping[str, int]) -> None:
             self._say(f"{_list(robots)}: pieces made faulty on purpose: {dict(counts)}")
@@ -156,6 +158,8 @@ class Rehearsal:
                 ).start()
 
     def _switch_one(self, fault: Injection, robot: str, link: Link, on: bool) -> None:
+        from . import gps  # needs MAVLink's library
+
         if not gps.switch(link, on):
             self._say(f"{robot!r}: {fault.text}: {ONLY_SIMULATED}")
             self._note((robot,), fault.text, {"state": "impossible", "why": ONLY_SIMULATED})

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from typing import TYPE_CHECKING
 
-from .link import Link
+if TYPE_CHECKING:
+    from .link import Link
+
+PX4 = 12
+"""MAV_AUTOPILOT_PX4."""
 
 
 def is_px4(link: Link) -> bool:
     """Return whether the autopilot is a PX4."""
     beat = link.latest("HEARTBEAT")
-    return beat is not None and beat.autopilot == mavlink.MAV_AUTOPILOT_PX4
+    return beat is not None and beat.autopilot == PX4

@@ -10,15 +10,12 @@ from typing import Any, Protocol
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..clock import Clock
+from .ourselves import GROUND_COMPONENT, GROUND_SYSTEM
 from .ports import Address, Port
 from .signing import Signed, Signer
 from .stations import is_station
 
 Message = Any
-
-GROUND_SYSTEM = 255
-GROUND_COMPONENT = 191
-"""An onboard computer's, not a ground station's: autopilots could not tell the two, nor hand theirs on."""
 
 HEARTBEAT_SECONDS = 1.0
 GLANCE_SECONDS = 0.2

@@ -13,14 +13,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from ..clock import Clock
 from ..links.link import Message
 from ..links.messages import tells_place
-from ..program import Geographic, Place
+from ..program import Geographic
 from ..services.items import NAMES
 from ..vehicles.telemetry import NO_HEADING
 from ..vehicles.trail import place_in
 from ..vehicles.vehicle import State
 from .blackbox import BlackBox
+from .fixes import FIX_SECONDS, fix
 
-FIX_SECONDS = 0.19
 """Least time between two fixes: five in a second, and a little for uneven sending."""
 
 OTHER_SECONDS = 1.0
@@ -213,19 +213,6 @@ _HEARD: Mapping[str, Callable[[Recording, Any], None]] = {
     "CAMERA_IMAGE_CAPTURED": Recording._on_captured,
     "CAMERA_FEEDBACK": Recording._on_feedback,
 }
-
-
-def fix(box: BlackBox, state: State, place: Place | None = None) -> None:
-    """Write where a robot is; `place` where the state's is older."""
-    box.write(
-        "fix",
-        place=place or state.place,
-        speed=round(state.speed, 3),
-        heading=round(state.heading, 2),
-        energy=state.energy,
-        mode=state.mode,
-        armed=state.armed,
-    )
 
 
 def _speed(message: Message) -> float:

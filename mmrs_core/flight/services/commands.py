@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import Refused
+from ..faults import Refused, Unanswered
 from ..links.link import Link, Message
-from ..links.radio import GROUND_COMPONENT, GROUND_SYSTEM
+from ..links.ourselves import GROUND_COMPONENT, GROUND_SYSTEM
 from ..program import Geographic
 
 PROGRESS_SECONDS = 60.0
@@ -20,10 +20,6 @@ _AGAIN = mavlink.MAV_RESULT_TEMPORARILY_REJECTED
 _BEGUN = mavlink.MAV_RESULT_IN_PROGRESS
 CANCEL_NUMBER, CANCEL_CHECK = 80, 14
 LAST_CONFIRMATION = 255
-
-
-class Unanswered(Refused):
-    """The vehicle says nothing where it should: no answer to a command, no image, no value."""
 
 
 class CommandCancel(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink is not typed

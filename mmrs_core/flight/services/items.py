@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
+MISSION, FENCE, RALLY = 0, 1, 2
+"""MAV_MISSION_TYPE."""
 
-MISSION = mavlink.MAV_MISSION_TYPE_MISSION
-FENCE = mavlink.MAV_MISSION_TYPE_FENCE
-RALLY = mavlink.MAV_MISSION_TYPE_RALLY
 NAMES = {MISSION: "mission", FENCE: "fence", RALLY: "rally points"}
 
-RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT
-NO_FRAME = mavlink.MAV_FRAME_MISSION
+RELATIVE, NO_FRAME = 3, 2
+"""MAV_FRAME_GLOBAL_RELATIVE_ALT and MAV_FRAME_MISSION."""
+
+WAYPOINT, LOITER, CHANGE_SPEED = 16, 17, 178
+"""MAV_CMD_NAV_WAYPOINT, MAV_CMD_NAV_LOITER_UNLIM and MAV_CMD_DO_CHANGE_SPEED."""
+
+FENCE_VERTEX, RALLY_POINT = 5002, 5100
+"""MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION and MAV_CMD_NAV_RALLY_POINT."""
 
 
 @dataclass(frozen=True, slots=True)

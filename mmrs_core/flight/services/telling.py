@@ -7,7 +7,7 @@ station was heard. Nobody acknowledges it; on a link that loses frames it may be
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import count
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -26,12 +26,6 @@ def tell(link: Link, text: str) -> None:
     """Send a text in as many pieces as it needs; without waiting for anything."""
     for piece in pieces_of(text):
         link.speak(piece)
-
-
-def words_of(robot: str, name: str, content: Mapping[str, str]) -> str:
-    """Return what a robot reports as people at ground stations read it."""
-    pairs = ", ".join(f"{key} {value}" for key, value in content.items())
-    return ": ".join(part for part in (robot, name, pairs) if part)
 
 
 def pieces_of(text: str) -> Iterator[Message]:

@@ -6,11 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import ceil
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from ..places import at_height
 from ..program import Geographic, GoTo, Object, Place, Robot, Run, TakeOff
-from .items import NO_FRAME, Item
+from .items import CHANGE_SPEED, FENCE_VERTEX, LOITER, NO_FRAME, RALLY_POINT, WAYPOINT, Item
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,25 +62,25 @@ def mission_of(robot: Robot) -> tuple[tuple[Item, ...], dict[str, Flight]]:
     """
     if not robot.runs:
         return (), {}
-    items = [_positional(mavlink.MAV_CMD_NAV_WAYPOINT, robot.home)]
+    items = [_positional(WAYPOINT, robot.home)]
     flights: dict[str, Flight] = {}
     for run in robot.runs:
         first, ends = len(items), dict[int, str]()
         for move, item in _items_of(robot, run):
-            if item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
+            if item.command == WAYPOINT:
                 ends[len(items)] = move
             items.append(item)
         flights[run.moves[0]] = Flight(run, first, len(items) - 1, ends)
         last = robot.step(run.moves[-1]).movement
         assert isinstance(last, GoTo)
         assert isinstance(last.at, Geographic)
-        items.append(_positional(mavlink.MAV_CMD_NAV_LOITER_UNLIM, last.at))
+        items.append(_positional(LOITER, last.at))
     return tuple(items), flights
 
 
 def fence_of(robot: Robot) -> tuple[Item, ...]:
     """Return the polygons that the vehicle must stay out of."""
-    command = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+    command = FENCE_VERTEX
     return tuple(
         _positional(command, vertex, float(len(polygon))) for polygon in robot.fence for vertex in polygon
     )
@@ -102,7 +100,7 @@ def places_in(robot: Robot) -> tuple[Place, ...]:
 
 def rally_of(robot: Robot) -> tuple[Item, ...]:
     """Return the places that the vehicle may go to in an emergency."""
-    return tuple(_positional(mavlink.MAV_CMD_NAV_RALLY_POINT, place) for place in robot.rally)
+    return tuple(_positional(RALLY_POINT, place) for place in robot.rally)
 
 
 def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
@@ -113,10 +111,10 @@ def _items_of(robot: Robot, run: Run) -> Iterator[tuple[str, Item]]:
         assert isinstance(movement.at, Geographic)
         if movement.speed is not None and movement.speed != speed:
             speed = movement.speed
-            yield move, Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)
+            yield move, Item(CHANGE_SPEED, (1.0, speed, -1.0, 0.0), frame=NO_FRAME)
         # Vehicles keep whole seconds and cut off the rest: less than one would be no hold at all.
         place = _in_the_water(movement.at) if robot.vehicle == "sub" else movement.at
-        yield move, _positional(mavlink.MAV_CMD_NAV_WAYPOINT, place, float(ceil(hold)))
+        yield move, _positional(WAYPOINT, place, float(ceil(hold)))
 
 
 def _in_the_water(place: Geographic) -> Geographic:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
+from typing import TYPE_CHECKING
 
 from ..clock import Clock
 from ..faults import TAKEN_OVER, VEHICLE_RESTARTED, Fault
-from ..links.link import Link
 from ..program import Robot
 from ..vehicles import modes
-from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import STARTED_ANEW, Signs
+
+if TYPE_CHECKING:
+    from ..links.link import Link
+    from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
 CAUSE_SECONDS = 1.5
 """For how long the cause is looked for when a vehicle has left its mode as a failsafe would."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from ..desk import Desk
-from ..faults import DEVICE_SILENT, Fault
+from ..faults import DEVICE_SILENT, Fault, Unanswered
 from ..program import Action, Measure, NoEffect, Notify, Operate, Report, Robot
-from ..services.commands import Unanswered
-from ..services.telling import words_of
+from ..screen import words_of
 from ..vehicles.vehicle import Vehicle
 from .journal import Journal
 from .waits import Waits

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..desk import Desk
 from ..faults import (
@@ -18,7 +19,6 @@ from ..faults import (
     Stopped,
     Strange,
 )
-from ..links.link import Link
 from ..orders.obedience import Obedience, Ordered
 from ..policies import COMES_DOWN, NOTHING, OVERTAKES
 from ..program import Robot
@@ -30,6 +30,9 @@ from .pilot import Pilot
 from .responding import HINDRANCES, comes_down_alone, respond_or_less
 from .responses import HOLD, response_to
 from .watch import Watch
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 OK, FAILED, LINK, INTERRUPTED = 0, 1, 5, 130
 WATCH_SECONDS = 0.5

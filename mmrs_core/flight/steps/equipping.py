@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from ..faults import FENCE_BREACHED, Refused
 from ..program import Robot
-from ..services.uploads import Uploads
 from ..vehicles.vehicle import Vehicle
 from .responses import policy_for
+
+if TYPE_CHECKING:
+    from ..services.uploads import Uploads
 
 
 def equip(robot: Robot, vehicle: Vehicle, uploads: Uploads, say: Callable[[str], None]) -> None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..faults import GROUND_LOST
 from ..links.autopilots import is_px4
-from ..links.link import Link
-from ..links.radio import GROUND_SYSTEM
+from ..links.ourselves import GROUND_SYSTEM
 from ..program import Policy, Robot
 from .responses import CONTINUE, policy_for
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 GROUND_SECONDS = 10.0
 """For how long all ground stations must be silent where the policy does not say."""

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..clock import Clock
-from ..links.link import Link
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 HEARD_SECONDS, LEAST_HEARD_SECONDS = 3.0, 1.0
 """How old the last word of a vehicle that is heard may be, of the run and real."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..faults import MOTORS_OFF, VEHICLE_RESTARTED, Fault
 from ..vehicles import modes
-from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from .responses import HOLD, LAND
+
+if TYPE_CHECKING:
+    from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
 TOUCHING = 1.0
 """Metres above home below which a vehicle that lands may stop its motors any moment."""

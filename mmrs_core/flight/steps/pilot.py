@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from ..bus import Incomplete
@@ -12,12 +13,12 @@ from ..objects import look_at, place_of
 from ..orders.obedience import Obedience
 from ..places import at_height, ends_of
 from ..policies import still_low
-from ..program import GoTo, Hold, Land, Look, Place, Recharge, Robot, Step, TakeOff, Then, Turn
-from ..records.recording import fix
+from ..program import GoTo, Hold, Land, Look, Object, Place, Recharge, Robot, Step, TakeOff, Then, Turn
+from ..records.fixes import fix
 from ..services.uploads import Flight, uploads_of
 from ..vehicles.corners import goes_through
 from ..vehicles.footing import aside, footing
-from ..vehicles.vehicle import Vehicle
+from ..vehicles.vehicle import Seeking, Vehicle
 from .doing import Doing
 from .energy import FULL, RECHARGE_FACTOR
 from .equipping import equip
@@ -32,6 +33,8 @@ ON_THE_GROUND = 1.0
 
 STARTS = 3
 """How often a vehicle may start anew while it is set up."""
+
+NOTHING_FOUND: Mapping[str, Place] = {}
 
 
 class Pilot:
@@ -267,16 +270,35 @@ class Pilot:
         self._watch.renew()
         self._watch.moving = True
 
-    def _look(self, look: Look | None) -> Look | None:
-        return look_at(look, self._desk.locators, self._vehicle.state())
+    def _look(self, look: Look | None, found: Mapping[str, Place] = NOTHING_FOUND) -> Look | None:
+        locators = self._desk.locators
+        if look is not None and isinstance(look.at, Object) and look.at.description in found:
+            look = replace(look, at=found[look.at.description])
+        return look_at(look, locators, self._vehicle.state())
+
+    def _found(self, movement: GoTo) -> Mapping[str, Place]:
+        """Return where the object that a movement leads to is, if the vehicle itself looks for it."""
+        vehicle, found = self._vehicle, dict[str, Place]()
+        if not isinstance(movement.at, Object) or not isinstance(vehicle, Seeking):
+            return found
+        description = movement.at.description
+
+        def seek() -> None:
+            if (place := vehicle.seek(movement)) is not None:
+                found[description] = place
+
+        self._obedience.repeat(seek)
+        return found
 
     def _go_to(self, movement: GoTo, step: Step) -> None:
         if not self.track:
             self._begin_sortie()
             self._passed(self._vehicle.state().place)
+        found = self._found(movement)
         here = at_height(self._vehicle.state().place, self.track[-1][1].height)
-        target = place_of(movement.at, self._desk.locators, self._vehicle.state())
-        look = self._look(movement.look)
+        at = next(iter(found.values()), movement.at)
+        target = place_of(at, self._desk.locators, self._vehicle.state())
+        look = self._look(movement.look, found)
         ends = ends_of(here, target, movement.legs, movement.distance)
         through = self._may_go_on(step) and goes_through(step, self._following(step), here)
         for place in ends:

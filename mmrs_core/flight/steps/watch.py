@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..clock import Clock
 from ..faults import (
@@ -20,10 +21,8 @@ from ..faults import (
     Fault,
     Stopped,
 )
-from ..links.link import Link
 from ..policies import COMES_DOWN
 from ..program import Policy, Robot
-from ..vehicles.mavlink_vehicle import MavlinkVehicle
 from ..vehicles.signs import Signs
 from .departures import Departures
 from .energy import Reserve
@@ -31,6 +30,10 @@ from .ground import WATCHED, Ground
 from .motors import DOWN, Motors
 from .responses import CONTINUE, LAND, policy_for
 from .ways import Track
+
+if TYPE_CHECKING:
+    from ..links.link import Link
+    from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
 SILENCE_SECONDS = 5.0
 LEAST_SILENCE = 2.0

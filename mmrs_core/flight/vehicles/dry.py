@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from ..clock import Clock
 from ..places import at_height, bearing, distance
 from ..program import Geographic, Look, Place
-from ..services.items import Item
-from ..services.uploads import Uploads
 from .modes import GUIDED, HOLD, LAND, SURFACE
 from .vehicle import State
+
+if TYPE_CHECKING:
+    from ..services.items import Item
+    from ..services.uploads import Uploads
 
 CRUISE = 5.0
 CLIMB = 2.0

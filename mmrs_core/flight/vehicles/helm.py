@@ -8,10 +8,10 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused
+from ..faults import NO_PROGRESS, TAKEN_OVER, Fault, Refused, Unanswered
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..services.commands import Unanswered, ask, command
+from ..services.commands import ask, command
 from . import modes
 from .habits import ArduPilot, Habits
 from .px4 import Px4

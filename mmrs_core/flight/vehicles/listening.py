@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from ..faults import Refused
 from ..links.autopilots import is_px4
 from ..links.link import Link
-from ..links.radio import GROUND_SYSTEM
+from ..links.ourselves import GROUND_SYSTEM
 from ..services import parameters
 
 OF_OLD = "SYSID_MYGCS"

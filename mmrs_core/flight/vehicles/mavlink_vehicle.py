@@ -13,12 +13,12 @@ from math import inf
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..faults import LINK_LOST, Fault, Refused
+from ..faults import LINK_LOST, Fault, Refused, Unanswered
 from ..links.link import Link, Message
 from ..links.messages import ANYBODY
 from ..places import at_height
 from ..program import Geographic, Look, Place, Travel
-from ..services.commands import Unanswered, command, name_of
+from ..services.commands import command, name_of
 from ..services.telling import tell
 from ..services.uploads import Uploads
 from . import modes, preparation, safeguards

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
-
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from typing import TYPE_CHECKING, TypeAlias
 
 from ..faults import BATTERY_LOW, FENCE_BREACHED, POSITION_LOST
 from ..faults import LINK_LOST as LOST_LINK
 from ..links.autopilots import is_px4
-from ..links.link import Link
+
+if TYPE_CHECKING:
+    from ..links.link import Link
 
 Answers: TypeAlias = Mapping[str, Mapping[str, int]]
 """By response of a policy, parameters and their values."""
@@ -267,7 +267,8 @@ PATIENCE = {"copter": ("FS_GCS_TIMEOUT", 2.0, 120.0), "rover": ("FS_GCS_TIMEOUT"
 PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
 """The parameter for the seconds until a link counts as lost, with its least and largest value."""
 
-PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), mavlink.MAV_PARAM_TYPE_INT32)
+MAV_PARAM_TYPE_INT32 = 6
+PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), MAV_PARAM_TYPE_INT32)
 """Types of parameters that are not of single precision."""
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..faults import FENCE_BREACHED, OBSTACLE, POSITION_LOST, VEHICLE_RESTARTED
-from .telemetry import Telemetry
+
+if TYPE_CHECKING:
+    from .telemetry import Telemetry
 
 STARTED_ANEW = "the vehicle has started anew"
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from ..program import Look, Place
-from ..services.uploads import Uploads
+from ..program import GoTo, Look, Place
+
+if TYPE_CHECKING:
+    from ..services.uploads import Uploads
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,4 +167,16 @@ class Vehicle(Protocol):
 
     def state(self) -> State:
         """Return what is known now."""
+        ...
+
+
+@runtime_checkable
+class Seeking(Protocol):
+    """What a program also needs of a vehicle that finds objects itself."""
+
+    def seek(self, movement: GoTo) -> Place | None:
+        """Go and look until the object that a movement leads to is found; return where it is.
+
+        None: nothing looks for it, so that the user's function says where it is.
+        """
         ...

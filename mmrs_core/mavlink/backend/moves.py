@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault
+from mmrs_core.flight.faults import BATTERY_LOW, DEVICE_SILENT, Fault, Unanswered
 from mmrs_core.flight.objects import Locator, look_at, place_of
 from mmrs_core.flight.places import at_height, ends_of
 from mmrs_core.flight.program import (
@@ -29,8 +29,7 @@ from mmrs_core.flight.program import (
     Then,
     Turn,
 )
-from mmrs_core.flight.services.commands import Unanswered
-from mmrs_core.flight.services.telling import words_of
+from mmrs_core.flight.screen import words_of
 from mmrs_core.flight.services.uploads import Flight
 from mmrs_core.flight.steps.doing import SILENCE_SECONDS, VALUE_SECONDS
 from mmrs_core.flight.steps.energy import FULL, RECHARGE_FACTOR

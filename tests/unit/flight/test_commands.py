@@ -8,8 +8,8 @@ import pytest
 from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.flight.faults import Fault, Refused
-from mmrs_core.flight.services.commands import CommandCancel, Unanswered, command
+from mmrs_core.flight.faults import Fault, Refused, Unanswered
+from mmrs_core.flight.services.commands import CommandCancel, command
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 

@@ -7,9 +7,8 @@ from mavlink_peer import acknowledged, eventually, linked
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight import Geographic
-from mmrs_core.flight.faults import Fault, Refused
+from mmrs_core.flight.faults import Fault, Refused, Unanswered
 from mmrs_core.flight.links.retries import Retries
-from mmrs_core.flight.services.commands import Unanswered
 from mmrs_core.flight.vehicles import modes
 from mmrs_core.flight.vehicles.helm import Helm
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle

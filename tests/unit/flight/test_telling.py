@@ -12,7 +12,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.radio import GROUND_COMPONENT
 from mmrs_core.flight.program import Report
-from mmrs_core.flight.services.telling import CHUNK, MOST_CHUNKS, pieces_of, words_of
+from mmrs_core.flight.screen import words_of
+from mmrs_core.flight.services.telling import CHUNK, MOST_CHUNKS, pieces_of
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.texts import Texts
 from mmrs_core.mavlink.backend.moves import Moves

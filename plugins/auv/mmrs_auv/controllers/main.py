@@ -12,12 +12,14 @@ from pathlib import Path
 
 from mmrs_auv.controllers.vehicle import CanVehicle
 from mmrs_auv.vessel.api import Connection
+from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.sheet import from_json
 from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
 from mmrs_core.flight.conditions import Condition
 from mmrs_core.flight.faults import LINK_LOST, Fault
+from mmrs_core.flight.judgement import objects_of
 from mmrs_core.flight.main import main as run
-from mmrs_core.flight.objects import Locator
+from mmrs_core.flight.objects import Locator, not_looked_for, where_expected
 from mmrs_core.flight.options import Options
 from mmrs_core.flight.program import Robot
 from mmrs_core.flight.records.blackbox import BlackBox
@@ -48,7 +50,9 @@ def main(
     if "-h" in words or "--help" in words:
         print(parser.format_help())
     given, rest = parser.parse_known_args(words)
-    channels = _channels(parser, [robot.id for robot in robots], given.can)
+    ids = [robot.id for robot in robots]
+    channels = {**dict.fromkeys(ids, CHANNEL), **_by_robot(parser, "--can", ids, given.can)}
+    ports = _ports(parser, ids, given.detections)
     with ExitStack() as stack:
 
         def vehicle(robot: Robot, options: Options, guard: Callable[[], None], box: BlackBox) -> CanVehicle:
@@ -67,10 +71,12 @@ def main(
                 port.close()
 
             stack.callback(let_go)
-            patience = options.reach.patience
-            return CanVehicle(robot, sheet, connection.craft, options.clock, guard, box, patience=patience)
+            patience, eyes = options.reach.patience, _eyes(ports.get(robot.id), stack)
+            return CanVehicle(
+                robot, sheet, connection.craft, options.clock, guard, box, patience=patience, eyes=eyes
+            )
 
-        return run(robots, conditions, locators, rest, vehicles=vehicle)
+        return run(robots, conditions, _locators(robots, ports, locators or {}), rest, vehicles=vehicle)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -79,19 +85,62 @@ def _parser() -> argparse.ArgumentParser:
     add("--can", action="append", default=[], metavar="[ROBOT=]CHANNEL", help="such as can0@127.0.0.1:29600")
     add("--interface", default="socketcand", help="of python-can")
     add("--bit-rate", type=int, help="for adapters that have to be told")
+    add(
+        "--detections",
+        action="append",
+        default=[],
+        metavar="[ROBOT=]PORT",
+        help="UDP port on which cameras tell where objects are, whatever objects.py says",
+    )
     add("--clock", choices=("real", "bus"), help="bus: time as a simulated vehicle tells it")
     return parser
 
 
-def _channels(
-    parser: argparse.ArgumentParser, robots: Sequence[str], texts: Sequence[str]
-) -> Mapping[str, str]:
-    found = dict.fromkeys(robots, CHANNEL)
+def _by_robot(
+    parser: argparse.ArgumentParser, option: str, robots: Sequence[str], texts: Sequence[str]
+) -> dict[str, str]:
+    found = {}
     for text in texts:
-        robot, sign, channel = text.rpartition("=")
-        if sign and robot not in found:
-            parser.error(f"--can {text}: there is no robot {robot!r}")
+        robot, sign, value = text.rpartition("=")
+        if sign and robot not in robots:
+            parser.error(f"{option} {text}: there is no robot {robot!r}")
         if not sign and len(robots) > 1:
-            parser.error(f"--can {text}: which robot? say ROBOT={text}")
-        found[robot or robots[0]] = channel
+            parser.error(f"{option} {text}: which robot? say ROBOT={text}")
+        found[robot or robots[0]] = value
     return found
+
+
+def _ports(parser: argparse.ArgumentParser, robots: Sequence[str], texts: Sequence[str]) -> Mapping[str, int]:
+    found = _by_robot(parser, "--detections", robots, texts)
+    for text in found.values():
+        if not (text.isascii() and text.isdecimal() and 0 < int(text) < 65_536):
+            parser.error(f"--detections {text}: is no port")
+    if len(set(found.values())) < len(found):
+        parser.error("--detections: each vehicle's cameras need a port of their own")
+    return {robot: int(text) for robot, text in found.items()}
+
+
+def _eyes(port: int | None, stack: ExitStack) -> Detections | None:
+    if port is None:
+        return None
+    try:
+        return stack.enter_context(Detections(port=port))
+    except OSError as error:
+        raise Fault(LINK_LOST, f"--detections {port}: {error.strerror or error}") from error
+
+
+def _locators(
+    robots: Sequence[Robot], ports: Mapping[str, int], locators: Mapping[str, Locator]
+) -> Mapping[str, Locator]:
+    """Return what finds objects: nobody need say how those are found that only cameras look for."""
+    blind = {
+        description
+        for robot in robots
+        if robot.id not in ports
+        for step in robot.steps
+        for description in objects_of(step.movement)
+    }
+    return {
+        description: where_expected if found is not_looked_for and description not in blind else found
+        for description, found in locators.items()
+    }

@@ -13,6 +13,7 @@ from mmrs_auv.vessel.decision.duties import (
     FailureError,
     Finish,
     Ready,
+    Seek,
     Stay,
     Surface,
     Travel,
@@ -20,14 +21,15 @@ from mmrs_auv.vessel.decision.duties import (
 )
 from mmrs_auv.vessel.decision.duties import Look as Bearing
 from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, Helm, Watch
+from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import DEVICE_SILENT, Fault, Refused
-from mmrs_core.flight.program import Local, Look, Place, Robot
+from mmrs_core.flight.faults import DEVICE_SILENT, OBJECT_NOT_FOUND, Fault, Refused, Unanswered
+from mmrs_core.flight.places import ends_of
+from mmrs_core.flight.program import GoTo, Local, Look, Object, Place, Robot
 from mmrs_core.flight.records.blackbox import BlackBox
-from mmrs_core.flight.records.recording import FIX_SECONDS, fix
-from mmrs_core.flight.services.commands import Unanswered
+from mmrs_core.flight.records.fixes import FIX_SECONDS, fix
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
 from mmrs_core.flight.vehicles.modes import GUIDED, HOLD, SURFACE
@@ -62,8 +64,15 @@ class CanVehicle:
         box: BlackBox,
         *,
         patience: float = 30.0,
+        eyes: Detections | None = None,
     ) -> None:
-        """Tell it nothing yet; `patience`: real seconds to wait for its first sign."""
+        """Tell it nothing yet.
+
+        Args:
+            patience: real seconds to wait for its first sign.
+            eyes: what its cameras tell; None: nobody looks for objects.
+        """
+        self._eyes, self._seen = eyes, frozenset[str]()
         self._box, self._fixed = box, -inf
         self._robot, self._sheet, self._craft, self._clock = robot, sheet, craft, clock
         self._guard, self._patience = guard, patience
@@ -112,6 +121,33 @@ class CanVehicle:
         """Go straight to a place; `through`: without a stop there."""
         pace = speed or self._robot.cruise or 0.0
         self._move(Travel([self._below(place)], pace, self._bearing(look), through=through))
+
+    def seek(self, movement: GoTo) -> Place | None:
+        """Go to where an object is expected, and search there, until cameras see it; return where it is.
+
+        None: there are no cameras, or it is no object.
+
+        Raises:
+            Fault: it is not found, or farther from where it is expected than it may be.
+        """
+        sought = movement.at
+        if self._eyes is None or not isinstance(sought, Object):
+            return None
+        if sought.expected is None:
+            raise Fault(OBJECT_NOT_FOUND, f"object {sought.description!r}: nobody knows where it is expected")
+        found: list[Vector] = []
+
+        def way(place: Vector, seen: bool) -> Duty:
+            if seen:
+                found.append(place)
+                return Stay(0.0)
+            ends = ends_of(self.state().place, self._above(place), movement.legs, movement.distance)
+            pace = movement.speed or self._robot.cruise or 0.0
+            return Travel([self._below(each) for each in ends], pace)
+
+        expected = self._below(sought.expected)
+        self._move(Seek(sought.description, expected, sought.tolerance, self._eyes.place, way))
+        return self._above(found[-1]) if found else self.state().place
 
     def turn(self, look: Look) -> None:
         """Turn until the front, or a device, points at something."""
@@ -218,11 +254,14 @@ class CanVehicle:
     def state(self) -> State:
         """Return what it has told last; places are metres from home, heights are above the surface."""
         known = self._craft.state()
-        home = self._sheet.home
-        place = Local(known.north - home[0], known.east - home[1], -known.depth)
+        place = self._above((known.north, known.east, known.depth))
         speed = hypot(known.surge, known.sway, known.heave)
         now = self._clock.now()
-        return State(now, place, speed, known.heading, known.charge, self._mode, armed=self._armed)
+        if self._eyes is not None:
+            self._seen |= self._eyes.seen()
+        return State(
+            now, place, speed, known.heading, known.charge, self._mode, armed=self._armed, detected=self._seen
+        )
 
     def _move(self, duty: Duty) -> None:
         self._mode, self._armed = GUIDED, True
@@ -274,6 +313,10 @@ class CanVehicle:
         assert isinstance(place, Local)
         north, east, _ = self._sheet.home
         return (north + place.north, east + place.east, max(0.0, -place.height))
+
+    def _above(self, place: Vector) -> Local:
+        north, east, depth = place
+        return Local(north - self._sheet.home[0], east - self._sheet.home[1], -depth)
 
     def _bearing(self, look: Look | None) -> Bearing | None:
         if look is None or not isinstance(look.at, Local) or look.gimbal:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 from dataclasses import replace
@@ -8,15 +9,17 @@ from pathlib import Path
 
 import pytest
 from dives import POOL, dive, diver, swim
+from mmrs_auv.controllers.main import main
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_auv.vessel.sheet import from_json
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import Program, Transition
+from mmrs_core.behaviour.program import Program, Target, Transition
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.flight.program import Local, Robot
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
 from mmrs_core.scene import Policy
@@ -58,11 +61,18 @@ def generated(behaviour: Program, folder: Path) -> Path:
 
 
 def call(folder: Path, *words: str, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
-    """Run controllers without this project in reach."""
+    """Run controllers without this project, or MAVLink's library, in reach."""
+    process = begun(folder, "fleet.py", *words)
+    said, told = process.communicate(timeout=timeout)
+    return subprocess.CompletedProcess(process.args, process.returncode, said, told)
+
+
+def begun(folder: Path, module: str, *words: str) -> subprocess.Popen[str]:
+    """Begin controllers without this project, or MAVLink's library, in reach."""
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    command = [sys.executable, "-S", "-c", BOOT, *words]
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=timeout, check=False
+    command = [sys.executable, "-S", "-c", BOOT.replace("fleet.py", module), *words]
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
 
 
@@ -71,7 +81,7 @@ import sys, runpy
 sys.path += {[path for path in sys.path if path.endswith("site-packages")]!r}
 class Barred:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in ("mmrs_core", "mmrs_auv"):
+        if name.partition(".")[0] in ("mmrs_core", "mmrs_auv", "pymavlink"):
             raise ImportError(name)
 sys.meta_path.insert(0, Barred())
 sys.path.insert(0, ".")
@@ -123,3 +133,52 @@ def test_what_controllers_cannot_do_is_refused() -> None:
         with pytest.raises(UnsupportedError) as refused:
             render(CAN_PYTHON, given(behaviour))
         assert said in f"{refused.value} {refused.value.elements}"
+
+
+def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
+    folder = generated(pair(), tmp_path / "code")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "50")
+    modules = sorted(path.name for path in folder.glob("robot_*.py"))
+    ways = (("--bus-listen", endpoint), ("--bus-connect", endpoint))
+    programs = [begun(folder, module, *common, *way) for module, way in zip(modules, ways, strict=True)]
+    said = [each.communicate(timeout=60)[1] for each in programs]
+    assert [each.returncode for each in programs] == [0, 0], said
+    judged = replay(pair(), read_logs([tmp_path / "logs"]))
+    assert (judged.accepted, judged.outcome) == (True, Outcome.SUCCESS)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--detections", "4000"), "which robot"),
+        (("--detections", "Nobody=4000"), "there is no robot 'Nobody'"),
+        (("--detections", "Pollux=0"), "--detections 0: is no port"),
+        (("--detections", "Pollux=4000", "--detections", "Caßtor '1'=4000"), "a port of their own"),
+    ],
+)
+def test_ports_of_cameras_that_make_no_sense_are_refused(words, said, tmp_path, capsys) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main([robot_called("Caßtor '1'"), robot_called("Pollux")], {}, arguments=[*words, "--dry-run"])
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def robot_called(id: str) -> Robot:
+    return Robot(id, f"{id}.ndjson", "sub", Local(0.0, 0.0, 0.0), "a", ())
+
+
+def test_objects_that_no_camera_looks_for_are_asked_for(tmp_path: Path) -> None:
+    folder = generated(to_buoy(), tmp_path / "code")
+    done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"))
+    assert done.returncode == 2
+    assert "objects.py: nobody has said yet how 'red buoy' is found" in done.stderr
+    done = call(folder, "--dry-run", "--log", str(tmp_path / "logs"), "--detections", "4000")
+    assert done.returncode == 0, done.stderr
+
+
+def to_buoy() -> Program:
+    seeks = replace(swim("a", 1.0, 2.0, 1.0), target=Target((1.0, 2.0, -1.0), "red buoy", 3.0))
+    return dive(seeks)

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files as files_of
 from pathlib import Path
 
 from mmrs_auv.sheets import is_vehicle, sheet_of
+from mmrs_auv.targets.can_python.capabilities import CAPABILITIES
 from mmrs_auv.targets.places import templates_of
 from mmrs_auv.vessel.sheet import Sheet, to_json
 from mmrs_core.behaviour.program import Action, RobotProgram
@@ -57,6 +59,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
     yield from fleet_files(local.program, modules)
+    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
+        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
     yield from _carried()
 
 
@@ -143,16 +147,17 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     return sheet_of(type, robot.id, home=home, surface=input.program.frame.surface, payload=robot.payload)
 
 
-def _carried() -> Iterator[FileSpec]:
-    for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
-        yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
-    yield FileSpec(f"{VESSEL}/__init__.py", "", data=b'"""Vehicles on CAN buses."""\n')
+@cache
+def _carried() -> tuple[FileSpec, ...]:
+    found = [FileSpec(f"{VESSEL}/__init__.py", "", data=b'"""Vehicles on CAN buses."""\n')]
     for part in CARRIED:
         for path in sorted((SOURCES / part).rglob("*.py")):
             text = path.read_text(encoding="utf-8")
             for before, after in RENAMED.items():
                 text = text.replace(before, after)
-            yield FileSpec(f"{VESSEL}/{path.relative_to(SOURCES).as_posix()}", "", data=text.encode())
+            carried = f"{VESSEL}/{path.relative_to(SOURCES).as_posix()}"
+            found.append(FileSpec(carried, "", data=text.encode()))
+    return tuple(found)
 
 
 CAN_PYTHON = Target(
@@ -161,6 +166,6 @@ CAN_PYTHON = Target(
     templates=templates_of("can-python"),
     files=files,
     refusals=refusals,
-    capabilities={},
+    capabilities=CAPABILITIES,
     tried_with="sub",
 )

@@ -1,0 +1,96 @@
+"""A vehicle under a generated controller goes where its cameras tell that an object is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from mmrs_auv.controllers import vehicle as module
+from mmrs_auv.controllers.vehicle import CanVehicle
+from mmrs_auv.testing import pool_sheet
+from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
+from vessel_rig import Rig
+
+from mmrs_core.flight.clock import Clock
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.program import GoTo, Local, Object, Robot
+from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.vehicles.vehicle import Seeking
+
+Making = Callable[..., tuple[CanVehicle, Rig]]
+SHEET = pool_sheet(**{"search.radius": 1.0})
+HOME = Local(0.0, 0.0, 0.0)
+BUOY = Object("red buoy", Local(2.0, 0.0, -1.0), 3.0)
+
+
+class RigClock(Clock):
+    """Time of a rig, which goes on whenever somebody asks for it."""
+
+    def __init__(self, rig: Rig, eyes: Detections | None, sees: tuple[float, float, float] | None) -> None:
+        super().__init__()
+        self._rig, self._eyes, self._sees = rig, eyes, sees
+
+    def now(self) -> float:
+        self._rig.run(0.1)
+        if self._eyes is not None and self._sees is not None and self._rig.state.north > 0.8:
+            north, east, depth = self._sees
+            seen = Detection(self._rig.bus.now, "red buoy", 0.9, north, east, depth, "front")
+            self._eyes.take(to_datagram(seen))
+        return self._rig.bus.now
+
+
+@pytest.fixture
+def eyes() -> Iterator[Detections]:
+    with Detections() as found:
+        yield found
+
+
+@pytest.fixture
+def vehicle_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Making]:
+    monkeypatch.setattr(module, "LOOK_SECONDS", 0.0)
+    rig = Rig(SHEET)
+    rig.until(lambda: rig.state.trusted, 10.0)
+    box = BlackBox(tmp_path / "box", "run", "naiad", lambda: rig.bus.now)
+
+    def make(
+        eyes: Detections | None, sees: tuple[float, float, float] | None = None
+    ) -> tuple[CanVehicle, Rig]:
+        robot, clock = Robot("naiad", "naiad.ndjson", "sub", HOME, "a", ()), RigClock(rig, eyes, sees)
+        return CanVehicle(robot, SHEET, rig.craft, clock, lambda: None, box, eyes=eyes), rig
+
+    yield make
+    box.close()
+
+
+def test_it_is_found_where_it_is_seen_on_the_way(vehicle_of, eyes):
+    vehicle, rig = vehicle_of(eyes, (2.5, 1.0, 1.2))
+    assert isinstance(vehicle, Seeking)
+    assert vehicle.seek(GoTo(BUOY)) == Local(2.5, 1.0, -1.2)
+    assert 0.8 < rig.state.north < 2.0
+    assert vehicle.state().detected == {"red buoy"}
+
+
+def test_it_is_looked_for_from_as_far_as_the_movement_stops(vehicle_of, eyes):
+    vehicle, rig = vehicle_of(eyes)
+    with pytest.raises(Fault, match=r"object 'red buoy' is not seen where it is expected"):
+        vehicle.seek(GoTo(BUOY, distance=1.5))
+    assert rig.bus.now > 20.0
+
+
+def test_it_may_be_no_farther_from_where_it_is_expected_than_the_mission_allows(vehicle_of, eyes):
+    vehicle, _ = vehicle_of(eyes, (7.0, 0.0, 1.0))
+    with pytest.raises(Fault, match=r"is 5\.0 m from where it is expected"):
+        vehicle.seek(GoTo(BUOY))
+
+
+def test_nobody_seeks_what_is_expected_nowhere(vehicle_of, eyes):
+    vehicle, _ = vehicle_of(eyes)
+    with pytest.raises(Fault, match="nobody knows where it is expected"):
+        vehicle.seek(GoTo(Object("red buoy")))
+
+
+def test_without_cameras_somebody_else_says_where_it_is(vehicle_of):
+    vehicle, _ = vehicle_of(None)
+    assert vehicle.seek(GoTo(BUOY)) is None
+    assert vehicle.state().detected == frozenset()
