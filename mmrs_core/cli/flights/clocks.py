@@ -17,19 +17,26 @@ from mmrs_core.geometry.frames import Floats
 
 SAME = 0.02
 """Seconds by which the clocks of robots of one process differ at most, as they are written."""
-_LONG = 5.0
+LONG = 0.2
+"""Seconds of the day from which on a process tells how fast its run was: lines are late by milliseconds."""
 
 
 @dataclass(slots=True)
 class Readings:
-    """The clock of one robot: the time of the run and the time of day, in each process that it had."""
+    """The clock of one robot: the time of the run and the time of day, in each process that it had.
 
+    Attributes:
+        names: of these processes; robots of one process have the same clock. Empty: nobody knows.
+    """
+
+    names: list[str] = field(default_factory=list)
     _processes: list[array[float]] = field(default_factory=list)
 
     def add(self, entry: Entry) -> None:
         """Take both times of an entry; one without a time of day that can be read does not matter."""
         if entry.kind == "start" or not self._processes:
             self._processes.append(array("d"))
+            self.names.append(str(entry.content.get("process", "")))
         try:
             of_day = datetime.fromisoformat(entry.wall).timestamp()
         except (ValueError, OverflowError, OSError):
@@ -90,8 +97,11 @@ def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[s
                 f"{robot}: was started again otherwise than {first}: their times may not be the same"
             )
             continue
-        by = [pace * (mine - its) for mine, its in zip(own, zeros[first], strict=True)]
-        if max(map(abs, by)) <= SAME:
+        names = zip(clocks[robot].names, clocks[first].names, strict=True)
+        same = [bool(mine) and mine == its for mine, its in names]
+        pairs = zip(own, zeros[first], same, strict=True)
+        by = [0.0 if one else pace * (mine - its) for mine, its, one in pairs]
+        if max(map(abs, by)) <= SAME * max(1.0, pace):
             continue
         shifts[robot] = Shift(tuple(float(part[0, 0]) for part in known[robot]), tuple(by))
         notes.append(
@@ -103,9 +113,9 @@ def shifts_of(clocks: Mapping[str, Readings]) -> tuple[dict[str, Shift], tuple[s
 
 def _pace(parts: Sequence[Floats]) -> float:
     """Return how many seconds of the run pass in one of the day; 1 where no process was long enough."""
-    spans = [part[-1] - part[0] for part in parts]
-    paces = [run / day for run, day in spans if day >= _LONG and run > 0.0]
-    return float(np.median(paces)) if paces else 1.0
+    spans = [(day, run) for run, day in (part[-1] - part[0] for part in parts) if run > 0.0]
+    day, run = max(spans, default=(0.0, 0.0))
+    return float(run / day) if day >= LONG else 1.0
 
 
 def _zero(part: Floats, pace: float) -> float:

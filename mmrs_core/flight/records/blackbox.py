@@ -3,7 +3,7 @@
 Beside the log of steps, ``NAME.jsonl``, lies ``NAME.blackbox.ndjson``. Every line has `run`, `robot`,
 `time` (seconds of the run), `wall` (UTC) and `kind`; what else there is depends on the kind:
 
-``start``     plan, link, vehicle, firmware, home, system, versions
+``start``     plan, process, link, vehicle, firmware, home, system, versions
 ``fix``       place, speed, heading, energy, mode, armed
 ``text``      severity, text: what the vehicle said
 ``command``   name, params, result, seconds, tries

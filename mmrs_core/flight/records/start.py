@@ -5,17 +5,22 @@ from __future__ import annotations
 from importlib.metadata import PackageNotFoundError, version
 from platform import python_version
 from typing import TYPE_CHECKING
+from uuid import uuid4
 
 from ..program import Robot
 
 if TYPE_CHECKING:
     from ..links.link import Link
 
+PROCESS = uuid4().hex
+"""What all robots of this process say, and no other: their times count from the same instant."""
+
 
 def start_of(robot: Robot, url: str, link: Link | None) -> dict[str, object]:
     """Return what is known of a robot at the start; `link` None: there is no vehicle."""
     return {
         "plan": robot.plan,
+        "process": PROCESS,
         "link": url if link is not None else None,
         "vehicle": robot.vehicle,
         "firmware": _firmware(link) if link is not None else None,

@@ -13,13 +13,14 @@ from mmrs_core.cli.flights.gathering import read_flight
 NOON = datetime(2026, 6, 1, 12, 0, tzinfo=UTC)
 
 
-def begin(folder, robot, after, pace=1.0):
+def begin(folder, robot, after, pace=1.0, process=""):
     """Have a robot's black box say that its process began so many seconds of the run after noon."""
     path = folder / f"{robot}.blackbox.ndjson"
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     for line in lines:
         of_day = NOON + timedelta(seconds=(line["time"] + after) / pace)
         line["wall"] = of_day.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        line |= {"process": process} if line["kind"] == "start" else {}
     path.write_text("".join(json.dumps(line) + "\n" for line in lines))
 
 
@@ -49,6 +50,25 @@ def test_a_process_that_began_later_has_the_times_of_the_first(flight, folder, p
 def test_robots_of_one_process_are_left_as_they_are(flight, folder):
     for robot in ("alpha", "beta"):
         begin(folder, robot, 0.0)
+    assert flight().damages == ()
+
+
+@pytest.mark.parametrize(("names", "moved"), [(("one", "one"), 0), (("one", "other"), 1), (("", ""), 1)])
+def test_however_fast_a_run_was_robots_that_name_one_process_have_one_clock(flight, folder, names, moved):
+    """A dry run takes a second or two: what is written a little late there is late by minutes of the run."""
+    for robot, process, after in zip(("alpha", "beta"), names, (0.0, 40.0), strict=True):
+        begin(folder, robot, after, 500.0, process)
+    assert len(flight().damages) == moved
+
+
+def test_how_fast_a_run_was_is_known_of_short_ones_too(flight, folder):
+    """Else what is late because it comes late in the run would be taken for a process that began late."""
+    pace = last(flight().robots["alpha"]) / 0.5
+    for robot in ("alpha", "beta"):
+        begin(folder, robot, 0.0, pace)
+    box = folder / "beta.blackbox.ndjson"
+    lines = box.read_text().splitlines(keepends=True)
+    box.write_text("".join([lines[0], *lines[len(lines) // 2 :]]))
     assert flight().damages == ()
 
 
