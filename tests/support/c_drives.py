@@ -114,7 +114,7 @@ class Compared:
 
     def hear(self, at: int, frame: Frame) -> None:
         self.script.hear(at, frame)
-        self.vehicle._advance(at / 100.0)
+        self._go_on(at)
         self.vehicle.hear(frame, at / 100.0)
         said = self._codec.decode(frame)
         if said is not None and said.name == "Pressure":
@@ -123,7 +123,12 @@ class Compared:
 
     def tick(self, at: int) -> None:
         self.script.tick(at)
+        self._go_on(at)
         self._tell(self.vehicle.tick(at / 100.0))
+
+    def _go_on(self, at: int) -> None:
+        self.vehicle._advance(at / 100.0)
+        self.release.run(at / 100.0, 0.0)
 
     def fail(self, number: int, failed: bool) -> None:
         self.script.fail(number, failed)
