@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import hypot, isfinite
+from math import hypot
+from sys import float_info
 from typing import Any
 
 from .sheet import Sheet, Thruster
@@ -11,10 +12,20 @@ from .sheet import Sheet, Thruster
 MOST_THRUSTERS, MOST_DEVICES = 32, 256
 LEAST_THRUST, MOST_THRUST = 0.01, 32767.0
 MOST_POWER, MOST_DEPTH, MOST_SPEED, MOST_PLACE = 6553.5, 8388.607, 5.1, 8388.607
-MOST_BIT_RATE, LEAST_WATCHDOG, MOST_WATCHDOG = 1_000_000, 0.1, 60.0
+LEAST_BIT_RATE, MOST_BIT_RATE, LEAST_WATCHDOG, MOST_WATCHDOG = 5_000, 1_000_000, 0.1, 60.0
+LEAST_SIZE, MOST_SIZE, MOST_MASS, MOST_DENSITY, MOST_ENERGY, MOST_EXTRA = (
+    0.01,
+    1000.0,
+    1e8,
+    20_000.0,
+    1e15,
+    1e9,
+)
+POSITIVE = ("climb.speed", "turn.rate", "search.radius", "search.spacing")
 MOST_LEVER = 1000.0
 LONGEST_NAME = 64
-"""Figures that do not fit are refused. Power, depth, speed and place: what the fields of messages hold."""
+"""Figures that do not fit are refused. Power, depth, speed and place: what the fields of messages hold; size,
+mass, density and energy: beyond any vehicle. `POSITIVE`: what `extra` may only say above 0."""
 
 
 class SheetError(ValueError):
@@ -57,19 +68,30 @@ def faults_of(sheet: Sheet) -> Iterator[str]:
 
 
 def _hull(sheet: Sheet) -> Iterator[str]:
-    for what in ("length", "width", "height", "mass", "water_density", "battery"):
-        yield from _number(what, getattr(sheet, what), above=0.0)
-    for what in ("drop_weight", "hotel"):
-        yield from _number(what, getattr(sheet, what), least=0.0)
-    yield from _number("weight_in_water", sheet.weight_in_water)
-    yield from _number("heading", sheet.heading)
+    for what in ("length", "width", "height"):
+        yield from _number(what, getattr(sheet, what), least=LEAST_SIZE, most=MOST_SIZE)
+    for what, most in (("mass", MOST_MASS), ("water_density", MOST_DENSITY), ("battery", MOST_ENERGY)):
+        yield from _number(what, getattr(sheet, what), above=0.0, most=most)
+    yield from _number("hotel", sheet.hotel, least=0.0, most=MOST_ENERGY)
+    yield from _weights(sheet)
+    yield from _number("heading", sheet.heading, least=-MOST_EXTRA, most=MOST_EXTRA)
     yield from _number("speed", sheet.speed, above=0.0, most=MOST_SPEED)
     yield from _number("max_depth", sheet.max_depth, above=0.0, most=MOST_DEPTH)
-    yield from _number("bit_rate", sheet.bit_rate, above=0.0, most=MOST_BIT_RATE)
+    yield from _number("bit_rate", sheet.bit_rate, least=LEAST_BIT_RATE, most=MOST_BIT_RATE)
     yield from _number("watchdog", sheet.watchdog, least=LEAST_WATCHDOG, most=MOST_WATCHDOG)
     yield from _vector("home", sheet.home, most=MOST_PLACE)
     for key, value in sheet.extra.items():
-        yield from _number(f"extra {key!r}", value)
+        above = 0.0 if key in POSITIVE else None
+        yield from _number(f"extra {key!r}", value, above=above, least=-MOST_EXTRA, most=MOST_EXTRA)
+
+
+def _weights(sheet: Sheet) -> Iterator[str]:
+    """Yield what is wrong with weights, which have to leave a displaced volume and a mass without ballast."""
+    for what, least in (("weight_in_water", -MOST_MASS), ("drop_weight", 0.0)):
+        faults = list(_number(what, value := getattr(sheet, what), least=least, most=MOST_MASS))
+        yield from faults
+        if not faults and not list(_number("mass", sheet.mass, above=0.0)) and value >= sheet.mass:
+            yield f"{what}: {value!r} is not below the mass, {sheet.mass!r}"
 
 
 def _thruster(thruster: Thruster) -> Iterator[str]:
@@ -108,14 +130,14 @@ def _number(
     least: float | None = None,
     most: float | None = None,
 ) -> Iterator[str]:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= float_info.max:
         yield f"{what}: {value!r} is no finite number"
     elif above is not None and value <= above:
         yield f"{what}: {value!r} is not above {above:g}"
     elif least is not None and value < least:
         yield f"{what}: {value!r} is less than {least:g}"
     elif most is not None and value > most:
-        yield f"{what}: {value!r} is more than {most:g}, the most that its messages carry"
+        yield f"{what}: {value!r} is more than {most:.10g}, the most that there is room for"
 
 
 def _name(what: str, value: Any) -> Iterator[str]:

@@ -92,6 +92,7 @@ def from_json(text: str) -> Sheet:
             for each in found.pop("thrusters")
         )
         home, devices = tuple(found.pop("home")), tuple(found.pop("devices", ()))
-        return Sheet(**found, thrusters=thrusters, home=home, devices=devices)
+        extra = dict(found.pop("extra", {}).items())
+        return Sheet(**found, thrusters=thrusters, home=home, devices=devices, extra=extra)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"no sheet of a vehicle: {error}") from error

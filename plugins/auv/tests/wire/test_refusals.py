@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from math import inf, nan
 
 import pytest
 from mmrs_auv.vessel import refusals
 from mmrs_auv.vessel.refusals import SheetError
+from mmrs_auv.vessel.sheet import from_json, to_json
 from mmrs_auv.vessel.wire.catalogue import messages_of
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.database import database_of, dbc_of
@@ -87,7 +89,7 @@ def test_more_thrusters_than_identifiers() -> None:
         "watchdog",
     ],
 )
-@pytest.mark.parametrize("value", [nan, inf, 0.0, -1.0, "1", None])
+@pytest.mark.parametrize("value", [nan, inf, 10**400, 0.0, -1.0, "1", None])
 def test_figures_of_the_hull_that_are_no_figures(what: str, value: object) -> None:
     (fault,) = refused(**{what: value})
     assert fault.startswith(f"{what}: {value!r}")
@@ -95,8 +97,35 @@ def test_figures_of_the_hull_that_are_no_figures(what: str, value: object) -> No
 
 def test_places_out_of_reach() -> None:
     assert refused(home=(0.0, 9000.0, 0.0)) == (
-        "home[1]: 9000.0 is more than 8388.61, the most that its messages carry",
+        "home[1]: 9000.0 is more than 8388.607, the most that there is room for",
     )
+
+
+@pytest.mark.parametrize(
+    ("what", "value"),
+    [("length", 1e-300), ("height", 1e300), ("mass", 1e308), ("water_density", 1e5), ("bit_rate", 1)],
+)
+def test_figures_that_no_vehicle_has(what: str, value: float) -> None:
+    (fault,) = refused(**{what: value})
+    assert fault.startswith(f"{what}: {value!r} is ")
+
+
+@pytest.mark.parametrize("what", ["weight_in_water", "drop_weight"])
+def test_weights_that_leave_nothing_of_the_vehicle(what: str) -> None:
+    assert refused(mass=19.0, **{what: 19.0}) == (f"{what}: 19.0 is not below the mass, 19.0",)
+
+
+@pytest.mark.parametrize("key", ["search.spacing", "turn.rate"])
+def test_further_figures_that_have_to_be_above_0(key: str) -> None:
+    assert refused(extra={key: 0.0}) == (f"extra {key!r}: 0.0 is not above 0",)
+    assert refused(extra={"log.noise": 1e300})[0].startswith("extra 'log.noise': 1e+300 is more than ")
+
+
+@pytest.mark.parametrize("extra", [[1], "x", None])
+def test_a_file_whose_further_figures_are_none(extra: object) -> None:
+    text = json.dumps({**json.loads(to_json(sheet())), "extra": extra})
+    with pytest.raises(ValueError, match="no sheet of a vehicle"):
+        from_json(text)
 
 
 def test_all_that_is_wrong_is_told_at_once() -> None:
