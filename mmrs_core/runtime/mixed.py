@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput
 from mmrs_core.errors import UsageError
@@ -25,7 +26,12 @@ def mixed(
         raise UsageError(f"backends of one run go by one time: {', '.join(words)}")
 
     def connect(given: BackendInput) -> Backend:
-        return own.get(given.robot.id, usual).connect(given)
+        factory = own.get(given.robot.id, usual)
+        live = given.live
+        if live is not None:
+            links = {robot: link for robot, link in live.links.items() if own.get(robot, usual) is factory}
+            live = replace(live, links=links)
+        return factory.connect(replace(given, live=live))
 
     simulated = all(each.simulated for each in used.values())
     return BackendFactory(" and ".join(used), "as each robot has it", connect, simulated)

@@ -31,12 +31,16 @@ class Readings:
 
     names: list[str] = field(default_factory=list)
     _processes: list[array[float]] = field(default_factory=list)
+    _named: bool = False
 
     def add(self, entry: Entry) -> None:
         """Take both times of an entry; one without a time of day that can be read does not matter."""
-        if entry.kind == "start" or not self._processes:
+        began = entry.kind == "start"
+        if not self._processes or (began and self._named):
             self._processes.append(array("d"))
-            self.names.append(str(entry.content.get("process", "")))
+            self.names.append("")
+        if began:  # what is noted before the first one is of the same process
+            self.names[-1], self._named = str(entry.content.get("process", "")), True
         try:
             of_day = datetime.fromisoformat(entry.wall).timestamp()
         except (ValueError, OverflowError, OSError):

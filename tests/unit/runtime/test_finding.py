@@ -8,9 +8,13 @@ from dataclasses import replace
 import pytest
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Move
+from mmrs_core.contributions.backends import BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import CommandId
 from mmrs_core.errors import UnreadableError, UsageError
-from mmrs_core.flight.bus.words import MOST_FINDS
+from mmrs_core.flight.bus.outgoing.notifying import fitting
+from mmrs_core.flight.bus.reading import request_in, written
+from mmrs_core.flight.bus.words import LONGEST, LONGEST_NAME, MOST_FINDS, Commit
+from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.conditions import standard_conditions
 from mmrs_core.runtime.finding import finds_of, names_told
 from mmrs_core.runtime.mixed import mixed, options_for
@@ -57,9 +61,22 @@ def test_what_a_robot_sees_itself_goes_before_what_it_was_told(bus):
     assert bus.finds("c") == (("float", (5.0, 5.0, -1.0)),)
 
 
-def test_no_more_goes_with_a_notify_than_it_can_hold(bus):
+def test_no_more_goes_with_a_notify_than_is_read(bus):
     told(bus, "a", "b", Backend(**{f"thing{n:04}": (0.0, 0.0, 0.0) for n in range(MOST_FINDS + 5)}))
-    assert len(bus.finds("b")) == MOST_FINDS
+    assert [name for name, _ in bus.finds("b")] == [f"thing{n:04}" for n in range(5, MOST_FINDS + 5)]
+
+
+def test_no_more_goes_with_a_notify_than_a_message_holds():
+    finds = fitting([(f"{n:04}" + "☃" * (LONGEST_NAME - 4), (1e6, 1e6, 1e6)) for n in range(MOST_FINDS)])
+    sent = Commit(CommandId("run", "a", "1", 1), ("s" * LONGEST_NAME,) * 10, True, 1, finds)
+    assert finds[-1][0].startswith("0099")
+    assert len(written(sent)) < LONGEST
+    assert request_in(written(sent)).finds == finds
+
+
+def test_what_no_reader_would_take_is_left_out():
+    long, nowhere = ("x" * (LONGEST_NAME + 1), None), ("float", (float("nan"), 0.0, 0.0))
+    assert fitting([long, nowhere]) == (("float", None),)
 
 
 def rising(height):
@@ -139,3 +156,27 @@ def test_backends_of_one_run_go_by_one_time():
         mixed(SIMULATION, {"a": real}, ("a", "b"))
     with pytest.raises(UsageError, match="backend of 'z': no such robot; there are a, b"):
         mixed(SIMULATION, {"z": real}, ("a", "b"))
+
+
+def test_a_backend_hears_only_of_the_links_of_its_own_robots():
+    heard = {}
+
+    def factory(name):
+        def connect(given):
+            heard[given.robot.id] = dict(given.live.links)
+            return Backend()
+
+        return BackendFactory(name, "", connect)
+
+    radio, wire = factory("radio"), factory("wire")
+    links = {"a": "udpin:127.0.0.1:14550", "b": "udpin:127.0.0.1:14560", "c": "can0@127.0.0.1:29600"}
+    live = Live(RealClock(), lambda: None, print, "run", links=links)
+    behaviour = program(*(robot(name, []) for name in "abc"))
+    both = mixed(radio, {"c": wire}, "abc")
+    for each in behaviour.robots:
+        both.connect(BackendInput(behaviour, each, robot_type(), {}, {}, {}, {}, live=live))
+    assert {name: sorted(known) for name, known in heard.items()} == {
+        "a": ["a", "b"],
+        "b": ["a", "b"],
+        "c": ["c"],
+    }

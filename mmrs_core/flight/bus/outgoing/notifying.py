@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import random
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from math import isfinite
 
 from ..owners.owners import Owners
 from ..watching import Watching
-from ..words import LARGEST, MOST_FINDS, REACH, CommandId, Find, SlotId
+from ..words import LARGEST, LONGEST_NAME, MOST_FINDS, REACH, CommandId, Find, SlotId
 from .delivery import Delivery
 from .errands import Errand
 from .outbox import Outbox
+
+FINDS_BYTES = 16_384
+"""Of what was detected in one message."""
 
 
 class Notifying:
@@ -55,7 +60,7 @@ class Notifying:
         """Ask the owners of slots for setting them; returns at once.
 
         Where there are robots of other processes, run and incarnation are those of this process. Of the
-        finds, the last `MOST_FINDS` go with it.
+        finds, the last go with it, as many as a message can hold.
         """
         parts: dict[str, tuple[str, ...]] = {}
         for owner, slot in slots:
@@ -64,7 +69,7 @@ class Notifying:
             id = replace(id, run=self._run, incarnation=self._owners.incarnation)
             self._take_part(id.sender)
         reach = LARGEST if self._alone else REACH
-        errand = Errand(id, parts, active, self._least, self._chance, reach, finds[-MOST_FINDS:])
+        errand = Errand(id, parts, active, self._least, self._chance, reach, fitting(finds))
         with self._lock:
             for owner in parts:
                 if self._watching.has_ended(owner) and owner not in self._owners:
@@ -96,3 +101,20 @@ class Notifying:
 
     def _least(self) -> int:
         return 0 if self._alone else self._owners.lamport + 1
+
+
+def fitting(finds: Sequence[Find]) -> tuple[Find, ...]:
+    """Return the last of what was detected, as much as a message can hold beside names of slots.
+
+    Names that no reader would take, and places that are nowhere, are left out.
+    """
+    found: list[Find] = []
+    size = 0
+    for name, place in reversed(finds):
+        where = place if place is not None and all(map(isfinite, place)) else None
+        size += len(json.dumps([name, where]))
+        if len(found) == MOST_FINDS or size > FINDS_BYTES:
+            break
+        if len(name) <= LONGEST_NAME:
+            found.append((name, where))
+    return tuple(reversed(found))

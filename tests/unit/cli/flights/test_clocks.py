@@ -88,3 +88,12 @@ def test_a_robot_whose_process_was_started_again_alone_is_left_and_that_is_told(
     box.write_text("".join([*lines, lines[0], *lines[-3:]]))
     (note,) = [each for each in flight().damages if "started again" in each]
     assert note.startswith("beta: was started again otherwise than alpha")
+
+
+def test_what_is_noted_before_a_vehicle_is_known_is_of_the_same_process(flight, folder):
+    for robot in ("alpha", "beta"):
+        begin(folder, robot, 0.0)
+    box = folder / "beta.blackbox.ndjson"
+    first, second, *rest = box.read_text().splitlines(keepends=True)
+    box.write_text("".join([second, first, *rest]))
+    assert flight().damages == ()
