@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import cos, radians, sin
+from math import cos, pi, radians, sin
+from random import Random
 
 from .vessel.sheet import Sheet, Thruster, Vector
 
@@ -104,3 +105,15 @@ def sheet(
         devices=("front-camera", "ctd"),
         extra=extra,
     )
+
+
+def random_start(seed: int) -> dict[str, str]:
+    """Return options of the backend can-sim: where a dive begins, in what current, and with which noise."""
+    random = Random(seed)
+    away, towards = random.uniform(0.0, 0.15), random.uniform(0.0, 2.0 * pi)
+    return {
+        "seed": str(seed),
+        "start": f"{random.uniform(-1.0, 1.0)},{random.uniform(-1.0, 1.0)}",
+        "heading": str(random.uniform(0.0, 360.0)),
+        "current": f"{away * cos(towards)},{away * sin(towards)}",
+    }

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import cos, pi, sin
 from pathlib import Path
-from random import Random
 
 import pytest
+from mmrs_auv.testing import random_start
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay
@@ -31,18 +30,6 @@ def dived(taken, contributions, name, folder, **options):
     )
     write_logs(run, example.program, folder, example.place.types)
     return run, replay(example.program, read_logs([folder]))
-
-
-def random_start(seed: int) -> dict[str, str]:
-    """Return where a dive begins, in what current, and with which noise."""
-    random = Random(seed)
-    away, towards = random.uniform(0.0, 0.15), random.uniform(0.0, 2.0 * pi)
-    return {
-        "seed": str(seed),
-        "start": f"{random.uniform(-1.0, 1.0)},{random.uniform(-1.0, 1.0)}",
-        "heading": str(random.uniform(0.0, 360.0)),
-        "current": f"{away * cos(towards)},{away * sin(towards)}",
-    }
 
 
 def completes(taken, contributions, folder: Path, seed: int) -> None:
