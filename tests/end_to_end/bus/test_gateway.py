@@ -169,6 +169,23 @@ def test_a_program_that_hangs_is_a_lost_peer_until_it_speaks_again(gateway, peer
     client.close()
 
 
+def test_a_program_that_goes_while_it_waits_to_begin_is_a_lost_peer(gateway, client, peer, until):
+    client.say({"do": "begin", "robots": ["a", "b"], "seconds": 60})
+    until(lambda: not peer.missing(["a"]))
+    client.close()
+    assert until(lambda: peer.lost(["a"])) < 2.0
+
+
+def test_a_program_that_has_waited_to_begin_was_not_silent(gateway, peer, until):
+    told = json.loads(gateway[1].read_text())
+    client = Client(told["port"])
+    client.ask({"do": "hello", "token": told["token"], "alive": 1}, "welcome")
+    until(lambda: not peer.missing(["a"]))
+    client.ask({"do": "begin", "robots": ["a", "b"], "seconds": 2}, "wrong")
+    assert until(lambda: peer.lost(["a"])) > 0.5
+    client.close()
+
+
 @pytest.mark.parametrize("alive", [0, 3601, "1", None])
 def test_a_time_to_speak_in_that_is_none_is_refused(gateway, alive):
     told = json.loads(gateway[1].read_text())

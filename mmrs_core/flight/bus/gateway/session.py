@@ -7,6 +7,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Mapping
+from select import select
 from typing import IO, Any
 
 from ..meeting import Incomplete, begin_together
@@ -74,6 +75,8 @@ class Session:
                 self._hear()
                 with self._turn:
                     self._say(self._answer(line))
+                    # Whoever waits for an answer is not silent.
+                    self._hear()
                 self._look.set()
         except OSError:
             self._over.set()  # the connection broke: the program has gone
@@ -170,12 +173,20 @@ class Session:
         if self._robot not in robots:
             raise Unreadable(f"robots: {self._robot!r} is not among them")
         try:
-            begun = begin_together(
-                self._node, self._robot, self._run, robots, lambda why: None, patience=patience
-            )
+            begun = begin_together(self._node, self._robot, self._run, robots, self._stay, patience=patience)
         except Incomplete as error:
             raise Unreadable(str(error)) from None
         return {"is": "begun", "offset": begun.offset, "uncertainty": begun.uncertainty, "late": begun.late}
+
+    def _stay(self, missing: str) -> None:
+        """Make sure that the program that waits is still there: nobody begins together with one that is not.
+
+        Raises:
+            OSError: it has gone.
+        """
+        heard, _, _ = select([self._connection], [], [], 0.0)
+        if heard and not self._connection.recv(1, socket.MSG_PEEK):
+            raise ConnectionAbortedError("the program has gone")
 
     def _live(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         return {"is": "alive"}
