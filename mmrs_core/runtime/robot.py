@@ -8,15 +8,7 @@ from math import inf
 from mmrs_core.behaviour.program import Action, Move, RobotProgram, SlotId
 from mmrs_core.behaviour.semantics import NOTIFY, Phase, Step, action_at, entry, fault, steps
 from mmrs_core.behaviour.steps import StepRecord
-from mmrs_core.contributions.abilities import (
-    Bearing,
-    Noting,
-    Pausable,
-    Preparing,
-    Recognising,
-    Recovering,
-    Watched,
-)
+from mmrs_core.contributions.abilities import Bearing, Noting, Preparing, Recognising, Recovering, Watched
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Fault
@@ -26,6 +18,7 @@ from mmrs_core.flight.policies import COMES_DOWN, NOTHING, OVERTAKES, still_low
 from mmrs_core.runtime.answers import Answers
 from mmrs_core.runtime.choosing import Choosing
 from mmrs_core.runtime.outgoing import Outgoing
+from mmrs_core.runtime.pausing import Pause
 from mmrs_core.runtime.peers import Peers
 from mmrs_core.runtime.resuming import step_of
 from mmrs_core.runtime.rules import Rules
@@ -49,7 +42,6 @@ class RunningRobot:
         broken_off: how it was told to stop before somebody ordered it to hold meanwhile.
         ordered: what ends its program because somebody ordered that, and the response; None: nobody did.
         released: whether somebody ordered it to stop, so that it need not be watched, and nothing since.
-        held: whether somebody ordered it to hold.
         suspended: whether its program is broken off, until its battery was changed, or because it could not
             be taken up again.
         stopping: whether it has still to confirm that it has stopped.
@@ -73,9 +65,9 @@ class RunningRobot:
         self.number = 0
         self.response = self.broken_off = ""
         self.ordered: tuple[Fault, str] | None = None
-        self.released = self.held = self.suspended = self.stopping = self.down = self.recovering = False
+        self.released = self.suspended = self.stopping = self.down = self.recovering = False
         self.preparing = self.absent = self.rested = self._returns = False
-        self._halts, self._held_since = False, 0.0
+        self._pause = Pause(backend)
         self._choosing = Choosing(program, backend, rules)
         self.questions = self._choosing.questions
         self._program, self._bus, self._rules = program, bus, rules
@@ -168,21 +160,20 @@ class RunningRobot:
         at_work = not (self.point.is_final or self.suspended)
         return at_work and isinstance(self.backend, Recovering) and self.backend.moves(now)
 
+    @property
+    def held(self) -> bool:
+        """Return whether somebody ordered it to hold, and nothing else since."""
+        return self._pause.held
+
     def hold(self, now: float) -> None:
         """Have it stay where it is, once it may be told; nothing counts against others meanwhile."""
-        if not self.held:
-            self.held, self._halts, self._held_since = True, False, now
-        if not self._halts and isinstance(self.backend, Pausable) and not self.is_unknown(now):
-            self._halts = True
-            self.backend.pause(now)
+        self._pause.begin(now, known=not self.is_unknown(now))
 
     def go_on(self, now: float) -> None:
         """Have it be held no longer."""
-        self.held = False
-        self.wait.extend(now - self._held_since)
-        self.notify.extend(now - self._held_since)
-        if self._halts and isinstance(self.backend, Pausable):
-            self.backend.resume(now)
+        seconds = self._pause.end(now)
+        self.wait.extend(seconds)
+        self.notify.extend(seconds)
 
     def prepare(self, now: float) -> None:
         """Begin to get ready; once it is, its program begins, or goes on where it was broken off."""
@@ -221,7 +212,8 @@ class RunningRobot:
 
     def end_by(self, found: Fault, response: str) -> None:
         """Have the program end because somebody ordered that."""
-        self.ordered, self.held, self.released = (found, response), False, found.which == STOPPED
+        self.ordered, self.released = (found, response), found.which == STOPPED
+        self._pause.forget()
 
     def due(self, now: float, peers: Peers) -> Step | None:
         """Return the step to be made now, beginning what has to be begun; None: not yet.
@@ -262,7 +254,8 @@ class RunningRobot:
         """Break the program off; its log ends where it can be taken up again."""
         self.notify.give_up()
         self.fault, self.response, self.suspended = found, response, True
-        self.recovering = self.held = False
+        self.recovering = False
+        self._pause.forget()
         self._answered.add(found.which)
 
     def overtaken_by(self, found: Fault) -> bool:
@@ -282,8 +275,9 @@ class RunningRobot:
         self.notify.give_up()
         self.fault, self.response = found, response
         self._answered.add(found.which)
-        self.ordered, self.suspended, self.recovering, self.held = None, False, False, False
-        self.preparing = False
+        self.ordered = None
+        self.suspended = self.recovering = self.preparing = False
+        self._pause.forget()
         return fault(self._program, self.point, found.which if self._rules.live else str(found))
 
     def _forget(self) -> None:
