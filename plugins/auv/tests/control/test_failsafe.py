@@ -67,9 +67,6 @@ def order(rig: Rig) -> None:
 
 
 OTHERS = ("Pressure", "Attitude", "Rates")
-FROZEN = 0.6
-"""Seconds of equal values that noise does not permit, at 20 a second, with what this noise is."""
-
 UNTRUSTED = failsafe.STALE + 0.3 + failsafe.MARGIN
 """Seconds until movement, which takes a state for trusted for 0.3 s, asks for no thrust."""
 
@@ -84,8 +81,8 @@ CAUSES = [
         UNTRUSTED,
         "SENSORS_SILENT",
     ),
-    ("pressure frozen", freeze("Pressure"), FROZEN + UNTRUSTED, "SENSORS_SILENT"),
-    ("compass frozen", freeze("Attitude"), FROZEN + UNTRUSTED, "SENSORS_SILENT"),
+    ("pressure frozen", freeze("Pressure"), failsafe.FROZEN + UNTRUSTED, "SENSORS_SILENT"),
+    ("compass frozen", freeze("Attitude"), failsafe.FROZEN + UNTRUSTED, "SENSORS_SILENT"),
     ("leak", leak, failsafe.LEAK_SAID * 0.2 + failsafe.MARGIN, "LEAK"),
     ("ordered", order, 0.2 + failsafe.MARGIN, "ORDERED"),
 ]
@@ -293,6 +290,8 @@ def test_declared_times_are_those_of_the_manual() -> None:
         failsafe.COMMANDS_GONE,
         failsafe.STATE_SILENT,
         failsafe.STATE_UNTRUSTED,
+        failsafe.STALE,
+        failsafe.STALE + failsafe.FROZEN,
     } <= told
 
 

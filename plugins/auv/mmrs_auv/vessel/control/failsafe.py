@@ -33,6 +33,9 @@ ACTUATORS_GONE = 3.0 * BEAT_PERIOD
 STALE = 0.5
 """Seconds after the last plausible value of an instrument during which its state is still trusted."""
 
+FROZEN = 0.6
+"""Seconds after which an instrument that repeats one value is taken to be frozen, where it has usual noise."""
+
 MARGIN = COMMAND_PERIOD + SENSOR_PERIOD
 """Seconds that detection and the next command may take more than the times above."""
 
