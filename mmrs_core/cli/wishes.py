@@ -146,7 +146,8 @@ def links_of(given: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, str]:
     """
     links: dict[str, str] = {}
     for text in given:
-        robot, separator, url = text.partition("=")
+        named = max((each for each in robots if text.startswith(f"{each}=")), key=len, default="")
+        robot, separator, url = (named, "=", text[len(named) + 1 :]) if named else text.partition("=")
         if not separator and len(robots) > 1:
             raise typer.BadParameter(f"--connect {text}: which robot? say ROBOT={text}")
         if separator and robot not in robots:

@@ -28,6 +28,9 @@ HELP = (
     " robot"
 )
 
+CENTURY = 3_155_760_000
+"""Seconds that a clock may jump at most."""
+
 _NUMBER = r"\d+(?:\.\d+)?"
 _FAULT = re.compile(rf"([a-z-]+)(?:=({_NUMBER})(?:~({_NUMBER}))?|@({_NUMBER})(?:([+-])({_NUMBER}))?)")
 
@@ -171,6 +174,8 @@ def _check(fault: Injection, all: Sequence[Injection], urls: Mapping[str, str], 
         raise ValueError(f"{fault.text}: say for how many seconds, or nothing would ever thaw it")
     if fault.name == "clock-jump" and not fault.amount:
         raise ValueError(f"{fault.text}: say by how many seconds, such as clock-jump@60+3600")
+    if fault.name == "clock-jump" and abs(fault.amount) > CENTURY:
+        raise ValueError(f"{fault.text}: no calendar reaches so far; at most {CENTURY} seconds, a century")
     if fault.name == "freeze" and not hasattr(signal, "SIGSTOP"):
         raise ValueError(f"{fault.text}: this system cannot stop and continue processes")
     if fault.name == "disk-full" and os.name != "posix":

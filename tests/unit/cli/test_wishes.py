@@ -43,3 +43,8 @@ def test_two_robots_may_share_a_link():
 def test_one_robot_has_one_link():
     with pytest.raises(typer.BadParameter, match=r"'alpha' is reached by udpin:.* already"):
         links_of((f"alpha={LINK}", "alpha=udpin:127.0.0.1:14560"), ("alpha", "beta"))
+
+
+def test_names_of_robots_may_hold_what_stands_between_them_and_their_links():
+    given = (f"a=b={LINK}", f"a={LINK}@2")
+    assert links_of(given, ("a", "a=b")) == {"a=b": LINK, "a": f"{LINK}@2"}

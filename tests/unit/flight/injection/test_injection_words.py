@@ -74,6 +74,7 @@ def test_what_is_timed_comes_in_its_order():
         ("clock-jump@90+x", "say clock-jump@SECOND"),
         ("cut@60-20", "ends before it begins"),
         ("freeze@60", "say for how many seconds"),
+        ("clock-jump@60+4000000000", "no calendar reaches so far"),
         ("clock-jump@60", "say by how many seconds"),
         ("gamma:loss=0.1", "there is no robot 'gamma'"),
         ("alpha:freeze@1+1", "concerns all robots"),
