@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
+from bus_traces import Trace
 from can_hub import RunningHub, running
 from dives import diver
 from mmrs_auv.sheets import sheet_of
@@ -33,6 +37,9 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.scene import RobotType
 
+SHARED = tempfile.TemporaryDirectory(prefix="ada-")
+"""What was compiled of the sources that decision centres share."""
+
 FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe")
 
 
@@ -48,13 +55,17 @@ def write(behaviour: Program, folder: Path, type: RobotType | None = None) -> Pa
 
 
 def build(robot: Path) -> Path:
-    """Compile a decision centre; return the program."""
-    made = robot / "obj"
-    made.mkdir(exist_ok=True)
-    common = "../../common"
-    words = ["gnatmake", "-q", *FLAGS, "-I..", f"-I{common}", f"{common}/decision_centre.adb"]
+    """Compile a decision centre; return the program. What centres share is compiled once for all of them."""
+    made, common = robot / "obj", "../../common"
+    sources = sorted([*robot.parent.glob("common/*.ad[bs]"), robot / "mission.ads"])
+    shared = Path(SHARED.name) / sha256(b"".join(each.read_bytes() for each in sources)).hexdigest()
+    shutil.copytree(shared, made) if shared.exists() else made.mkdir()
+    words = ["gnatmake", "-q", "-m", *FLAGS, "-I..", f"-I{common}", f"{common}/decision_centre.adb"]
     done = subprocess.run(words, cwd=made, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
+    if not shared.exists():
+        own = shutil.ignore_patterns("mission.*", "conditions.*", "decision_centre")
+        shutil.copytree(made, shared, ignore=own)
     return made / "decision_centre"
 
 
@@ -96,7 +107,9 @@ class World:
         self.vehicle = Vehicle(sheet, Codec(sheet), surroundings)
         parts = [Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet))]
         self._port = open_port("socketcand", f"can0@127.0.0.1:{hub.port}")
-        self.rehearsal = Rehearsal([self.vehicle, *parts, Bridge(self._port)], watch=self._watch)
+        self.trace = Trace(sheet)
+        nodes = [self.vehicle, *parts, Bridge(self._port), self.trace]
+        self.rehearsal = Rehearsal(nodes, watch=self._watch)
 
     def _watch(self, now: float, frame: Frame) -> None:
         if (said := self._codec.decode(frame)) is not None:
@@ -146,15 +159,33 @@ def run(
     **orders: float,
 ) -> Dive:
     """Have the decision centre of a robot command its vehicle until it ends."""
+
+    def words(port: int) -> Sequence[str]:
+        given = ["--gateway", str(gateway)] if gateway is not None else []
+        given += ["--detections", str(detections)] if detections else []
+        return [str(program), "--bus", f"127.0.0.1:{port}", "--logs", str(folder / "logs"), *given]
+
+    return commanded(words, behaviour, folder, seconds, robot=robot, **orders)
+
+
+def commanded(
+    words: Callable[[int], Sequence[str]],
+    behaviour: Program,
+    folder: Path,
+    seconds: float = 120.0,
+    *,
+    robot: int = 0,
+    **orders: float,
+) -> Dive:
+    """Have a program, whose words depend on the port of the bus, command a robot's vehicle until it ends."""
     one = behaviour.robots[robot]
     sheet = sheet_of(diver(), one.id, home=one.home or (0.0, 0.0, 0.0), surface=behaviour.frame.surface)
     logs = folder / "logs"
     with running() as hub:
         world = World(hub, sheet, Surroundings(noise=False))
-        words = [str(program), "--bus", f"127.0.0.1:{hub.port}", "--logs", str(logs)]
-        words += ["--gateway", str(gateway)] if gateway is not None else []
-        words += ["--detections", str(detections)] if detections else []
-        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            words(hub.port), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
         try:
             world.run(process, seconds, **orders)
         finally:

@@ -3,62 +3,43 @@
 from __future__ import annotations
 
 import socket
+import sys
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from math import atan2, degrees, hypot
 from pathlib import Path
 
 import pytest
-from ada_centres import build, gateways, run, write
-from dives import dive, rehearse, swim
+from ada_centres import Dive, build, commanded, gateways, run, write
+from bus_traces import Said, Trace, steps_in
+from dives import dive, diver, rehearse, swim
+from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.plugin import mmrs_metamodels
-from mmrs_auv.vessel.api import Craft
+from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_auv.vessel.eyes import Detection, to_datagram
-from mmrs_auv.vessel.goals import Goal
+from waiting_pair import waiting_pair
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Move, Target, Transition
 from mmrs_core.behaviour.reading import program_of
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.execution import Condition
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write as write_files
 from mmrs_core.languages.reading import read_model
 from mmrs_core.languages.registry import registry_with
+from mmrs_core.runtime.conditions import asked_by, standard_conditions
 from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
+from mmrs_core.transformation.kinds import MOVE_KINDS
 
 pytestmark = pytest.mark.xdist_group("vessels in real time")
 
-CHARGED = {"charged": Condition("charged", lambda state: True)}
 PHOTO = Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), "TakePicture", "front-camera")
-
-PAIR = """<?xml version="1.0" encoding="UTF-8"?>
-<bl:Behaviour xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
-    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:bl="urn:mmrs:behaviour:1.0" name="pair">
-  <targets xsi:type="bl:RelativeCoordinate" name="here" x="0.0" y="0.0"/>
-  <robots id="a" typeName="Pool AUV" home="//@targets.0">
-    <moves xsi:type="bl:Start" name="start"/>
-    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
-      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0"/>
-    </moves>
-    <moves xsi:type="bl:Stop" name="stop"/>
-    <moveTransitions from="//@robots.0/@moves.0" to="//@robots.0/@moves.1" waitFor="//@robots.0/@slots.0"/>
-    <moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"/>
-    <slots name="ready"/>
-  </robots>
-  <robots id="b" typeName="Pool AUV" home="//@targets.0">
-    <moves xsi:type="bl:Start" name="start"/>
-    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
-      <preActions xsi:type="bl:UnicastNotify" slot="//@robots.0/@slots.0"/>
-    </moves>
-    <moves xsi:type="bl:Stop" name="stop"/>
-    <moveTransitions from="//@robots.1/@moves.0" to="//@robots.1/@moves.1"/>
-    <moveTransitions from="//@robots.1/@moves.1" to="//@robots.1/@moves.2" waitFor="//@robots.1/@slots.0"/>
-    <slots name="go"/>
-  </robots>
-</bl:Behaviour>
-"""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -78,7 +59,8 @@ def telling(port: int, detection: Detection) -> Iterator[None]:
     def tell() -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
             while not over.wait(0.2):
-                for data in (b"\xff{", b'{"name": "', to_datagram(detection)):
+                now = replace(detection, time=time.monotonic())
+                for data in (b"\xff{", b'{"name": "', to_datagram(now)):
                     with suppress(OSError):
                         camera.sendto(data, ("127.0.0.1", port))
 
@@ -89,64 +71,142 @@ def telling(port: int, detection: Detection) -> Iterator[None]:
     teller.join()
 
 
-def journey():
-    """Return a behaviour with all kinds of moves and actions, and a choice."""
+def everything():
+    """Return a behaviour with all kinds of moves and actions, whose choice all decide alike."""
     turn = replace(move('turn "x"\n', "HeadTo"), heading=Heading(Target((0.0, 10.0, -1.0))))
-    near = swim("é", 0.0, 0.0, 1.0, before=(PHOTO,), task="home", distance=0.5)
-    looking = replace(near, heading=Heading(Target((5.0, 5.0, -1.0)), "", 30.0))
-    there = swim("a", 1.0, 1.0, 1.0, after=(notify(("naiad", "go")), feedback("there")))
-    hold = move("h", "HoldPosition", duration=1.0)
+    there = swim("there", 1.0, 1.0, 1.0, after=(notify(("naiad", "go")), feedback("there")))
+    hold = move("hold", "HoldPosition", duration=1.0)
+    looking = swim(
+        "looking", 0.2, 0.4, 1.5, before=(PHOTO,), heading=Heading(Target((5.0, 5.0, -1.0)), "", 30.0)
+    )
+    short = swim("é", -1.0, 0.0, 1.2, after=(PHOTO,), task="home", distance=0.5, speed=0.3)
     return dive(
-        there, hold, turn, looking, slots=("go",),
-        transitions={2: Transition(2, 3, waits=("go",), condition="charged", otherwise=4)},
+        there, hold, turn, looking, short, slots=("go",),
+        transitions={2: Transition(2, 4, waits=("go",), condition="battery-below:0.3", otherwise=3)},
     )  # fmt: skip
 
 
-def test_a_dive_ends_well_and_its_log_replays(tmp_path: Path, monkeypatch) -> None:
-    behaviour = journey()
-    robot = write(behaviour, tmp_path / "out")
-    conditions = robot / "conditions.adb"
-    mine = conditions.read_text().replace("Undecided.Nobody_Says (Condition, Known)", "Known.Charge > 0.3", 1)
-    conditions.write_text(mine)
-    found = run(build(robot), behaviour, tmp_path)
-    assert found.status == 0, found.errors
-    assert found.replayed.accepted, found.replayed.complaints
-    assert found.replayed.outcome is Outcome.SUCCESS
-    places = [each.values for each in found.world.said("GoalPlace")]
-    assert {"North": 1.0, "East": 1.0} in places
+def rehearsed(behaviour, folder: Path) -> tuple[Trace, list]:
+    """Return what the interpreter does on the bus, and its steps."""
+    traces: list[Trace] = []
 
-    begun: list[Goal] = []
-    plain = Craft._begin
-    monkeypatch.setattr(Craft, "_begin", lambda self, goal: (begun.append(goal), plain(self, goal))[1])
-    assert rehearse(behaviour, tmp_path / "sim", conditions=CHARGED, noise="no").accepted
-    told = [each.values for each in found.world.said("GoalPose") if each.values["Mode"] != "IDLE"]
-    wanted = [goal for goal in begun if goal.mode != "IDLE"]
-    assert [each["Mode"] for each in told] == [goal.mode for goal in wanted]
-    for each, goal in zip(told, wanted, strict=True):
-        assert each["Speed"] == pytest.approx(goal.speed, abs=0.011)
-        assert each["FaceAlong"] == goal.along
-        if goal.mode == "GO_TO":
-            assert each["Depth"] == pytest.approx(goal.depth, abs=0.15)
-        if not goal.along:
-            assert abs((each["Heading"] - goal.heading + 180.0) % 360.0 - 180.0) < 5.0
+    def listen(robot) -> None:
+        traces.append(Trace(robot.stage.sheet))
+        robot.stage.rehearsal.add(traces[0])
+
+    decided = standard_conditions(asked_by(behaviour))
+    assert rehearse(behaviour, folder, listen, decided, noise="no").accepted
+    return traces[0], steps_in(folder)
 
 
-def test_a_choice_goes_by_what_cameras_detect(tmp_path: Path) -> None:
-    hold = move("h", "HoldPosition", duration=2.0)
-    ways = {1: Transition(1, 2, condition="detected:a buoy", otherwise=3)}
-    behaviour = dive(hold, feedback_move("seen"), feedback_move("unseen"), transitions=ways)
+def controlled(behaviour, folder: Path) -> Dive:
+    """Return what a controller in Python does."""
+    kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
+    given = TargetInput(behaviour, {diver().name: diver()}, {AUV_KIND.metaclass: AUV_KIND}, kinds)
+    write_files(render(CAN_PYTHON, given), folder / "code")
+
+    def words(port: int) -> list[str]:
+        options = ["--can", f"can0@127.0.0.1:{port}", "--log", str(folder / "logs")]
+        return [sys.executable, str(folder / "code" / "fleet.py"), *options]
+
+    return commanded(words, behaviour, folder)
+
+
+def test_ada_python_and_the_interpreter_do_the_same(tmp_path: Path) -> None:
+    """Two programs and the interpreter command the same simulated vehicle; this is compared.
+
+    ================  =====================================================================================
+    steps in the log  label, move, detail and slots of all, in order
+    goals             bytes without counter and check where place and heading are fixed; else mode, number,
+                      speed, whether it faces where it goes, place to 0.15 m, heading to 5 degrees
+    orders            bytes without counter and check: device, action, parameter, number of the request
+    ends              which goals ended, and how
+    ================  =====================================================================================
+    """
+    behaviour = everything()
     program = build(write(behaviour, tmp_path / "out"))
+    wanted, steps = rehearsed(behaviour, tmp_path / "sim")
+    with ThreadPoolExecutor(2) as pool:
+        found = [
+            pool.submit(run, program, behaviour, tmp_path / "ada"),
+            pool.submit(controlled, behaviour, tmp_path / "python"),
+        ]
+        for dive in (each.result() for each in found):
+            assert dive.status == 0, dive.errors
+            trace = dive.world.trace
+            assert steps_in(dive.log) == steps
+            assert trace.orders == wanted.orders
+            assert trace.ends == wanted.ends
+            assert [same_goal(*each) for each in zip(trace.told, wanted.told, strict=True)] == [""] * len(
+                wanted.told
+            )
+    assert len(wanted.told) == 4
+    assert len(wanted.orders) == 2
+
+
+def same_goal(goal: Said, wanted: Said) -> str:
+    """Return in what a goal differs from another."""
+    if wanted.values["Mode"] == "GO_TO" and wanted.values["Speed"] > 0.4:
+        return "" if goal.data == wanted.data else f"{goal.values} instead of {wanted.values}"
+    for name in ("North", "East", "Depth"):
+        if abs(goal.values[name] - wanted.values[name]) > 0.15:
+            return f"{name}: {goal.values[name]}, {wanted.values[name]}"
+    if abs((goal.values["Heading"] - wanted.values["Heading"] + 180.0) % 360.0 - 180.0) > 5.0:
+        return f"heading: {goal.values['Heading']}, {wanted.values['Heading']}"
+    for name in ("Mode", "Goal", "Speed", "FaceAlong"):
+        if goal.values[name] != wanted.values[name]:
+            return f"{name}: {goal.values[name]}, {wanted.values[name]}"
+    return ""
+
+
+def buoy(tolerance: float) -> Move:
+    """Return an approach to a buoy, which the vehicle then faces."""
+    target = Target((1.5, 0.0, -1.0), "a buoy", tolerance)
+    return swim("near", 0.0, 0.0, 0.0, target=target, heading=Heading(target), distance=0.5)
+
+
+def sought(behaviour, folder: Path) -> Dive:
+    """Return what comes of a behaviour whose choices are decided, while a buoy is seen."""
+    robot = write(behaviour, folder / "out")
+    conditions = robot / "conditions.adb"
+    text = conditions.read_text()
+    asked = "Undecided.Nobody_Says (Condition, Known);\n      end if;"
+    conditions.write_text(text.replace(asked, "Known.Charge > 0.3;\n      end if;"))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
         camera.bind(("127.0.0.1", 0))
         port = camera.getsockname()[1]
-    with telling(port, Detection(0.0, "a buoy", 0.9, 1.0, 2.0, 3.0, "front")):
-        found = run(program, behaviour, tmp_path, detections=port)
+    with telling(port, Detection(0.0, "a buoy", 0.9, 0.4, 1.2, 1.2, "front")):
+        return run(build(robot), behaviour, folder, detections=port)
+
+
+def test_an_object_is_approached_and_choices_are_made_by_what_cameras_see(tmp_path: Path) -> None:
+    ways = {
+        1: Transition(1, 2, condition="detected:a buoy", otherwise=4),
+        2: Transition(2, 3, condition="charged", otherwise=4),
+    }
+    behaviour = dive(buoy(1.0), feedback_move("seen"), feedback_move("charged"), transitions=ways)
+    found = sought(behaviour, tmp_path)
     assert found.status == 0, found.errors
-    assert [each.detail for each in read_logs([found.log]) if each.label == "choose"] == ["true"]
+    assert found.replayed.accepted, found.replayed.complaints
+    assert [each.detail for each in read_logs([found.log]) if each.label == "choose"] == ["true", "true"]
+    goal = found.world.trace.told[-1].values
+    place = (0.4, 1.2, 1.2)
+    away = [place[each] - goal[name] for each, name in enumerate(("North", "East", "Depth"))]
+    assert hypot(*away) == pytest.approx(0.5, abs=0.02)
+    assert goal["Heading"] == pytest.approx(degrees(atan2(away[1], away[0])), abs=2.0)
+
+
+def test_an_object_that_is_too_far_from_where_it_is_expected_ends_the_dive(tmp_path: Path) -> None:
+    behaviour = dive(buoy(0.2))
+    found = sought(behaviour, tmp_path)
+    assert found.status == 1
+    assert found.replayed.faults == {"naiad": "OBJECT_NOT_FOUND"}
+    assert found.replayed.accepted, found.replayed.complaints
 
 
 def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -> None:
-    behaviour = journey()
+    hold = move("h", "HoldPosition", duration=0.5)
+    behaviour = dive(hold, transitions={1: Transition(1, 2, condition="charged", otherwise=2)})
     robot = write(behaviour, tmp_path / "out")
     conditions = robot / "conditions.adb"
     mine = conditions.read_text().replace("      if Condition", "      delay 6.0;\n      if Condition", 1)
@@ -169,7 +229,7 @@ def test_a_lost_bus_is_a_fault_of_the_move_that_was_under_way(tmp_path: Path) ->
 
 def test_two_decision_centres_wait_for_each_other_over_the_bus_between_robots(tmp_path: Path) -> None:
     file = tmp_path / "pair.xmi"
-    file.write_text(PAIR)
+    file.write_text(waiting_pair("Pool AUV"))
     registry = registry_with(mmrs_metamodels())
     root = read_model(file, registry).roots[0]
     behaviour = program_of(root, registry=registry)  # type: ignore[arg-type]

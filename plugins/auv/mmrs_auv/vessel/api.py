@@ -10,7 +10,7 @@ from types import MappingProxyType
 from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from .hosting import Pace, Port, serve
 from .sheet import Sheet
-from .wire.catalogue import BEAT_PERIOD, DECISION, by_id
+from .wire.catalogue import BEAT_PERIOD, DECISION, MOST_UPTIME, by_id
 from .wire.codec import Codec, Received
 from .wire.frame import Frame
 
@@ -180,7 +180,7 @@ class Craft:
                 "Parameter": parameter,
                 "Request": float(request),
             }
-            self._codec.encode("DeviceCommand", **values)
+            self._codec.check("DeviceCommand", **values)
             for earlier in [
                 number for number, each in self._requests.items() if each["Device"] == values["Device"]
             ]:
@@ -200,7 +200,7 @@ class Craft:
             ValueError: there is no such reason.
         """
         with self._lock:
-            self._codec.encode("Emergency", Reason=reason, Release=release)
+            self._codec.check("Emergency", Reason=reason, Release=release)
             self._emergency, self._emergencies = (reason, release), OFTEN
             self._state = replace(self._state, emergency=self._state.emergency or reason)
 
@@ -247,7 +247,7 @@ class Craft:
             ]
             if now + 1e-6 >= self._beat_due:
                 self._beat_due = now + BEAT_PERIOD
-                uptime = now - self._began
+                uptime = min(now - self._began, MOST_UPTIME)
                 said.append(self._codec.encode("DecisionBeat", State="RUNS", Uptime=uptime, Reason="NONE"))
             return said
 
@@ -300,7 +300,7 @@ class Craft:
 
     def _hear_device(self, found: Received, now: float) -> None:
         request, state = int(found.values["Request"]), str(found.values["State"])
-        if request in self._devices:
+        if request in self._requests:
             self._devices[request] = state
             if state in ("REACHED", "FAILED"):
                 self._requests.pop(request, None)

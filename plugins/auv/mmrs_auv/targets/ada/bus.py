@@ -10,12 +10,19 @@ from mmrs_auv.vessel.wire.layout import layout_of
 SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "Emergency", "DecisionBeat")
 HEARD = ("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus")
 
+_KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
+
 
 def catalogue() -> Mapping[str, object]:
     """Return what the template of the catalogue sees."""
-    known = {message.name: message for message in (*COMMON, *BEATS)}
-    messages = [_message(known[name]) for name in (*SPOKEN, *HEARD)]
+    messages = [_message(_KNOWN[name]) for name in (*SPOKEN, *HEARD)]
     return {"messages": messages, "words": list(_words())}
+
+
+def can_be_said(message: str, field: str, value: float) -> bool:
+    """Return whether a field of a message holds a value."""
+    part = layout_of(_KNOWN[message]).slots[field].field
+    return part.low <= value <= part.high
 
 
 def _message(message: Message) -> Mapping[str, object]:
@@ -29,8 +36,8 @@ def _message(message: Message) -> Mapping[str, object]:
             "scale": slot.field.scale,
             "low": slot.low,
             "high": slot.high,
-            "least": slot.field.low,
-            "most": slot.field.high,
+            "least": float(slot.low) if slot.field.names else slot.field.low,
+            "most": float(slot.high) if slot.field.names else slot.field.high,
         }
         for slot in layout.slots.values()
     ]

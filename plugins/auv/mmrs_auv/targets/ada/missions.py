@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite
 
 from mmrs_auv.backend.duties_of import ANSWER, parameter_of
 from mmrs_auv.kinds import SEA_WATER, largest_depth
@@ -14,24 +15,31 @@ from mmrs_auv.targets.moves import MOVES, seconds_of, seconds_of_hold
 from mmrs_auv.vessel.refusals import MOST_DEPTH
 from mmrs_auv.vessel.wire.catalogue import depth_step
 from mmrs_core.behaviour.log import log_name
-from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Transition
+from mmrs_core.behaviour.policies import patience
+from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.flight.conditions import BATTERY, DETECTED, is_standard
 from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.scene import Part, Position
+from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.scene import Part, Policy, Position
 
 KINDS: Mapping[str, str] = {
     "start": "Starts", "go": "Goes", "hold": "Holds", "turn": "Turns", "stop": "Stops",
 }  # fmt: skip
 
 
+WATCHED = ("LINK_LOST", "POSITION_LOST", "BATTERY_LOW")
+"""Events that last before they count."""
+
+
 class Mission:
     """A robot's behaviour as its decision centre holds it."""
 
-    def __init__(self, context: RobotContext, program: Program) -> None:
-        self._context, self._program = context, program
+    def __init__(self, context: RobotContext, program: Program, policies: Sequence[Policy]) -> None:
+        """Hold it; `policies` of the robot, the first for an event counts."""
+        self._context, self._program, self._policies = context, program, tuple(policies)
         robot = context.robot
         self._tasks = tuple(dict.fromkeys(move.task for move in robot.moves if move.task))
         self._slots = {slot: number for number, slot in enumerate(robot.slots, start=1)}
@@ -46,6 +54,7 @@ class Mission:
             "log": log_name(robot.id),
             "step": self._depth_step(),
             "reserve": float(self._program.reserve),
+            "after": [(event, patience(event, self._policies) or 0.0) for event in WATCHED],
             "floats": self._floats(),
             "alone": are_apart(self._program),
             "robots": json.dumps([each.id for each in self._program.robots]),
@@ -93,7 +102,8 @@ class Mission:
         if sort == "go" and move.target is not None and move.target.position is not None:
             yield "Target", self._place(move.target.position)
             yield "Away", float(move.distance)
-            yield "Speed", float(self._context.speed(move) or 0.0)
+            yield "Speed", self._speed(move)
+            yield from self._object(move, move.target)
         if move.heading is not None and move.heading.target.position is not None:
             yield "Looks", True
             yield "Seen", self._place(move.heading.target.position)
@@ -101,9 +111,30 @@ class Mission:
         if sort == "hold":
             yield "Seconds", seconds_of_hold(move)
 
+    def _object(self, move: Move, target: Target) -> Iterator[tuple[str, object]]:
+        """Yield what is told of the object that a move leads to."""
+        if target.description is None:
+            return
+        yield "Object", _json(target.description)
+        if target.tolerance is not None:
+            yield "Tolerance", float(target.tolerance)
+        looked_at = move.heading.target.description if move.heading is not None else None
+        yield "Looks_At_It", looked_at == target.description
+
+    def _speed(self, move: Move) -> float:
+        """Return metres per second, no more than the vehicle can."""
+        speed, type = self._context.speed(move) or 0.0, self._context.type
+        capability = capability_of(self._context.robot, type) if type is not None else None
+        return speed if capability is None else min(speed, capability.speed[1])
+
     def _waits(self, transition: Transition | None) -> Iterator[tuple[str, object]]:
         if transition is None or not transition.waits:
             return
+        policies = (*transition.policies, *self._policies)
+        longest = patience("WAIT_TOO_LONG", policies)
+        if longest is not None and isfinite(longest):
+            yield "Longest", longest
+        yield "Alone", patience("PEER_LOST", policies) or 0.0
         wanted = {(self._context.robot.id, slot) for slot in transition.waits}
         yield "Awaited", json.dumps(transition.waits)
         yield (
@@ -132,7 +163,9 @@ class Mission:
             type = self._context.type
             number = action_number(type, action.device, action.name)
             told += [("Number", list(type.devices).index(action.device)), ("Does", number)]
-            told += [("Parameter", parameter_of(action)), ("Patience", seconds_of(action, type) + ANSWER)]
+            answer = patience("DEVICE_SILENT", self._policies)
+            waits = seconds_of(action, type) + (ANSWER if answer is None else answer)
+            told += [("Parameter", parameter_of(action)), ("Patience", waits)]
             return {"kind": "Device", "features": told}
         words = " ".join((action.name, *(f"{key}={text}" for key, text in action.parameters)))
         return {"kind": "Feedback", "features": [*told, ("Words", words)]}

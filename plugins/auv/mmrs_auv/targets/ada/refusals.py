@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mmrs_auv.backend.duties_of import parameter_of
 from mmrs_auv.sheets import action_number
+from mmrs_auv.targets.ada.bus import can_be_said
 from mmrs_auv.targets.moves import MOVES, above_surface
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
 from mmrs_core.contributions.targets import TargetInput
@@ -13,10 +15,13 @@ from mmrs_core.scene import Policy
 
 DEVICE_ACTION, FEEDBACK, NOTIFY = ((BEHAVIOUR, name) for name in ("DeviceAction", "Feedback", "Notify"))
 
-NOTICED = frozenset(
-    {"BATTERY_LOW", "POSITION_LOST", "LINK_LOST", "DEVICE_SILENT", "NO_PROGRESS", "PEER_LOST"}
+LASTING = frozenset(
+    {"BATTERY_LOW", "POSITION_LOST", "LINK_LOST", "DEVICE_SILENT", "PEER_LOST", "WAIT_TOO_LONG"}
 )
-"""Events after which the vehicle comes up."""
+"""Events that may have to last before the vehicle comes up."""
+
+OF_A_WAIT = frozenset({"PEER_LOST", "WAIT_TOO_LONG"})
+"""Events about which a single wait may say something else."""
 
 
 def refusals(input: TargetInput) -> Iterator[str]:
@@ -27,14 +32,16 @@ def refusals(input: TargetInput) -> Iterator[str]:
             yield f"robot '{robot.id}': is no underwater vehicle, and has no bus of one"
             continue
         of_type = context.type.policies if context.type is not None else ()
-        policies = dict.fromkeys((*robot.policies, *of_type))
-        yield from (f"robot '{robot.id}': {_described(each)}" for each in policies if not _is_kept(each))
+        declared = {each.event: each for each in (*of_type[::-1], *robot.policies[::-1])}
+        yield from (
+            f"robot '{robot.id}': {_described(each)}" for each in declared.values() if not _is_kept(each)
+        )
         for index, move in enumerate(robot.moves):
             for why in _of_move(move, context):
                 yield f"{context.label(move)}: {why}"
             transition = robot.transitions.get(index)
             for policy in transition.policies if transition is not None else ():
-                if not _is_kept(policy):
+                if policy.event not in OF_A_WAIT or not _is_kept(policy):
                     yield f"{context.label(move)}: {_described(policy)}"
 
 
@@ -64,8 +71,10 @@ def _of_way(move: Move, context: RobotContext) -> Iterator[str]:
     if target is None or target.position is None:
         yield "nobody says where its target is"
         return
-    if target.description is not None:
-        yield f"object '{target.description}', which nobody looks for"
+    east, north, _ = target.position
+    for name, metres in (("North", north), ("East", east)):
+        if not can_be_said("GoalPlace", name, metres):
+            yield f"leads {metres:g} m to the {name.lower()}, farther than its bus can say"
     if above_surface(target.position, context) > 1e-6:
         yield f"leads {above_surface(target.position, context):g} m above the surface"
     if move.heading is not None and move.heading.target.position is None:
@@ -81,12 +90,18 @@ def _of_action(action: Action, context: RobotContext) -> Iterator[str]:
         known = context.type is not None and action_number(context.type, action.device, action.name)
         if known is None or known is False:
             yield f"device '{action.device}' has no action '{action.name}'"
+        number = parameter_of(action)
+        if not can_be_said("DeviceCommand", "Parameter", number):
+            yield f"parameter {number:g} of device '{action.device}' is more than its bus can say"
     elif not action.is_a(FEEDBACK):
         yield f"action {action.metaclasses[0][1]} is not known to this target"
 
 
 def _is_kept(policy: Policy) -> bool:
-    return policy.response in ("SURFACE", "LAND") and policy.event in NOTICED and policy.after is None
+    """Return whether a policy says what happens anyway; that a vehicle goes on without radio is no news."""
+    if policy.response == "CONTINUE":
+        return policy.event in ("LINK_LOST", "GROUND_LOST")
+    return policy.event in LASTING and policy.response in ("SURFACE", "LAND")
 
 
 def _described(policy: Policy) -> str:

@@ -17,6 +17,7 @@ from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.safety import policies_of
 
 TEMPLATES = templates_of("ada")
 OWN = ("decision_centre.gpr", "mission.ads")
@@ -38,7 +39,8 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     stems = file_stems([robot.id for robot in input.program.robots])
     yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items())})
     for robot in input.program.robots:
-        mission = Mission(context_of(robot, input, geographic=False), input.program)
+        policies = policies_of(robot, input)
+        mission = Mission(context_of(robot, input, geographic=False), input.program, policies)
         folder = f"robot-{stems[robot.id]}"
         for name in OWN:
             yield FileSpec(f"{folder}/{name}", name, source=TEMPLATES / name)

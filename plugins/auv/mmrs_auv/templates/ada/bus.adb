@@ -135,6 +135,9 @@ package body Bus is
          Item.Id := Item.Id * 16 + Digit;
          Place := Place + 1;
       end loop;
+      if Place - Words'First - 6 > 3 then
+         return;  --  an extended identifier, of whatever number
+      end if;
       Place := Place + 1;
       while Place <= Words'Last and then Words (Place) /= ' ' loop
          Place := Place + 1;

@@ -29,9 +29,9 @@ package body Craft is
    end Sealed;
 
    function Turned (Degrees : Long_Float) return Long_Float is
-      Found : constant Long_Float := Degrees - 360.0 * Long_Float'Floor (Degrees / 360.0);
+      Found : constant Long_Float := Long_Float'Remainder (Degrees, 360.0);
    begin
-      return (if Found >= 360.0 then 0.0 else Found);
+      return (if Found < 0.0 then Found + 360.0 else Found);
    end Turned;
 
    procedure Goal_Frames (Wanted : Goal; Place_Frame, Pose_Frame : out Wire.Frame) is
@@ -62,17 +62,20 @@ package body Craft is
       end Begin_Goal;
 
       procedure Operate (Device, Does : Natural; Parameter : Long_Float) is
+         Command : Wire.Frame := Wire.New_Frame (DeviceCommand);
       begin
+         Wire.Put (Command, DeviceCommand_Device, Long_Float (Device));
+         Wire.Put (Command, DeviceCommand_Action, Long_Float (Does));
+         Wire.Put (Command, DeviceCommand_Parameter, Parameter);
+         Wire.Put (Command, DeviceCommand_Request, Long_Float ((Known.Asked + 1) mod 256));
          Known.Asked := (Known.Asked + 1) mod 256;
          Known.Answer := PROGRESS_NONE;
-         Vehicle.Device := (Device, Does, Parameter, True);
+         Asked := (Command, True);
       end Operate;
 
       procedure Give_Up (Reason : Natural) is
       begin
-         if Emergencies = 0 then
-            Emergencies := Often;
-         end if;
+         Emergencies := Often;
          Vehicle.Reason := Reason;
          if Known.Emergency = 0 then
             Known.Emergency := Reason;
@@ -83,12 +86,10 @@ package body Craft is
          use Wire;
          Sound : Boolean := True;
       begin
-         if Is_Sound (Item, Position) and then Is_Within (Item, Position_North)
-           and then Is_Within (Item, Position_East)
-         then
+         if Is_Sound (Item, Position) then
             Known.Here.North := Value (Item, Position_North);
             Known.Here.East := Value (Item, Position_East);
-         elsif Is_Sound (Item, Depth) and then Is_Within (Item, Depth_Depth) then
+         elsif Is_Sound (Item, Depth) then
             Known.Here.Depth := Value (Item, Depth_Depth);
             Known.Uncertainty := Value (Item, Depth_Uncertainty);
             Known.Trusted := Number (Item, Depth_Trusted) = 1;
@@ -107,14 +108,14 @@ package body Craft is
                Known.Progress := Number (Item, Progress_State);
                Known.Distance := Value (Item, Progress_Distance);
             end if;
-         elsif Is_Sound (Item, Emergency) and then Is_Within (Item, Emergency_Reason) then
+         elsif Is_Sound (Item, Emergency) then
             if Known.Emergency = 0 then
                Known.Emergency := Natural'Max (1, Number (Item, Emergency_Reason));
             end if;
          elsif Is_Sound (Item, DeviceStatus) then
-            if Number (Item, DeviceStatus_Request) = Known.Asked and then Device.Open then
+            if Number (Item, DeviceStatus_Request) = Known.Asked and then Asked.Open then
                Known.Answer := Number (Item, DeviceStatus_State);
-               Device.Open := Known.Answer not in PROGRESS_REACHED | PROGRESS_FAILED;
+               Asked.Open := Known.Answer not in PROGRESS_REACHED | PROGRESS_FAILED;
             end if;
          else
             Sound := False;
@@ -137,6 +138,7 @@ package body Craft is
          end Add;
       begin
          Last := 0;
+         Began := (if Began = Never then Now else Began);
          Said := (others => (others => <>));
          if Emergencies > 0 then
             Emergencies := Emergencies - 1;
@@ -152,12 +154,8 @@ package body Craft is
          Sealed (Posed, GoalPose, Counted (3));
          Add (Posed);
          Ticks := (Ticks + 1) mod Seldom;
-         if Device.Open and then (Known.Answer = PROGRESS_NONE or else Ticks = 0) then
-            Made := New_Frame (DeviceCommand);
-            Put (Made, DeviceCommand_Device, Long_Float (Device.Device));
-            Put (Made, DeviceCommand_Action, Long_Float (Device.Does));
-            Put (Made, DeviceCommand_Parameter, Device.Parameter);
-            Put (Made, DeviceCommand_Request, Long_Float (Known.Asked));
+         if Asked.Open and then (Known.Answer = PROGRESS_NONE or else Ticks = 0) then
+            Made := Asked.Command;
             Sealed (Made, DeviceCommand, Counted (4));
             Add (Made);
          end if;
@@ -165,7 +163,7 @@ package body Craft is
             Beat_Due := Now + Beat_Period;
             Made := New_Frame (DecisionBeat);
             Put (Made, DecisionBeat_State, Long_Float (STATE_RUNS));
-            Put (Made, DecisionBeat_Uptime, Now);
+            Put (Made, DecisionBeat_Uptime, Long_Float'Min (Now - Began, DecisionBeat_Uptime.Most));
             Put (Made, DecisionBeat_Reason, 0.0);
             Sealed (Made, DecisionBeat, Counted (5));
             Add (Made);

@@ -40,9 +40,8 @@ package Craft is
    type Counters is array (1 .. 5) of Unsigned_8;
 
    type Request is record
-      Device, Does : Natural := 0;
-      Parameter    : Long_Float := 0.0;
-      Open         : Boolean := False;
+      Command : Wire.Frame;
+      Open    : Boolean := False;
    end record;
 
    --  How depths are written, metres in a step.
@@ -52,10 +51,10 @@ package Craft is
 
    protected Vehicle is
 
-      --  Begin a goal; the number follows the last.
+      --  Begin a goal; the number follows the last. Raises Wire.Out_Of_Range.
       procedure Begin_Goal (Wanted : Goal);
 
-      --  Ask a device; State.Asked then is the request's number.
+      --  Ask a device; State.Asked then is the request's number. Raises Wire.Out_Of_Range.
       procedure Operate (Device, Does : Natural; Parameter : Long_Float);
 
       --  Have thrust stopped, and the drop weight let go.
@@ -73,11 +72,12 @@ package Craft is
    private
       Known       : State;
       In_Force    : Goal;
-      Device      : Request;
+      Asked       : Request;
       Counted     : Counters := (others => 0);
       Ticks       : Natural := 0;
       Emergencies : Natural := 0;
       Reason      : Natural := 0;
+      Began       : Long_Float := Never;
       Beat_Due    : Long_Float := 0.0;
    end Vehicle;
 

@@ -12,6 +12,8 @@ package Plans is
       North, East, Depth : Long_Float := 0.0;
    end record;
 
+   function Away (From, To : Place) return Long_Float;
+
    package Numbers is new Ada.Containers.Vectors (Positive, Positive);
 
    None : constant Numbers.Vector := Numbers.Empty_Vector;
@@ -45,10 +47,20 @@ package Plans is
 
    type Way_Kind is (Ends, Takes, Chooses);
 
+   --  What may go wrong and has to last before it counts.
+   type Event is (LINK_LOST, POSITION_LOST, BATTERY_LOW, WAIT_TOO_LONG, PEER_LOST);
+
+   type Seconds_Of is array (Event) of Long_Float;
+
+   Endless : constant Long_Float := Long_Float'Last;
+
    --  Id in JSON, Name for people. Task_Number: the composed state that the move belongs to; 0: none.
    --  Awaited, Senders: own slots, and other robots that set them, lists in JSON.
    --  Target, Away and Speed of Goes: it ends so many metres before the target. Looks: at Seen, turned by
-   --  Angle degrees. Waits: own slots that must be active. Otherwise: where a choice leads that does not hold.
+   --  Angle degrees. Object: what the target is, its name in JSON, which is no farther than Tolerance from there
+   --  (negative: it may be anywhere); Looks_At_It: it is what is looked at too. Waits: own slots that must be
+   --  active; Longest, Alone: how long that may take, and with nobody left who sets them.
+   --  Otherwise: where a choice leads that does not hold.
    type Move is record
       Kind          : Move_Kind := Starts;
       Id, Name      : Text;
@@ -57,6 +69,9 @@ package Plans is
       Away, Speed   : Long_Float := 0.0;
       Looks         : Boolean := False;
       Angle         : Long_Float := 0.0;
+      Object        : Text;
+      Tolerance     : Long_Float := -1.0;
+      Looks_At_It   : Boolean := False;
       Seconds       : Long_Float := 0.0;
       Before, After : Action_Lists.Vector;
       Way           : Way_Kind := Ends;
@@ -65,18 +80,22 @@ package Plans is
       Waits         : Numbers.Vector;
       Awaited       : Text;
       Senders       : Text;
+      Longest       : Long_Float := Endless;
+      Alone         : Long_Float := 0.0;
    end record;
 
    package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
    package Text_Lists is new Ada.Containers.Vectors (Positive, Text);
 
-   --  Robot, Robots (all of the mission) and Slots in JSON; Log: the name of its file. Step: metres of depth in a step of goals on the
-   --  bus; 0: not known. Reserve: part of the battery that must remain. Alone: no other robot is waited for.
+   --  Robot, Robots (all of the mission) and Slots in JSON; Log: the name of its file. Step: metres of depth in a
+   --  step of goals on the bus; 0: not known. Reserve: part of the battery that must remain. Alone: no other
+   --  robot is waited for. After: seconds that an event lasts before the vehicle comes up.
    type Plan is record
       Robot, Robots : Text;
       Name, Log     : Text;
       Step, Reserve : Long_Float := 0.0;
       Floats, Alone : Boolean := True;
+      After         : Seconds_Of := (others => 0.0);
       Start         : Positive := 1;
       Slots, Tasks  : Text_Lists.Vector;
       Moves         : Move_Lists.Vector;

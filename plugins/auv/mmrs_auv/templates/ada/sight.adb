@@ -1,6 +1,7 @@
 with Ada.Containers.Vectors;
 with Ada.Streams;           use Ada.Streams;
 with Ada.Strings.Fixed;     use Ada.Strings.Fixed;
+with Ada.Strings.Maps;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Clocks;
 with GNAT.Sockets;          use GNAT.Sockets;
@@ -8,23 +9,42 @@ with Undecided;
 
 package body Sight is
 
+   --  Detections count for so many seconds; of each object so many are kept, and so many of all.
    Confidence : constant Long_Float := 0.5;
    Lasting    : constant Long_Float := 10.0;
    Spread     : constant Long_Float := 1.0;
-   Most       : constant := 64;
+   Least      : constant := 2;
+   Kept       : constant := 9;
+   Most       : constant := 1024;
    Longest    : constant := 1024;
 
+   --  Who tells of times that lie farther back has another clock, and is heard again.
+   Repeated : constant Long_Float := 60.0;
+
+   Blank : constant Ada.Strings.Maps.Character_Set := Ada.Strings.Maps.To_Set (" " & ASCII.LF & ASCII.CR);
+
+   Farthest : constant Long_Float := 8388.0;
+   Deepest  : constant Long_Float := 11000.0;
+
    type Detection is record
-      Name               : Unbounded_String;
-      North, East, Depth : Long_Float;
-      Since              : Long_Float;
+      Name, Camera : Unbounded_String;
+      Time         : Long_Float;
+      Where        : Plans.Place;
+      Since        : Long_Float;
    end record;
 
    package Detections is new Ada.Containers.Vectors (Positive, Detection);
    package Names is new Ada.Containers.Vectors (Positive, Unbounded_String);
+   package Reals is new Ada.Containers.Vectors (Positive, Long_Float);
+   package Sorting is new Reals.Generic_Sorting;
+
+   function Median (Of_Numbers : Reals.Vector) return Long_Float;
+   function Middle (Found : Detections.Vector) return Plans.Place;
+   function Agreeing (Found : Detections.Vector; Where : Plans.Place) return Detections.Vector;
 
    protected Memory is
       procedure Keep (Item : Detection);
+      procedure Find (Name : Unbounded_String; Now : Long_Float; Seen : out Boolean; Where : out Plans.Place);
       function Knows (Name : Unbounded_String) return Boolean;
    private
       Latest : Detections.Vector;
@@ -39,28 +59,89 @@ package body Sight is
    Listening : Boolean := False;
    pragma Atomic (Listening);
 
-   function Agrees (Left, Right : Detection) return Boolean;
    function Number_After (Line, Key : String) return Long_Float;
-   function Name_In (Line : String) return String;
+   function Within (Line, Key : String; Low, High : Long_Float) return Long_Float;
+   function Name_After (Line, Key : String) return Unbounded_String;
 
-   function Agrees (Left, Right : Detection) return Boolean is
-     (Left.Name = Right.Name
-      and then abs (Left.Since - Right.Since) <= Lasting
-      and then abs (Left.North - Right.North) <= Spread
-      and then abs (Left.East - Right.East) <= Spread
-      and then abs (Left.Depth - Right.Depth) <= Spread);
+   function Median (Of_Numbers : Reals.Vector) return Long_Float is
+      Sorted : Reals.Vector := Of_Numbers;
+      Half   : constant Natural := Natural (Sorted.Length) / 2;
+   begin
+      Sorting.Sort (Sorted);
+      return
+        (if Natural (Sorted.Length) mod 2 = 1 then Sorted (Half + 1) else (Sorted (Half) + Sorted (Half + 1)) / 2.0);
+   end Median;
+
+   function Middle (Found : Detections.Vector) return Plans.Place is
+      North, East, Depth : Reals.Vector;
+   begin
+      for Each of Found loop
+         North.Append (Each.Where.North);
+         East.Append (Each.Where.East);
+         Depth.Append (Each.Where.Depth);
+      end loop;
+      return (Median (North), Median (East), Median (Depth));
+   end Middle;
+
+   function Agreeing (Found : Detections.Vector; Where : Plans.Place) return Detections.Vector is
+      Near : Detections.Vector;
+   begin
+      for Each of Found loop
+         if Plans.Away (Each.Where, Where) <= Spread then
+            Near.Append (Each);
+         end if;
+      end loop;
+      return Near;
+   end Agreeing;
 
    protected body Memory is
       procedure Keep (Item : Detection) is
+         Oldest, Of_Name : Natural := 0;
+         Is_Seen         : Boolean;
+         Where           : Plans.Place;
       begin
-         if (for some Each of Latest => Agrees (Each, Item)) and then not Seen.Contains (Item.Name) then
-            Seen.Append (Item.Name);
-         end if;
-         if Natural (Latest.Length) >= Most then
+         for Index in 1 .. Natural (Latest.Length) loop
+            if Latest (Index).Name = Item.Name then
+               Oldest := (if Oldest = 0 then Index else Oldest);
+               Of_Name := Of_Name + 1;
+               if Latest (Index).Camera = Item.Camera
+                 and then Item.Time - Latest (Index).Time <= 0.0
+                 and then Item.Time - Latest (Index).Time > -Repeated
+               then
+                  return;
+               end if;
+            end if;
+         end loop;
+         if Of_Name = Kept then
+            Latest.Delete (Oldest);
+         elsif Natural (Latest.Length) = Most then
             Latest.Delete_First;
          end if;
          Latest.Append (Item);
+         Find (Item.Name, Item.Since, Is_Seen, Where);
+         if Is_Seen and then not Seen.Contains (Item.Name) then
+            Seen.Append (Item.Name);
+         end if;
       end Keep;
+
+      procedure Find (Name : Unbounded_String; Now : Long_Float; Seen : out Boolean; Where : out Plans.Place) is
+         Found, Near : Detections.Vector;
+      begin
+         Where := (others => <>);
+         for Each of Latest loop
+            if Each.Name = Name and then Now - Each.Since <= Lasting then
+               Found.Append (Each);
+            end if;
+         end loop;
+         loop
+            Seen := Natural (Found.Length) >= Least;
+            exit when not Seen;
+            Where := Middle (Found);
+            Near := Agreeing (Found, Where);
+            exit when Natural (Near.Length) = Natural (Found.Length);
+            Found := Near;
+         end loop;
+      end Find;
 
       function Knows (Name : Unbounded_String) return Boolean is (Seen.Contains (Name));
    end Memory;
@@ -78,30 +159,46 @@ package body Sight is
       raise Constraint_Error with "no " & Key;
    end Number_After;
 
-   function Name_In (Line : String) return String is
-      Mark  : constant String := """name"": """;
+   function Within (Line, Key : String; Low, High : Long_Float) return Long_Float is
+      Found : constant Long_Float := Number_After (Line, Key);
+   begin
+      if not (Found >= Low and then Found <= High) then
+         raise Constraint_Error with Key;
+      end if;
+      return Found;
+   end Within;
+
+   --  A text, as it stands in JSON.
+   function Name_After (Line, Key : String) return Unbounded_String is
+      Mark  : constant String := """" & Key & """: """;
       Place : constant Natural := Index (Line, Mark);
       First : constant Natural := Place + Mark'Length;
       Last  : Natural := First;
    begin
       while Place > 0 and then Last <= Line'Last loop
          if Line (Last) = '"' then
-            return Line (First - 1 .. Last);
+            return To_Unbounded_String (Line (First - 1 .. Last));
          end if;
          Last := Last + (if Line (Last) = '\' then 2 else 1);
       end loop;
-      raise Constraint_Error with "no name";
-   end Name_In;
+      raise Constraint_Error with "no " & Key;
+   end Name_After;
 
    procedure Take (Line : String; Now : Long_Float) is
+      Text : constant String := Trim (Line, Blank, Blank);
    begin
-      if Number_After (Line, "confidence") >= Confidence then
+      if Text = "" or else Text (Text'Last) /= '}' then
+         return;
+      elsif Within (Line, "confidence", 0.0, 1.0) >= Confidence then
          Memory.Keep
-           ((Name  => To_Unbounded_String (Name_In (Line)),
-             North => Number_After (Line, "north"),
-             East  => Number_After (Line, "east"),
-             Depth => Number_After (Line, "depth"),
-             Since => Now));
+           ((Name   => Name_After (Line, "name"),
+             Camera => Name_After (Line, "camera"),
+             Time   => Within (Line, "time", 0.0, 1.0E12),
+             Where  =>
+               (North => Within (Line, "north", -Farthest, Farthest),
+                East  => Within (Line, "east", -Farthest, Farthest),
+                Depth => Within (Line, "depth", -Farthest, Deepest)),
+             Since  => Now));
       end if;
    exception
       when Constraint_Error =>
@@ -115,6 +212,13 @@ package body Sight is
       Listening := True;
       Listener.Go;
    end Open;
+
+   function Is_Open return Boolean is (Listening);
+
+   procedure Look_For (Name : String; Now : Long_Float; Seen : out Boolean; Where : out Plans.Place) is
+   begin
+      Memory.Find (To_Unbounded_String (Name), Now, Seen, Where);
+   end Look_For;
 
    function Has_Seen (Name : String) return Boolean is
    begin

@@ -1,11 +1,18 @@
 --  What cameras detect, as datagrams on this machine tell.
+with Plans;
+
 package Sight is
 
    --  Begin to hear. Raises GNAT.Sockets.Socket_Error.
    procedure Open (Port : Natural);
 
-   --  Whether an object, its name in JSON, was detected twice at about the same place within a short time.
-   --  Raises Undecided.Not_Decided where nobody listens.
+   function Is_Open return Boolean;
+
+   --  Where an object, its name in JSON, is seen now; Seen: whether it is.
+   --  One detection counts for nothing: two must agree, and all that disagree with the middle are left out.
+   procedure Look_For (Name : String; Now : Long_Float; Seen : out Boolean; Where : out Plans.Place);
+
+   --  Whether an object was ever seen. Raises Undecided.Not_Decided where nobody listens.
    function Has_Seen (Name : String) return Boolean;
 
    --  Take a datagram; what is no detection is passed over.

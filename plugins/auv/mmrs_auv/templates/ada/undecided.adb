@@ -7,7 +7,7 @@ package body Undecided is
    function Is_Below (Known : Craft.State; Part : Long_Float) return Boolean is
    begin
       if Known.Charge < 0.0 then
-         raise Not_Decided with "nobody says how much of the battery is left";
+         raise Not_Known with "nobody says how much of the battery is left";
       end if;
       return Known.Charge < Part;
    end Is_Below;

@@ -66,7 +66,8 @@ package body Wire is
       and then
         (not Of_Message.Guarded
          or else Item.Data (Item.Length - 1)
-                 = Check_Of (Item.Id, Item.Data (0 .. Item.Length - 2))));
+                 = Check_Of (Item.Id, Item.Data (0 .. Item.Length - 2)))
+      and then (for all Each of Of_Message.Fields => Raw (Item, Each) in Each.Lowest .. Each.Highest));
 
    function Packed (Item : Frame) return Unsigned_64 is
       Found : Unsigned_64 := 0;
@@ -86,9 +87,6 @@ package body Wire is
       end if;
       return Long_Long_Integer (Image);
    end Raw;
-
-   function Is_Within (Item : Frame; Where : Field) return Boolean is
-     (Raw (Item, Where) in Where.Lowest .. Where.Highest);
 
    function Value (Item : Frame; Where : Field) return Long_Float is
      (Long_Float (Raw (Item, Where)) * Where.Scale);

@@ -11,12 +11,6 @@ package Wire is
       Data   : Bytes (0 .. 7) := (others => 0);
    end record;
 
-   --  A guarded message ends with a counter and a check over identifier and bytes.
-   type Message is record
-      Id, Length : Natural;
-      Guarded    : Boolean;
-   end record;
-
    --  Value = raw * Scale; raw lies within Lowest .. Highest, values to be sent within Least .. Most.
    type Field is record
       Start, Bits     : Natural;
@@ -24,6 +18,17 @@ package Wire is
       Scale           : Long_Float;
       Lowest, Highest : Long_Long_Integer;
       Least, Most     : Long_Float;
+   end record;
+
+   type Field_List is array (Positive range <>) of Field;
+
+   subtype Field_Count is Natural range 0 .. 8;
+
+   --  A guarded message ends with a counter and a check over identifier and bytes.
+   type Message (Count : Field_Count := 0) is record
+      Id, Length : Natural;
+      Guarded    : Boolean;
+      Fields     : Field_List (1 .. Count);
    end record;
 
    Out_Of_Range : exception;
@@ -38,10 +43,8 @@ package Wire is
    --  Set counter and check.
    procedure Seal (Item : in out Frame; Of_Message : Message; Counter : Unsigned_8);
 
-   --  Whether length and check are right.
+   --  Whether it is such a message, and can be believed: length, check, and what its fields hold.
    function Is_Sound (Item : Frame; Of_Message : Message) return Boolean;
-
-   function Is_Within (Item : Frame; Where : Field) return Boolean;
 
    function Value (Item : Frame; Where : Field) return Long_Float;
 

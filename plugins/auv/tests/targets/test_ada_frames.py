@@ -1,0 +1,133 @@
+"""The interpreter, decision centres in Ada and drives in C say and read the same frames."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from random import Random
+
+import pytest
+from ada_crafts import (
+    MESSAGES,
+    OBJECTS,
+    bits,
+    compiled,
+    happenings,
+    meant,
+    said,
+    some_datagram,
+    some_frame,
+    some_value,
+    told,
+    words_of,
+)
+from c_drives import Script
+from c_drives import compiled as drives
+from c_drives import told as done_by
+from mmrs_auv.testing import heavy_sheet, pool_sheet, torpedo_sheet
+from mmrs_auv.vessel.eyes import Detections
+from mmrs_auv.vessel.wire.catalogue import REASONS
+from mmrs_auv.vessel.wire.codec import Codec
+from mmrs_auv.vessel.wire.frame import Frame
+from vessel_sheets import sheet
+
+COUNTS = [300, pytest.param(5000, marks=pytest.mark.thorough)]
+SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(1, 12))]
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    if shutil.which("gnatmake") is None:
+        message = "gnatmake is not installed: compiles decision centres in Ada"
+        pytest.fail(message) if os.environ.get("MMRS_REQUIRE_PEERS") == "1" else pytest.skip(message)
+    return compiled(tmp_path_factory.mktemp("craft"))
+
+
+def differing(program, lines, expected):
+    """Return what the program does otherwise: line, its answer, what is wanted."""
+    answers = told(program, lines)
+    return [each for each in zip(lines, answers, expected, strict=True) if each[1] != each[2]]
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_values_become_the_same_bytes_or_are_refused_alike(program, count):
+    random, codec = Random(count), Codec(sheet())
+    lines, expected = [], []
+    for number, message in enumerate(MESSAGES):
+        counter = 0
+        for _ in range(count):
+            values = [some_value(part, random) for part in message.fields]
+            frame = said(codec, message, values)
+            lines.append(f"e {number} {counter} {' '.join(map(bits, values))}")
+            expected.append("refused" if frame is None else words_of([frame]))
+            counter = (counter + (frame is not None)) % 256
+    assert differing(program, lines, expected) == []
+    assert 0.02 < expected.count("refused") / len(expected) < 0.4
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_bytes_mean_the_same_or_nothing(program, count):
+    random, codec = Random(count), Codec(sheet())
+    lines, expected = [], []
+    for number, message in enumerate(MESSAGES):
+        for _ in range(count):
+            frame = some_frame(codec, message, random)
+            lines.append(f"d {number} {frame.id} {frame.data.hex()}")
+            expected.append(meant(codec, message, frame) if frame.id == message.id else "none")
+    assert differing(program, lines, expected) == []
+    assert 0.2 < expected.count("none") / len(expected) < 0.8
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("make", [pool_sheet, torpedo_sheet, heavy_sheet, sheet])
+def test_what_is_said_and_known_is_the_same_whatever_happens(program, make, seed):
+    vehicle = make()
+    assert list(happenings(vehicle, seed, 300).differences(program)) == []
+
+
+@pytest.mark.parametrize("deepest", [0.5, 655.35, 655.36, 1311.0, 6000.0, 8388.607])
+def test_depths_are_written_in_the_steps_of_each_vehicle(program, deepest):
+    assert list(happenings(sheet(max_depth=deepest), 3, 60).differences(program)) == []
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_objects_are_seen_at_the_same_places(program, count):
+    now, random = [0.0], Random(count)
+    lines, expected = [], []
+    with Detections(clock=lambda: now[0]) as eyes:
+        for number in range(count):
+            now[0] += random.choice([0.0, 0.1, 0.5, 3.0])
+            data = some_datagram(random, number * 0.1)
+            eyes.take(data)
+            lines.append(f"n {bits(now[0])} {data.decode().rstrip()}")
+            expected.append("")
+            for name in OBJECTS:
+                found = eyes.place(name)
+                lines.append(f"w {bits(now[0])} {json.dumps(name)}")
+                expected.append("none" if found is None else " ".join(map(bits, found)))
+    assert differing(program, lines, expected) == []
+    assert 0.2 < expected.count("none") / len(expected) < 0.6
+
+
+@pytest.mark.parametrize("release", [True, False])
+def test_drives_in_c_stop_by_what_a_decision_centre_in_ada_says(program, release, tmp_path):
+    """Each emergency as it is written, and with one bit turned in each byte."""
+    (number,) = (index for index, each in enumerate(MESSAGES) if each.name == "Emergency")
+    stop = drives(sheet(1), tmp_path)
+    reasons = [bits(float(reason)) for reason in range(len(REASONS))]
+    lines = [f"e {number} 255 {reason} {bits(float(release))}" for reason in reasons]
+    for answer in told(program, lines):
+        id, data = answer.split()
+        sound = Frame(int(id), bytes.fromhex(data))
+        for place in [None, *range(len(sound.data))]:
+            script = Script()
+            script.hear(0, sound if place is None else _turned(sound, place))
+            ((*happened, _),) = done_by(stop, script)
+            assert happened == (["r"] if release and place is None else [])
+
+
+def _turned(frame: Frame, place: int) -> Frame:
+    data = bytearray(frame.data)
+    data[place] ^= 1
+    return Frame(frame.id, bytes(data))
