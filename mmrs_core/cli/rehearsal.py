@@ -5,16 +5,16 @@ from __future__ import annotations
 import queue
 import signal
 import sys
-import threading
 import time
 from collections.abc import Sequence
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from types import FrameType
 
 import typer
 
 from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import InternalError
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.faults import ENDS, FAULTS, Faults
@@ -60,7 +60,7 @@ class Rehearsal:
             quiet: whether to leave the summary away.
         """
         host = Host([vehicle for _, vehicle in self._vehicles])
-        lines = _typed_lines()
+        lines = typed_lines()
         before = {number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)}
         host.start()
         try:
@@ -152,19 +152,3 @@ def _try_out(fault: Planned, vehicle: SimulatedVehicle) -> None:
     like = Autopilot(vehicle.autopilot.settings)
     watched = len(vehicle.radios) > 1
     Faults(like, nullcontext(), watched=watched).begin(fault.name, *fault.values)
-
-
-def _typed_lines() -> queue.SimpleQueue[str]:
-    """Return what is typed, line by line, as it comes; nothing where nobody can type."""
-    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
-
-    def read() -> None:
-        with suppress(OSError):  # in the background of a terminal nobody can type
-            for line in sys.stdin:
-                lines.put(line)
-
-    if hasattr(signal, "SIGTTIN"):
-        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
-    if sys.stdin is not None and not sys.stdin.closed:
-        threading.Thread(target=read, name="typed lines", daemon=True).start()
-    return lines

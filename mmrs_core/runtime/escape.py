@@ -47,6 +47,14 @@ class Escapes:
         except UnreachableError:
             return self._down((here,)) if self._kinematics.launches else (here,)
 
+    def way(self, here: Position, goal: Position) -> tuple[Position, ...]:
+        """Return the way to a place that keeps from forbidden areas and obstacles.
+
+        Raises:
+            UnreachableError: there is none; says why.
+        """
+        return (here,) if here == goal else self._space.route(here, goal)
+
     def _goal(self, response: str, here: Position) -> Position | None:
         """Return the place to go to, at the robot's height; None where it goes nowhere else."""
         if response == "RETURN":

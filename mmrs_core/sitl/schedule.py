@@ -109,21 +109,32 @@ def order(text: str, vehicles: Sequence[tuple[str, SimulatedVehicle]]) -> tuple[
     Raises:
         ValueError: it does not say so, or there is no such robot or fault.
     """
-    names = [name for name, _ in vehicles]
+    wanted, what, values = addressed(text, [name for name, _ in vehicles])
+    for _, vehicle in [each for each in vehicles if each[0] in wanted]:
+        if what == "mend" and len(values) == 1:
+            vehicle.faults.end(values[0])
+        else:
+            vehicle.faults.begin(what, *values)
+    return wanted
+
+
+def addressed(text: str, names: Sequence[str]) -> tuple[tuple[str, ...], str, tuple[str, ...]]:
+    """Return whom a line concerns, and its other words: ``ROBOT WORD [WORD…]``, or ``all`` for every robot.
+
+    Args:
+        text: of the line.
+        names: of the robots there are.
+
+    Raises:
+        ValueError: it names no robot, or says nothing of it.
+    """
     robot = _named_first(text, [*names, EVERYBODY])
     words = text.split() if robot is None else [robot, *text.strip().removeprefix(robot).split()]
     if len(words) < 2:
         raise ValueError(f"{text.strip()}: is neither ROBOT FAULT [VALUE…] nor ROBOT mend FAULT")
     if robot is None:
         raise ValueError(f"{words[0]}: no such robot; there are {', '.join(names)}, and all")
-    what, *values = words[1:]
-    wanted = [(name, vehicle) for name, vehicle in vehicles if robot in (name, EVERYBODY)]
-    for _, vehicle in wanted:
-        if what == "mend" and len(values) == 1:
-            vehicle.faults.end(values[0])
-        else:
-            vehicle.faults.begin(what, *values)
-    return tuple(name for name, _ in wanted)
+    return tuple(name for name in names if robot in (name, EVERYBODY)), words[1], tuple(words[2:])
 
 
 def _named_first(text: str, names: Sequence[str]) -> str | None:

@@ -5,16 +5,22 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from queue import SimpleQueue
 from types import TracebackType
 
+from mmrs_auv.vessel.body.befalling import befalling
 from mmrs_auv.vessel.body.surroundings import Surroundings
 from mmrs_auv.vessel.body.surroundings import to_json as surroundings_json
 from mmrs_auv.vessel.sheet import Sheet, to_json
+from mmrs_auv.vessel.wire.hub import Troubles
 from mmrs_core.errors import LinkLostError
+from mmrs_core.sitl.schedule import EVERYBODY, addressed
 
 PARTS = ("vehicle", "sensors", "actuators", "movement")
+QUIT = frozenset({"quit", "exit"})
 HUB_SECONDS, END_SECONDS = 30.0, 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
 
@@ -59,7 +65,7 @@ class Berth:
             self.channel = f"can0@127.0.0.1:{self._hub(port)}"
             for part in PARTS[1:]:
                 self._start(part)
-            own = ("--surroundings", str(around), "--seed", str(seed), "--speedup", str(speedup))
+            own = ("--surroundings", str(around), "--seed", str(seed), "--speedup", str(speedup), "--faults")
             self._start("vehicle", *own)
         except BaseException:
             self.close()
@@ -83,6 +89,30 @@ class Berth:
         """Return the system's number of each process, by part."""
         return {part: process.pid for part, process in self._processes.items()}
 
+    def befall(self, words: Sequence[str]) -> None:
+        """Let a fault befall the vehicle or its bus, or end one.
+
+        Args:
+            words: as `befalling` takes them; or ``cut``, ``loss PART``, ``delay SECONDS`` and ``corruption
+                PART`` of the bus, which ``mend bus`` ends; or ``status``, which the vehicle answers.
+
+        Raises:
+            ValueError: there is no such fault.
+        """
+        match words:
+            case ["cut"]:
+                self._tell("hub", "cut")
+            case ["mend", "bus"]:
+                self._tell("hub", "mend")
+            case ["loss" | "delay" | "corruption", amount]:
+                Troubles(**{words[0]: float(amount)})
+                self._tell("hub", " ".join(words))
+            case ["status"]:
+                self._tell("vehicle", "status")
+            case _:
+                befalling(self._sheet, words)
+                self._tell("vehicle", " ".join(words))
+
     def close(self) -> None:
         """End all of it; the hub last."""
         for part in (*PARTS, "hub"):
@@ -95,8 +125,15 @@ class Berth:
                 process.kill()
                 process.communicate()
 
+    def _tell(self, part: str, line: str) -> None:
+        stdin = self._processes[part].stdin
+        assert stdin is not None
+        with suppress(BrokenPipeError):  # that it has ended is told anyway
+            stdin.write(f"{line}\n")
+            stdin.flush()
+
     def _hub(self, port: int) -> str:
-        words = [sys.executable, "-m", "mmrs_core", "can", "hub", "--port", str(port)]
+        words = [sys.executable, "-m", "mmrs_core", "can", "hub", "--simulated-time", "--port", str(port)]
         hub = self._processes["hub"] = subprocess.Popen(
             words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
@@ -110,16 +147,24 @@ class Berth:
     def _start(self, part: str, *more: str) -> None:
         words = [sys.executable, "-m", "mmrs_auv.vessel", part, "--sheet", str(self._file)]
         words += ["--channel", self.channel, "--clock", "bus", *more]
-        self._processes[part] = subprocess.Popen(words, stdin=subprocess.DEVNULL, text=True)
+        self._processes[part] = subprocess.Popen(words, stdin=subprocess.PIPE, text=True)
 
 
-def keep(berths: Mapping[str, Berth], until: float, stopped: list[int]) -> None:
-    """Return when the time has come, or something was put into `stopped`.
+def keep(
+    berths: Mapping[str, Berth],
+    until: float,
+    stopped: list[int],
+    lines: SimpleQueue[str],
+    say: Callable[[str], None],
+) -> None:
+    """Return when the time has come, something was put into `stopped`, or a line says ``quit``.
 
     Args:
         berths: by robot.
         until: by the monotonic clock.
         stopped: filled by whoever wants an end.
+        lines: that are typed: ``ROBOT FAULT``, ``all FAULT``, ``ROBOT mend FAULT``, ``status``.
+        say: is told what comes of them.
 
     Raises:
         LinkLostError: a part has ended by itself.
@@ -129,4 +174,22 @@ def keep(berths: Mapping[str, Berth], until: float, stopped: list[int]) -> None:
             for part, code in berth.ended().items():
                 if not stopped:
                     raise LinkLostError(f"'{robot}': {part} has ended with {code}")
+        while not lines.empty():
+            if (line := lines.get().strip()) in QUIT:
+                return
+            _obey(line, berths, say)
         time.sleep(0.1)
+
+
+def _obey(line: str, berths: Mapping[str, Berth], say: Callable[[str], None]) -> None:
+    if line in ("", "status"):
+        line = f"{EVERYBODY} status"
+    try:
+        robots, what, values = addressed(line, list(berths))
+        for robot in robots:
+            berths[robot].befall((what, *values))
+    except ValueError as error:
+        say(str(error))
+        return
+    if what != "status":
+        say(f"{', '.join(robots)}: {' '.join((what, *values))}")

@@ -8,13 +8,14 @@ from collections.abc import Callable, Mapping
 from math import hypot
 
 from mmrs_auv.backend.duties_of import Duties, Waters
+from mmrs_auv.backend.injected import ClosablePort, Faults, faults_of, injected
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.vessel.api import Connection
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.sheet import Sheet, Vector
-from mmrs_auv.vessel.wire.ports import CHANNEL, Port, open_port
+from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
@@ -71,7 +72,7 @@ class ConnectedRobot(CanRobot):
         self,
         given: BackendInput,
         sheet: Sheet,
-        reached: tuple[Port, Connection],
+        reached: tuple[ClosablePort, Connection, Faults | None],
         duties: Duties,
         keeper: Keeper,
         options: Connecting,
@@ -79,8 +80,10 @@ class ConnectedRobot(CanRobot):
         eyes: Detections | None,
     ) -> None:
         """Say nothing but that nothing is to move, until the robot is to get ready."""
-        self._port, self._connection = reached
+        self._port, self._connection, self._faults = reached
         super().__init__(given, sheet, self._connection.craft, duties, keeper, clearance=options.clearance)
+        if self._faults is not None:
+            self._faults.rehearsal.record(given.robot.id, self._injected)
         self._kept, self._options, self._clock, self._eyes = keeper, options, clock, eyes
         self._until = float("inf")
         self._met = False
@@ -114,7 +117,12 @@ class ConnectedRobot(CanRobot):
         self._port.close()
         if self._eyes is not None:
             self._eyes.close()
+        if self._faults is not None:
+            self._faults.let_go(self._given.robot.id)
         self._kept.close()
+
+    def _injected(self, text: str, content: Mapping[str, object]) -> None:
+        self._keeper.note("injected", {"fault": text, **content})
 
     def _unmet(self, now: float) -> Fault | None:
         """Return why the vehicle does not get ready, if it does not."""
@@ -163,16 +171,18 @@ def connected(given: BackendInput, live: Live) -> ConnectedRobot:
     eyes = _eyes(given, options)
     sight = None if eyes is None or options.objects == "expected" else eyes.place
     duties = Duties(given, sheet, Waters(surface), sight)
+    faults = faults_of(given, live, options.inject)
     logging.getLogger("can").setLevel(logging.ERROR)
     channel = live.links.get(given.robot.id, "") or options.channel or CHANNEL
     try:
         port = open_port(options.interface, channel, bit_rate=options.bit_rate or None)
     except OSError as error:
         raise LinkLostError(f"robot '{given.robot.id}': {channel}: {error}") from error
+    reached: ClosablePort = port if faults is None else injected(port, faults, given.robot.id)
     paced = options.clock or ("bus" if clock.speedup != 1.0 else "real")
-    connection = Connection(sheet, port, "bus" if paced == "bus" else "real")
+    connection = Connection(sheet, reached, "bus" if paced == "bus" else "real")
     return ConnectedRobot(
-        given, sheet, (port, connection), duties, _keeper(given, live, clock), options, clock, eyes
+        given, sheet, (reached, connection, faults), duties, _keeper(given, live, clock), options, clock, eyes
     )
 
 

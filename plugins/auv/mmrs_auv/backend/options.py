@@ -57,6 +57,7 @@ class Connecting:
         detections: UDP port on which what cameras detect is told; 0: none.
         clearance: metres ahead within which sonar must see nothing; 0: it may.
         home_tolerance: metres that a vehicle may be from its home at first.
+        inject: faults to be made on purpose.
     """
 
     interface: str = "socketcand"
@@ -68,6 +69,7 @@ class Connecting:
     detections: int = 0
     clearance: float = 0.0
     home_tolerance: float = field(default=20.0)
+    inject: str = ""
 
 
 def rehearsing(given: Mapping[str, str]) -> Rehearsing:
@@ -170,4 +172,5 @@ _VALUES: Mapping[str, Callable[[str], object]] = {
     "bit-rate": _whole,
     "clock": _one_of("real", "bus"),
     "detections": _whole,
+    "inject": str,
 }

@@ -16,12 +16,14 @@ from mmrs_core.behaviour.policies import AFTER, patience, response_to
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
 from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.errors import UnreachableError
 from mmrs_core.flight.policies import NOTHING
 from mmrs_core.runtime.escape import Escapes
 from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
+NO_WAY = "no way is known back to where its program was broken off"
 EMPTY = 0.001
 """Part of the battery with which nothing works any more."""
 
@@ -177,18 +179,27 @@ class CanRobot:
         return self._craft.state().age < 1.0
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
-        """Go straight back to where the last of the moves ended."""
+        """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
         self._response = ""
-        place = self._ended_at(passed)
         self._helm.watch = self._watch
-        self._helm.begin(self._duties.way((self._here(), place)), now)
+        try:
+            duty: Duty = self._duties.way(self._way_back(passed))
+        except UnreachableError as error:
+            duty = _Refuse(f"{NO_WAY}: {error}")
+        self._helm.begin(duty, now)
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why it cannot go on."""
         state = self._craft.state()
         if state.silent > SILENT:
             return "its vehicle is not heard"
-        return f"its dive was given up: {state.emergency}" if state.emergency is not None else ""
+        if state.emergency is not None:
+            return f"its dive was given up: {state.emergency}"
+        try:
+            self._way_back(passed)
+        except UnreachableError as error:
+            return f"{NO_WAY}: {error}"
+        return ""
 
     def moves(self, now: float) -> bool:
         """Return whether the vehicle may move by thrust at any moment."""
@@ -278,6 +289,9 @@ class CanRobot:
         state = self._craft.state()
         return state.age < 60.0 and state.depth < self._afloat + 0.15
 
+    def _way_back(self, passed: Sequence[str]) -> tuple[Position, ...]:
+        return self._escapes.way(self._here(), self._ended_at(passed))
+
     def _ended_at(self, passed: Sequence[str]) -> Position:
         moves = {move.id: move for move in self._given.robot.moves}
         place = self._given.robot.home or self._place
@@ -293,6 +307,17 @@ class _Idle:
 
     def done(self, craft: Craft, now: float) -> bool:
         return True
+
+
+class _Refuse:
+    def __init__(self, why: str) -> None:
+        self._why = why
+
+    def begin(self, craft: Craft, now: float) -> None:
+        raise FailureError("REFUSED", self._why)
+
+    def done(self, craft: Craft, now: float) -> bool:
+        return False
 
 
 class _Then:

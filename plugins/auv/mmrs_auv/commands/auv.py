@@ -16,7 +16,8 @@ import typer
 from typer.main import get_command
 
 from mmrs_core.behaviour.log import SUFFIX, log_name
-from mmrs_core.cli.output import say
+from mmrs_core.cli.output import say, tell
+from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
 
 FIRST_PORT = 29_600
@@ -58,7 +59,9 @@ def sitl(
 ) -> int:
     """Start a simulated body and a control layer for each vehicle of a mission, each on a bus of its own.
 
-    It prints the arguments with which mmrs run reaches them.
+    It prints the arguments with which mmrs run reaches them. Lines that are typed make faults at once, such
+    as 'Thetis leak', 'Thetis mend leak', 'all thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery
+    0.2', 'Thetis cut' (its bus) and 'Thetis mend bus'; 'status' tells how they are, 'quit' ends.
 
     Example: mmrs auv sitl examples/pool-course --speedup 2
     """
@@ -102,7 +105,7 @@ def sitl(
             words += ["--connect", f"{robot}={berth.channel}"]
         words += ["--speedup", f"{speedup:g}"] if speedup != 1.0 else []
         say(" ".join(map(quote, words)))
-        keep(berths, time.monotonic() + (seconds or inf), stopped)
+        keep(berths, time.monotonic() + (seconds or inf), stopped, typed_lines(), tell)
     return 0
 
 

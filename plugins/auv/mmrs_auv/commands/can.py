@@ -97,6 +97,10 @@ def hub(
     log: Annotated[
         Path | None, typer.Option("--log", metavar="FILE", help="Write all frames there, as candump does.")
     ] = None,
+    simulated: Annotated[
+        bool,
+        typer.Option("--simulated-time", help="Let frames that tell simulated time pass in any case."),
+    ] = False,
     seconds: Seconds = 0.0,
 ) -> int:
     """Be a bus for several processes of this machine, by the socketcand protocol.
@@ -108,13 +112,16 @@ def hub(
     Example: mmrs can hub --loss 0.05 --log bus.log
     """
     from mmrs_auv.commands.hubbing import run_hub
+    from mmrs_auv.vessel.hosting import tells_time
     from mmrs_auv.vessel.wire.hub import Troubles, is_loopback
 
     tell("no arbitration, no bit rate, no acknowledgement, no error frames, no bus-off (--help says more)")
     if not is_loopback(host):
         tell(f"whoever reaches {host} can say anything on this bus: nobody is asked who they are")
     with _opened(log) as file:
-        done = run_hub(host, port, Troubles(loss, delay, corruption), seed, file, seconds, say)
+        troubles = Troubles(loss, delay, corruption)
+        spared = tells_time if simulated else lambda frame: False
+        done = run_hub(host, port, troubles, seed, file, seconds, say, spared)
     counted = ", ".join(
         f"{done.counts[each]} {each}" for each in _COUNTED if done.counts[each] or each == "frames"
     )

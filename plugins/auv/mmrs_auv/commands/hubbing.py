@@ -26,17 +26,19 @@ def run_hub(
     log: TextIO | None,
     seconds: float,
     say: Callable[[str], None],
+    spared: Callable[[Frame], bool] = lambda frame: False,
 ) -> Hub:
     """Run a hub; return it when it has ended.
 
     Args:
         seconds: after which it ends by itself; 0: when it is told to, or interrupted.
         say: is told where it listens, and what comes of lines that are typed.
+        spared: which frames have no troubles.
 
     Raises:
         LinkLostError: it cannot listen there.
     """
-    hub = Hub(troubles, seed, _logging(log, say))
+    hub = Hub(troubles, seed, _logging(log, say), spared)
     asyncio.run(_run(hub, host, port, troubles, seconds, say))
     return hub
 

@@ -17,6 +17,7 @@ import pytest
 from can_hub import Raw, eventually, running
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mmrs_auv.vessel.hosting import tells_time
 from mmrs_auv.vessel.wire import hub as hubs
 from mmrs_auv.vessel.wire.frame import Frame
 from mmrs_auv.vessel.wire.hub import Hub, Troubles, corrupted, is_loopback, log_line
@@ -296,6 +297,14 @@ def test_loss_takes_its_part_and_the_same_seed_the_same_frames() -> None:
     assert 600 <= len(words) <= 800
     assert words == heard_with(Troubles(loss=0.3), 1000)
     assert words != heard_with(Troubles(loss=0.3), 1000, seed=2)
+
+
+def test_what_is_spared_passes_whatever_becomes_of_the_rest() -> None:
+    troubles = Troubles(loss=1.0, delay=60.0)
+    with running(Hub(troubles, spared=tells_time)) as hub, Raw(hub.port) as first, Raw(hub.port) as second:
+        for said in ("100 0", "001 0", "18FF0004 0"):
+            first.say(f"< send {said} >")
+        assert [second.word().split()[2] for _ in range(2)] == ["001", "18FF0004"]
 
 
 def test_corruption_makes_its_part_wrong() -> None:

@@ -64,12 +64,18 @@ class Hub:
             (clients), ``clients``.
     """
 
-    def __init__(self, troubles: Troubles | None = None, seed: int = 0, log: Log | None = None) -> None:
-        """Prepare; nothing listens yet."""
+    def __init__(
+        self,
+        troubles: Troubles | None = None,
+        seed: int = 0,
+        log: Log | None = None,
+        spared: Callable[[Frame], bool] = lambda frame: False,
+    ) -> None:
+        """Prepare; nothing listens yet. Frames that are `spared` pass at once, whatever the troubles."""
         self.troubles = troubles or Troubles()
         self.counts: Counter[str] = Counter()
         self._random = Random(seed)
-        self._log = log
+        self._log, self._spared = log, spared
         self._clients: set[_Client] = set()
         self._delayed: deque[tuple[float, _Client, str, Frame]] = deque()
         self._server: asyncio.Server | None = None
@@ -115,6 +121,9 @@ class Hub:
     def take(self, sender: _Client, frame: Frame) -> None:
         """Pass a frame on to the others on the sender's channel, with its troubles."""
         self.counts["frames"] += 1
+        if self._spared(frame):
+            self._deliver(sender, sender.channel, frame)
+            return
         if self._random.random() < self.troubles.loss:
             self.counts["lost"] += 1
             return

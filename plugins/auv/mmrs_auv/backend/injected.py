@@ -1,0 +1,128 @@
+"""Faults that are made on purpose on the way between a decision centre and its vehicle's bus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from mmrs_auv.vessel.hosting import Port, tells_time
+from mmrs_auv.vessel.wire import ports
+from mmrs_auv.vessel.wire.frame import Frame
+from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.errors import UsageError
+from mmrs_core.flight.injection import Rehearsal, injections
+from mmrs_core.flight.injection.port import Line
+from mmrs_core.flight.injection.spec import OF_STATIONS, OF_VEHICLE
+from mmrs_core.flight.links.ports import NOTHING, Address, Received
+from mmrs_core.flight.links.ports import Port as Carrier
+from mmrs_core.mavlink.backend.connection import FollowingClock
+
+SHARED = "faults made on purpose on CAN buses"
+EXTENDED, LONG, SHORT = 1 << 31, (1 << 29) - 1, (1 << 11) - 1
+
+
+@dataclass(slots=True)
+class Faults:
+    """The faults of all robots of a run; `users` are those that still have any."""
+
+    rehearsal: Rehearsal
+    users: set[str] = field(default_factory=set)
+
+    def let_go(self, robot: str) -> None:
+        """End what concerns a robot, and everything with the last one."""
+        self.rehearsal.forget(robot)
+        self.users.discard(robot)
+        if not self.users:
+            self.rehearsal.close()
+
+
+class FrameLine(Line):
+    """One direction of a bus, which frames that tell simulated time pass whatever befalls others."""
+
+    def passing(self, piece: bytes) -> list[tuple[float, bytes]]:
+        """Return what arrives of a frame."""
+        if tells_time(frame_of(piece)):
+            return [(self._clock.now(), piece)]
+        return super().passing(piece)
+
+
+class _Pieces:
+    """A bus whose frames are pieces of bytes."""
+
+    def __init__(self, port: ports.Port) -> None:
+        self._port = port
+
+    def read(self, seconds: float) -> Received:
+        frame = self._port.receive(seconds)
+        return NOTHING if frame is None else Received(piece_of(frame))
+
+    def write(self, data: bytes, to: Address | None = None) -> None:
+        self._port.send(frame_of(data))
+
+    def close(self) -> None:
+        self._port.close()
+
+
+class _Frames:
+    """Pieces of bytes as frames again."""
+
+    def __init__(self, carrier: Carrier) -> None:
+        self._carrier = carrier
+
+    def send(self, frame: Frame) -> None:
+        self._carrier.write(piece_of(frame))
+
+    def receive(self, timeout: float) -> Frame | None:
+        data = self._carrier.read(timeout).data
+        return frame_of(data) if data else None
+
+    def close(self) -> None:
+        self._carrier.close()
+
+
+class ClosablePort(Port, Protocol):
+    """A connection to a bus that can be closed."""
+
+    def close(self) -> None:
+        """Close it."""
+        ...
+
+
+def faults_of(given: BackendInput, live: Live, text: str) -> Faults | None:
+    """Return the faults of a run, begun; None if none are asked for.
+
+    Raises:
+        UsageError: one is none, or concerns what no vehicle on a bus has.
+    """
+    found = live.shared.get(SHARED)
+    if isinstance(found, Faults) or not text:
+        return found if isinstance(found, Faults) else None
+    buses = {robot.id: live.links.get(robot.id, robot.id) for robot in given.program.robots}
+    try:
+        asked = injections([text], buses)
+    except ValueError as error:
+        raise UsageError(f"option 'inject': {error}") from error
+    for fault in asked.faults:
+        if fault.name in (*OF_VEHICLE, *OF_STATIONS):
+            raise UsageError(f"option 'inject': {fault.text}: is for vehicles that speak MAVLink")
+    made = live.shared[SHARED] = Faults(Rehearsal(asked, FollowingClock(live.clock), live.announce))
+    made.rehearsal.start()
+    return made
+
+
+def injected(port: ports.Port, faults: Faults, robot: str) -> ClosablePort:
+    """Return a connection with the faults of a robot's bus in front of it."""
+    faults.users.add(robot)
+    return _Frames(faults.rehearsal.wrap(_Pieces(port), (robot,), FrameLine))
+
+
+def piece_of(frame: Frame) -> bytes:
+    """Return a frame as bytes: its identifier, low byte first, then its data."""
+    return (frame.id | (EXTENDED if frame.extended else 0)).to_bytes(4, "little") + frame.data
+
+
+def frame_of(piece: bytes) -> Frame:
+    """Return the frame that bytes are, whichever of their bits are wrong."""
+    id = int.from_bytes(piece[:4], "little")
+    extended = bool(id & EXTENDED)
+    return Frame(id & (LONG if extended else SHORT), piece[4:], extended)

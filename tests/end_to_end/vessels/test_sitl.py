@@ -1,0 +1,102 @@
+"""Simulated vehicles to which happens what is typed."""
+
+from __future__ import annotations
+
+import queue
+import socket
+import subprocess
+import sys
+import threading
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from mmrs_auv.commands.modelled import sheets_in
+from mmrs_auv.vessel.wire.ports import open_port
+from vessel_processes import Ear, until
+
+pytestmark = pytest.mark.xdist_group("vessels in real time")
+
+POOL = Path(__file__).parents[3] / "examples" / "pool"
+
+
+class Sitl:
+    """The command, with what it says on standard error line by line."""
+
+    def __init__(self, port: int) -> None:
+        words = [sys.executable, "-m", "mmrs_core", "auv", "sitl", str(POOL), "--port", str(port)]
+        self.process = subprocess.Popen(
+            [*words, "--speedup", "5"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            text=True, bufsize=1,
+        )  # fmt: skip
+        self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        for line in self.process.stderr:
+            self._told.put(line)
+
+    def quit(self) -> int:
+        """End it as people do; return its exit code."""
+        assert self.process.stdin is not None
+        self.process.stdin.write("quit\n")
+        return self.process.wait(30)
+
+    def close(self) -> None:
+        self.process.terminate()
+        self.process.wait(30)
+        self._reader.join(30)
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            assert stream is not None
+            stream.close()
+
+    def first_line(self) -> str:
+        assert self.process.stdout is not None
+        return self.process.stdout.readline()
+
+    def type(self, line: str, told: str) -> None:
+        """Type a line; return when that is told."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{line}\n")
+        while told not in self._told.get(timeout=30):
+            continue
+
+
+@pytest.fixture
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def test_what_is_typed_happens(free_port):
+    address = f"can0@127.0.0.1:{free_port}"
+    with closing(Sitl(free_port)) as sitl:
+        assert f"Naiad={address}" in sitl.first_line()
+        with open_port("socketcand", address) as port:
+            ear = Ear(sheets_in(POOL)["Naiad"], port)
+            sitl.type("Nobody leak", "Nobody: no such robot; there are Naiad, and all\n")
+            sitl.type("Naiad flood", "flood: no such fault; there are thruster-dead")
+            sitl.type("Naiad loss 2", "loss 2.0 is not 0 to 1\n")
+            sitl.type("all thruster-dead 0", "Naiad: thruster-dead 0\n")
+            assert until(lambda: "FAULT" in drives(ear), 20)
+            sitl.type("status", "; thruster T1 dead\n")
+            sitl.type("Naiad mend thruster-dead T1", "Naiad: mend thruster-dead T1\n")
+            sitl.type("Naiad leak", "Naiad: leak\n")
+            assert until(lambda: "LEAK" in reasons(ear), 20)
+            sitl.type("Naiad cut", "Naiad: cut\n")
+            cut = len(ear.heard) + 20
+            assert not until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 0.5)
+            sitl.type("Naiad mend bus", "Naiad: mend bus\n")
+            assert until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
+        assert sitl.quit() == 0
+
+
+def drives(ear: Ear) -> set[object]:
+    return {said.values["Drive"] for _, said in ear.said("Thruster0Status")}
+
+
+def reasons(ear: Ear) -> set[object]:
+    return {said.values["Reason"] for _, said in ear.said("Emergency")}
