@@ -14,6 +14,7 @@ from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import action_losses
 from mmrs_core.mavlink.capabilities import OF_CONTROLLERS
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless, require_home
+from mmrs_core.mavlink.earth import at_a_pole
 from mmrs_core.mavlink.fencing import fence_faults
 from mmrs_core.mavlink.movements import losses_of
 from mmrs_core.mavlink.program import deciding, robot_view, seeking, trace_of
@@ -87,6 +88,7 @@ def fleet_files(program: Program, modules: Sequence[str]) -> Iterator[FileSpec]:
 
 def refusals(input: TargetInput) -> Iterator[str]:
     """Yield what no controller can do."""
+    yield from at_a_pole(input.program.frame)
     for robot in input.program.robots:
         yield from _refused(robot, input)
 

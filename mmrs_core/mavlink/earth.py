@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 WGS84 = "EPSG:4326"
 DECIMALS = 7
+FARTHEST = 89.0
+"""Latitude, north or south, up to which a straight leg is one in degrees, too: to a metre in a kilometre."""
 
 
 def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, float], ...]:
@@ -35,6 +37,12 @@ def degrees_of(points: Sequence[Point], frame: Frame) -> tuple[tuple[float, floa
     longitudes, latitudes = _to_wgs84(frame.crs).transform(own[:, 1], own[:, 0])
     pairs = zip(latitudes.tolist(), longitudes.tolist(), strict=True)
     return tuple((round(latitude, DECIMALS), round(longitude, DECIMALS)) for latitude, longitude in pairs)
+
+
+def at_a_pole(frame: Frame) -> Iterator[str]:
+    """Yield that a behaviour is where degrees do not lead vehicles straight to a place."""
+    if frame.latitude is not None and abs(frame.latitude) > FARTHEST:
+        yield "behaviour: is within a degree of a pole, where vehicles that steer by degrees go astray"
 
 
 def metres(value: float) -> float:

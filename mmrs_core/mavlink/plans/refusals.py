@@ -10,7 +10,7 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Sampled, Unwired
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext, context_of, homeless
-from mmrs_core.mavlink.earth import sea_level_of
+from mmrs_core.mavlink.earth import at_a_pole, sea_level_of
 from mmrs_core.mavlink.movements import losses_of, mount_of, objects_of, on_gimbal
 from mmrs_core.mavlink.plans.diving import above_water
 from mmrs_core.mavlink.plans.flight import flown
@@ -24,6 +24,7 @@ def refusals(input: TargetInput) -> Iterator[str]:
     """Yield each thing that plans cannot express, with robot and move."""
     if input.program.frame.is_local:
         yield "behaviour: is local, its origin has no latitude and longitude"
+    yield from at_a_pole(input.program.frame)
     for robot in input.program.robots:
         yield from _of_robot(robot, input)
         yield from above_water(robot, input)

@@ -7,10 +7,21 @@ import pytest
 from mmrs_core.analysis.corners import RADIUS
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.mavlink.context import context_of
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.mavlink.earth import degrees_of, metres, sea_level_of
+from mmrs_core.mavlink.plans.wpl import WPL
 from mmrs_core.mavlink.vehicles import COPTER, MANNERS, ROVER, SUB, manner_of, speed_of, vehicle_class
 from mmrs_core.scene import Capability, Frame
-from mmrs_core.testing.programs import L_AQUILA, go_to, program, quad, robot_program, take_off, target_input
+from mmrs_core.testing.programs import (
+    L_AQUILA,
+    LAND,
+    go_to,
+    program,
+    quad,
+    robot_program,
+    take_off,
+    target_input,
+)
 from mmrs_core.transformation.fluid import LEAST_CUT
 
 DIVER = replace(
@@ -111,3 +122,12 @@ def test_no_travel_mode_has_vehicles_cut_corners_farther_than_plans_and_checks_a
     most = max(manner.radius for manner in MANNERS.values())
     assert most <= LEAST_CUT
     assert most <= RADIUS
+
+
+@pytest.mark.parametrize("target", [MAVLINK_PYTHON, WPL], ids=lambda target: target.name)
+@pytest.mark.parametrize(("latitude", "refused"), [(89.5, True), (-89.5, True), (88.5, False)])
+def test_at_a_pole_nobody_steers_by_degrees(target, latitude, refused):
+    there = Frame("EPSG:4326", latitude, 10.0, 0.0, "MSL")
+    given = target_input(program(robot_program("alpha", (take_off("up", 20.0), LAND)), frame=there))
+    faults = [fault for fault in target.refusals(given) if "a pole" in fault]
+    assert bool(faults) is refused
