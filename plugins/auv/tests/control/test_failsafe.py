@@ -83,6 +83,7 @@ CAUSES = [
     ),
     ("pressure frozen", freeze("Pressure"), failsafe.FROZEN + UNTRUSTED, "SENSORS_SILENT"),
     ("compass frozen", freeze("Attitude"), failsafe.FROZEN + UNTRUSTED, "SENSORS_SILENT"),
+    ("leak detector silent", hush("Health"), failsafe.HEALTH_SILENT + failsafe.MARGIN, "SENSORS_SILENT"),
     ("leak", leak, failsafe.LEAK_SAID * 0.2 + failsafe.MARGIN, "LEAK"),
     ("ordered", order, 0.2 + failsafe.MARGIN, "ORDERED"),
 ]
@@ -90,7 +91,8 @@ CAUSES = [
 
 FAST = (
     ("movement killed", "floats"), ("sensor controller killed", "sinks"), ("pressure silent", "floats"),
-    ("pressure frozen", "sinks"), ("leak", "floats"), ("ordered", "sinks"),
+    ("pressure frozen", "sinks"), ("leak detector silent", "floats"), ("leak", "floats"),
+    ("ordered", "sinks"),
 )  # fmt: skip
 TABLE = [
     pytest.param(sheet, *each[1:], id=f"{each[0]}, {word}", marks=marks)
@@ -291,6 +293,7 @@ def test_declared_times_are_those_of_the_manual() -> None:
         failsafe.STATE_SILENT,
         failsafe.STATE_UNTRUSTED,
         failsafe.STALE,
+        failsafe.HEALTH_SILENT,
         failsafe.STALE + failsafe.FROZEN,
     } <= told
 

@@ -40,8 +40,8 @@ class Actuators:
     It gives none before a state was trusted. From the first wrench obeyed on it gives zero thrust, and says
     so to every drive, when no wrench that is complete and valid came in `failsafe.COMMANDS_SILENT`; and for
     good, having sent an emergency that releases the drop weight, when movement or the sensor controller are
-    gone, when the state is not to be trusted, when water is inside, or when it is too deep. An emergency of
-    any other node counts as its own.
+    gone, when the state is not to be trusted, when water is inside or nobody tells any more whether it is, or
+    when it is too deep. An emergency of any other node counts as its own.
 
     Args:
         driver: of thrusters; by default the messages of the vehicle's own bus.
@@ -83,6 +83,7 @@ class Actuators:
         self._shallow_at: float | None = None
         self._deep = False
         self._leaks = 0
+        self._health_at: float | None = None
         self._began: float | None = None
         self._emergency_at = 0.0
         self._due = {"Emergency": 0.0, "Reach": 0.0, "Beat": 0.0}
@@ -154,6 +155,8 @@ class Actuators:
             return "TOO_DEEP"
         if self._trusted_at is None or self._wrench_at is None or not self._dived:
             return None
+        if self._health_at is not None and now - self._health_at > failsafe.HEALTH_SILENT:
+            return "SENSORS_SILENT"
         if now - self._wrench_at > failsafe.COMMANDS_GONE:
             return "COMMANDS_SILENT"
         if now - self._state_at > failsafe.STATE_SILENT or now - self._trusted_at > failsafe.STATE_UNTRUSTED:
@@ -218,6 +221,7 @@ class Actuators:
 
     def _hear_health(self, found: Received, now: float) -> None:
         self._leaks = self._leaks + 1 if found.values["Leak"] else 0
+        self._health_at = now
 
     def _hear_emergency(self, found: Received, now: float) -> None:
         if self.emergency is None:

@@ -24,6 +24,9 @@ STATE_UNTRUSTED = 1.0
 LEAK_SAID = 2
 """Messages in sequence that say that water is inside, before it is believed: 5 a second."""
 
+HEALTH_SILENT = 5.0
+"""Seconds without a word of leaks and battery, where there was one, after which the dive is given up."""
+
 DEEP_FOR = 0.5
 """Seconds of pressure beyond the rated depth, and a margin, after which the dive is given up."""
 
@@ -34,7 +37,7 @@ STALE = 0.5
 """Seconds after the last plausible value of an instrument during which its state is still trusted."""
 
 FROZEN = 0.6
-"""Seconds after which an instrument that repeats one value is taken to be frozen, where it has usual noise."""
+"""Seconds after which an instrument of usual noise that repeats one value is taken to be frozen."""
 
 MARGIN = COMMAND_PERIOD + SENSOR_PERIOD
 """Seconds that detection and the next command may take more than the times above."""
