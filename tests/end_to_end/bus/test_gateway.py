@@ -14,6 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from waiting_pair import waiting_pair
 
 from mmrs_core import pipeline
 from mmrs_core.flight.bus import CommandId
@@ -29,37 +30,8 @@ LEASE = 1.5
 def behaviour(tmp_path_factory):
     """Return the file of a behaviour in which 'a' and 'b' wait for each other."""
     file = tmp_path_factory.mktemp("models") / "pair.xmi"
-    file.write_text(PAIR)
+    file.write_text(waiting_pair("rover", taken_back=True))
     return file
-
-
-PAIR = """<?xml version="1.0" encoding="UTF-8"?>
-<bl:Behaviour xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
-    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:bl="urn:mmrs:behaviour:1.0" name="pair">
-  <targets xsi:type="bl:RelativeCoordinate" name="here" x="0.0" y="0.0"/>
-  <robots id="a" typeName="rover" home="//@targets.0">
-    <moves xsi:type="bl:Start" name="start"/>
-    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
-      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0"/>
-      <postActions xsi:type="bl:UnicastNotify" slot="//@robots.1/@slots.0" active="false"/>
-    </moves>
-    <moves xsi:type="bl:Stop" name="stop"/>
-    <moveTransitions from="//@robots.0/@moves.0" to="//@robots.0/@moves.1" waitFor="//@robots.0/@slots.0"/>
-    <moveTransitions from="//@robots.0/@moves.1" to="//@robots.0/@moves.2"/>
-    <slots name="ready"/>
-  </robots>
-  <robots id="b" typeName="rover" home="//@targets.0">
-    <moves xsi:type="bl:Start" name="start"/>
-    <moves xsi:type="bl:HoldPosition" name="hold" duration="1.0">
-      <preActions xsi:type="bl:UnicastNotify" slot="//@robots.0/@slots.0"/>
-    </moves>
-    <moves xsi:type="bl:Stop" name="stop"/>
-    <moveTransitions from="//@robots.1/@moves.0" to="//@robots.1/@moves.1"/>
-    <moveTransitions from="//@robots.1/@moves.1" to="//@robots.1/@moves.2" waitFor="//@robots.1/@slots.0"/>
-    <slots name="go"/>
-  </robots>
-</bl:Behaviour>
-"""
 
 
 class Client:
