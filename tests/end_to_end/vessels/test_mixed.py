@@ -1,0 +1,110 @@
+"""A drone finds, an underwater vehicle goes and looks, in real time, as people start them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+from mmrs_auv.commands.modelled import sheets_in
+from mmrs_auv.rehearsal import Berth
+from mmrs_auv.vessel.body.surroundings import from_json
+
+from mmrs_core.cli.demo import example_folder
+
+pytestmark = [pytest.mark.xdist_group("vessels in real time"), pytest.mark.thorough]
+
+MMRS = (sys.executable, "-m", "mmrs_core")
+SPEED = 2.0
+FLOAT = (23.5, 27.5)
+
+
+def free_port(kind: int) -> int:
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def running(folder: Path, name: str, *words: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Run a program until the end of the block; what it says stands in a file."""
+    with (folder / f"{name}.txt").open("wb") as said:
+        process = subprocess.Popen(
+            [sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
+        )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(20.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def bay(tmp_path: Path) -> Path:
+    """Return a copy of the example with its behaviour."""
+    project = Path(shutil.copytree(example_folder("lost-float"), tmp_path / "bay"))
+    subprocess.run((*MMRS, "plan", str(project)), check=True, capture_output=True)
+    return project
+
+
+@pytest.fixture
+def reached(bay: Path, tmp_path: Path) -> Iterator[dict[str, list[str]]]:
+    """Return what mmrs run needs to reach a simulated drone, and a simulated vehicle with eyes."""
+    around, port, told = bay / "surroundings.json", free_port(socket.SOCK_DGRAM), free_port(socket.SOCK_DGRAM)
+    with ExitStack() as stack:
+        words = ("mmrs_core", "sitl", str(bay), "--surroundings", str(around), "--port", str(port))
+        stack.enter_context(running(tmp_path, "sitl", *words, "--speedup", str(SPEED)))
+        (sheet,) = sheets_in(bay).values()
+        sees = from_json(around.read_text(encoding="utf-8"))
+        berth = stack.enter_context(Berth(sheet, tmp_path / "berth", surroundings=sees, speedup=SPEED))
+        given = ("--sheet", str(tmp_path / "berth/sheet.json"), "--surroundings", str(around))
+        given += ("--memory", f"mixed-{os.getpid()}")
+        for part, more in (
+            ("frames", ("--channel", berth.channel)),
+            ("front", ("--to", f"127.0.0.1:{told}")),
+        ):
+            stack.enter_context(running(tmp_path, part, "mmrs_auv.vision", part, *given, *more))
+        yield {
+            "Gull": ["--connect", f"Gull=udpin:127.0.0.1:{port}@1"],
+            "Otter": ["--backend", "Otter=can", "--connect", f"Otter={berth.channel}",
+                      "--backend-option", f"Otter:detections={told}"],
+        }  # fmt: skip
+
+
+@pytest.mark.parametrize("runs", [[["Gull", "Otter"]], [["Gull"], ["Otter"]]], ids=["one run", "over Zenoh"])
+def test_what_the_drone_has_seen_is_found_by_the_vehicle(bay, reached, tmp_path, runs):
+    endpoint = f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+    with ExitStack() as stack:
+        begun = []
+        for number, robots in enumerate(runs):
+            words = ["mmrs_core", "run", str(bay), "--log", str(tmp_path / "logs"), "--speedup", str(SPEED)]
+            words += [word for robot in robots for word in reached[robot]]
+            if len(runs) > 1:
+                words += ["--robot", robots[0], "--bus-connect" if number else "--bus-listen", endpoint]
+            begun.append(stack.enter_context(running(tmp_path, f"run {number}", *words)))
+        codes = [process.wait(300.0) for process in begun]
+    said = "".join(path.read_text() for path in sorted(tmp_path.glob("run *.txt")))
+    assert codes == [0] * len(runs), said
+    judged = subprocess.run(
+        (*MMRS, "replay", str(bay / "behaviour.xmi"), str(tmp_path / "logs")), capture_output=True, text=True
+    )
+    assert judged.stdout.startswith("accepted: success"), judged
+    lines = map(json.loads, (tmp_path / "logs/Otter.blackbox.ndjson").read_text().splitlines())
+    (told,) = [line for line in lines if line["kind"] == "told"]
+    assert (told["object"], told["east"], told["north"]) == (
+        "lost float",
+        pytest.approx(FLOAT[0], abs=0.5),
+        pytest.approx(FLOAT[1], abs=0.5),
+    )
