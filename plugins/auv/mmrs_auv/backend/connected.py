@@ -21,6 +21,7 @@ from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
 from mmrs_core.errors import LinkLostError, UnsupportedError
 from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
+from mmrs_core.flight.records.start import PROCESS
 from mmrs_core.runtime.clock import RealClock
 
 FIX = 0.2
@@ -91,7 +92,8 @@ class ConnectedRobot(CanRobot):
     def prepare(self, now: float) -> None:
         """Begin to wait until the vehicle is heard and knows where it is."""
         self._until = now + self._options.patience * self._clock.speedup
-        self._kept.note("start", {"plan": self._given.program.fingerprint, "link": "can", "vehicle": "sub"})
+        plan = self._given.program.fingerprint
+        self._kept.note("start", {"plan": plan, "process": PROCESS, "link": "can", "vehicle": "sub"})
         self._prepared(now)
 
     def fault(self, now: float) -> Fault | None:
