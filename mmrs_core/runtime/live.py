@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import uuid
 from collections.abc import Callable, Collection, Generator, Mapping
 from contextlib import ExitStack
@@ -91,11 +92,12 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         stack.callback(venture.orders.close, "the run has ended")
         robots: dict[str, Backend] = {}
         venture.orders.backends = robots
+        stack.callback(_let_go, robots)
         under_way = any(record.robot in venture.inputs for record in venture.resumed)
         early = None if under_way else _EarlyOrders(venture, robots)
         venture.standing.held = early.held if early is not None else ()
         try:
-            _connect(robots, venture, backend, attention, stack, early)
+            _connect(robots, venture, backend, attention, early)
             venture.standing.connect(robots)
             if early is not None:
                 _get_ready(robots, venture, early)
@@ -136,7 +138,6 @@ def _connect(
     venture: Venture,
     backend: BackendFactory,
     attention: Attention,
-    stack: ExitStack,
     early: _EarlyOrders | None,
 ) -> None:
     """Connect robots one after the other, and look out for orders to those that are there."""
@@ -157,10 +158,31 @@ def _connect(
             announce=venture.say,
         )
         robots[id] = backend.connect(replace(given, live=live))
-        if isinstance(robots[id], Closing):
-            stack.callback(robots[id].close)  # type: ignore[attr-defined]
         if early is not None:
             early.look(set(venture.inputs))
+
+
+def _let_go(robots: Mapping[str, Backend]) -> None:
+    """Close all robots at once: each may take seconds to know what to do when nobody talks to it."""
+    errors: list[Exception] = []
+
+    def close(robot: Closing) -> None:
+        try:
+            robot.close()
+        except Exception as error:
+            errors.append(error)
+
+    threads = [
+        threading.Thread(target=close, args=(robot,), name=f"close {id}", daemon=True)
+        for id, robot in robots.items()
+        if isinstance(robot, Closing)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for error in errors[:1]:
+        raise error
 
 
 def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:

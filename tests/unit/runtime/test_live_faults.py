@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from math import inf
 
 import pytest
 from hub import Hub
-from live_runs import WALK, Script, do
+from live_runs import TWO, WALK, Script, do
 
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.errors import MmrsError
 from mmrs_core.flight.bus import CommandId, Node, NoJournal
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.slots import ProgramBus, members_of
@@ -120,3 +122,26 @@ def test_a_robot_that_cannot_keep_what_others_tell_it_does_as_its_policy_says(li
     there.close()
     assert ("r" in ending.faults) == (response == "LAND")
     assert response == "CONTINUE" or ending.faults["r"].which == "LOG_FAILED"
+
+
+def test_robots_are_let_go_of_at_the_same_time(live):
+    run, met = live(TWO, Script(walk=inf)), threading.Barrier(2)
+    run.wait_for_step("b begin walk")
+    for walker in run.script.robots.values():
+        walker.close = lambda: met.wait(10.0)
+    run.abort()
+    run.end()
+    assert not met.broken
+
+
+def test_a_robot_that_cannot_be_let_go_of_does_not_keep_the_others_and_is_told(live):
+    run = live(TWO, Script(walk=inf))
+    run.wait_for_step("b begin walk")
+    broken, other = run.script.robots["a"], run.script.robots["b"]
+
+    def close():
+        raise MmrsError("says the test")
+
+    broken.close = close
+    run.abort()
+    assert (str(run.error), other.closed) == ("says the test", True)
