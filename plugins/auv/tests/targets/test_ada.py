@@ -3,16 +3,25 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from ada_centres import judge, write
-from dives import dive, swim
+from dives import dive, diver, swim
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mmrs_auv.targets.ada import literals
 from mmrs_auv.targets.ada.bus import catalogue
+from mmrs_auv.targets.ada.refusals import refusals
+from mmrs_auv.targets.ada.target import ADA
 
-from mmrs_core.behaviour.program import Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Transition
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.render import render
+from mmrs_core.scene import Policy
+from mmrs_core.testing.conformance.missions import run_command
 from mmrs_core.testing.programs import feedback
 from mmrs_core.testing.small_programs import notify
 
@@ -25,6 +34,23 @@ def compiler():
     if shutil.which("gnatmake") is None:
         message = "gnatmake is not installed: compiles decision centres in Ada"
         pytest.fail(message) if os.environ.get("MMRS_REQUIRE_PEERS") == "1" else pytest.skip(message)
+
+
+def input_of(behaviour, type=None):
+    kind = type or diver()
+    return TargetInput(behaviour, {kind.name: kind}, {}, {})
+
+
+def bound_by(policy):
+    """Return a dive with a policy of its mission."""
+    made = dive(swim("a", 1.0, 2.0, 1.0))
+    return replace(made, robots=(replace(made.robots[0], policies=(policy,)),))
+
+
+def mission_of(behaviour, type=None):
+    """Return what is written of the first robot's mission."""
+    files = {file.path: file.content for file in render(ADA, input_of(behaviour, type))}
+    return files["robot-naiad/mission.adb"].decode()
 
 
 def read_back(expression):
@@ -84,6 +110,66 @@ def test_conditions_of_any_kind_compile_without_a_warning(condition, undecided, 
     robot = write(dive(*moves, transitions=ways), tmp_path)
     assert judge(robot) == ""
     assert (robot / "conditions.adb").read_text().count("Nobody_Says (") == 1 + undecided
+
+
+EXAMPLES = Path(__file__).parents[4] / "examples"
+LONGER = [pytest.param(name, marks=pytest.mark.thorough) for name in ("pool", "outfall", "two-auv-survey")]
+
+
+@pytest.mark.parametrize("example", ["pool-course", *LONGER])
+def test_examples_lack_nothing_and_compile_without_a_warning(example, tmp_path, compiler):
+    project = shutil.copytree(EXAMPLES / example, tmp_path / example)
+    run_command("plan", project)
+    run_command("generate", project, "--target", "ada", "-o", tmp_path / "out")
+    robots = sorted((tmp_path / "out").glob("robot-*"))
+    assert robots
+    assert [judge(robot) for robot in robots] == [""] * len(robots)
+
+
+@pytest.mark.thorough
+@pytest.mark.skipif(shutil.which("gprbuild") is None, reason="gprbuild is not installed")
+def test_the_project_is_built_by_gprbuild(tmp_path):
+    robot = write(dive(swim("a", 1.0, 2.0, 1.0)), tmp_path)
+    done = subprocess.run(["gprbuild", "-q"], cwd=robot, capture_output=True, text=True, timeout=600)
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+    assert (robot / "decision_centre").exists()
+
+
+@pytest.mark.parametrize(
+    ("policy", "refused"),
+    [
+        (Policy("BATTERY_LOW", "SURFACE"), False),
+        (Policy("BATTERY_LOW", "SURFACE", 5.0), False),
+        (Policy("LINK_LOST", "CONTINUE"), False),
+        (Policy("BATTERY_LOW", "RETURN"), True),
+        (Policy("OBSTACLE", "SURFACE"), True),
+    ],
+)
+def test_policies_that_it_does_not_keep_are_refused(policy, refused):
+    found = [each for each in refusals(input_of(bound_by(policy))) if policy.event in each]
+    assert bool(found) == refused
+
+
+def test_a_policy_of_the_type_counts_only_where_the_mission_has_none():
+    fearful = replace(diver(), policies=(Policy("BATTERY_LOW", "RETURN"),))
+    mission = bound_by(Policy("BATTERY_LOW", "SURFACE", 7.0))
+    assert list(refusals(input_of(mission, fearful))) == []
+    assert len(list(refusals(input_of(dive(swim("a", 1.0, 2.0, 1.0)), fearful)))) == 1
+    assert "After (BATTERY_LOW) := 7.0" in mission_of(mission, fearful)
+
+
+def test_places_and_parameters_that_no_message_holds_are_refused():
+    far = swim("far", 9000.0, 0.0, 1.0)
+    huge = Action(((BEHAVIOUR, "DeviceAction"),), "Sample", "ctd", (("seconds", "10000"),))
+    found = " ".join(refusals(input_of(dive(far, swim("a", 0.0, 0.0, 1.0, after=(huge,))))))
+    assert "9000 m to the east" in found
+    assert "parameter 10000 of device 'ctd'" in found
+
+
+def test_a_wait_takes_as_long_as_its_own_policy_says():
+    own = Transition(1, 2, waits=("go",), policies=(Policy("WAIT_TOO_LONG", "SURFACE", 9.0),))
+    behaviour = dive(swim("a", 1.0, 2.0, 1.0), slots=("go",), transitions={1: own})
+    assert "Made.Longest := 9.0;" in mission_of(behaviour)
 
 
 @pytest.mark.thorough
