@@ -59,6 +59,10 @@ def preview(
         picture = _of_flight(workshop, behaviour_file(project), context, types, assume, logs)
     elif is_behaviour(workshop, project):
         picture = _of_behaviour(workshop, project, context, types, assume)
+    elif assume:
+        raise typer.BadParameter(
+            "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"
+        )
     else:
         picture = picture_of(Journey(workshop, project, context=context, robots=types, seed=seed))
     folder = output if output is not None else folder_of(project)

@@ -148,6 +148,13 @@ def test_preview_writes_into_the_project(mmrs, pool):
     assert "moves " in words or "move " in words
 
 
+def test_answers_of_conditions_are_wrong_usage_where_a_mission_is_drawn_as_planned(mmrs, pool):
+    code, _, err = mmrs("preview", pool, "--assume", "calm=yes")
+    assert code == 2
+    assert "--assume goes with a behaviour" in err
+    assert not (pool / "preview.html").exists()
+
+
 def test_the_planned_file_is_drawn_as_it_went(mmrs, pool):
     mmrs("plan", pool)
     assert mmrs("preview", pool / "behaviour.xmi")[0] == 0
