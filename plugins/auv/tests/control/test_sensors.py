@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 from mmrs_auv.testing import pool_sheet, torpedo_sheet
+from mmrs_auv.vessel.api import Craft
 from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.control.sensors import Sensors
 from mmrs_auv.vessel.movement.movement import Movement
+from mmrs_auv.vessel.node import Node
+from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import MOST_UPTIME
 from mmrs_auv.vessel.wire.codec import Codec, Received
 
 AIR, PER_METRE = 101_325.0, 1025.0 * 9.80665
 
 
-def said(node: Sensors | Actuators | Movement, listener: Codec, now: float) -> dict[str, Received]:
+def said(node: Node, listener: Codec, now: float) -> dict[str, Received]:
     heard = [listener.decode(frame) for frame in node.tick(now)]
     return {each.name: each for each in heard if each is not None}
 
@@ -43,8 +47,8 @@ def test_a_drive_that_fell_silent_is_not_taken_to_push_for_ever() -> None:
     assert surges[-1] < 0.8 * max(surges)
 
 
-@pytest.mark.parametrize("kind", [Sensors, Actuators, Movement])
-def test_a_node_that_runs_for_days_goes_on(kind: type[Sensors] | type[Actuators] | type[Movement]) -> None:
+@pytest.mark.parametrize("kind", [Sensors, Actuators, Movement, Craft])
+def test_a_node_that_runs_for_days_goes_on(kind: Callable[[Sheet, Codec], Node]) -> None:
     sheet = pool_sheet()
     node, listener = kind(sheet, Codec(sheet)), Codec(sheet)
     said(node, listener, 0.0)
