@@ -1,12 +1,13 @@
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from math import dist
 from pathlib import Path
 
 import pytest
-from dives import POOL, dive, rehearse, swim
+from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 
@@ -134,8 +135,40 @@ def test_objects_are_gone_to_where_they_are_seen(tmp_path: Path) -> None:
     found = rehearse(dive(go), tmp_path / "a", objects="seen", surroundings=buoy_at(tmp_path, 7.2))
     assert found.run.ending.outcome is Outcome.SUCCESS
     assert at(found.robots["naiad"])[0] == pytest.approx(6.2, abs=0.6)
-    far = rehearse(dive(go), tmp_path / "b", objects="seen", surroundings=buoy_at(tmp_path, 9.0))
-    assert far.fault == "OBJECT_NOT_FOUND"
+
+
+def sought_among(tmp_path: Path, *easts: float, **options: str) -> Rehearsed:
+    """Return a dive to a buoy that is expected 7 m away, give or take 2 m, past some that look the same."""
+    file = tmp_path / "pool.json"
+    things = tuple(Thing(BUOY, BUOY_NAME, 0.3, east, 1.5, colour="red", size=0.3) for east in easts)
+    file.write_text(to_json(Surroundings(bottom=4.0, things=things)))
+    go = replace(swim("buoy", 0.0, 0.0, 0.0), target=Target((7.0, 0.0, -1.5), BUOY_NAME, 2.0), distance=1.0)
+    return rehearse(dive(go), tmp_path / "logs", surroundings=str(file), heading="90", **options)
+
+
+def test_what_looks_the_same_and_is_too_far_away_is_passed_by(tmp_path: Path) -> None:
+    found = sought_among(tmp_path, 3.0, 7.4, objects="seen")
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert at(found.robots["naiad"])[0] == pytest.approx(6.4, abs=0.6)
+
+
+@pytest.mark.thorough
+def test_of_two_that_look_the_same_in_pictures_the_one_is_meant_that_is_where_expected(
+    tmp_path: Path,
+) -> None:
+    pytest.importorskip("cv2")
+    found = sought_among(tmp_path, 2.5, 7.4, objects="cameras")
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert at(found.robots["naiad"])[0] == pytest.approx(6.4, abs=0.8)
+
+
+@pytest.mark.thorough
+def test_a_vehicle_that_sees_only_what_is_too_far_away_says_so_and_comes_up(tmp_path: Path) -> None:
+    found = sought_among(tmp_path, 3.0, objects="seen")
+    assert found.fault == "OBJECT_NOT_FOUND"
+    reason = found.run.ending.faults["naiad"].reason
+    assert re.fullmatch(r"object 'red buoy' is [34]\.\d m from where it is expected", reason)
+    assert at(found.robots["naiad"])[2] < AFLOAT
 
 
 def test_objects_are_found_in_pictures(tmp_path: Path) -> None:
