@@ -35,6 +35,16 @@ def refuse_heights(robot: Robot, points: Iterable[Position]) -> None:
             raise InfeasibleError(f"{_metres(up)} is {_metres(floor - up)} below the floor {_metres(floor)}")
 
 
+def refuse_unsteady(robot: Robot) -> None:
+    """Check that a robot can hold a position.
+
+    Raises:
+        InfeasibleError: it cannot; says how slow it can be.
+    """
+    if robot.kinematics is not None and robot.kinematics.slowest > 0.0:
+        raise InfeasibleError(f"holds no position: its smallest speed is {robot.kinematics.slowest:g} m/s")
+
+
 def refuse_blocked(robot: Robot, scene: Scene, points: Sequence[Position], what: str) -> None:
     """Check that a polyline keeps the robot's clearance from every area as drawn.
 
@@ -81,11 +91,16 @@ def _is_clear(robot: Robot, scene: Scene, points: Sequence[Position]) -> bool:
     )
 
 
-def _bearings(scene: Scene, point: Position) -> Iterator[float]:
+def bearing_of_homes(scene: Scene, point: Position) -> float:
+    """Return in which direction the middle of the robots' homes lies from a point, radians from north."""
     count = len(scene.robots) or 1
     east = sum(robot.home[0] for robot in scene.robots) / count - point[0]
     north = sum(robot.home[1] for robot in scene.robots) / count - point[1]
-    first = atan2(east, north)
+    return atan2(east, north)
+
+
+def _bearings(scene: Scene, point: Position) -> Iterator[float]:
+    first = bearing_of_homes(scene, point)
     for step in range(BEARINGS):
         turn = (step + 1) // 2 * (1 if step % 2 else -1)
         yield first + turn * 2 * pi / BEARINGS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mmrs_core.contributions.rules import Rule
 from mmrs_core.errors import InfeasibleError
-from mmrs_core.planning.places import refuse_blocked, refuse_heights
+from mmrs_core.planning.places import refuse_blocked, refuse_heights, refuse_unsteady
 from mmrs_core.scene import Look, Part, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import text
 from mmrs_solar.camera import optics_of
@@ -19,8 +19,7 @@ RULE = "panel_look"
 
 def panel_look_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return for each panel the place on its normal, or as near to it as the camera can be tilted."""
-    if robot.kinematics is not None and robot.kinematics.slowest > 0.0:
-        raise InfeasibleError(f"holds no position: its smallest speed is {robot.kinematics.slowest:g} m/s")
+    refuse_unsteady(robot)
     part, group = task.part, group_of(task.part, scene)
     action = text(part, "actionName")
     camera = camera_for(part, robot, action)

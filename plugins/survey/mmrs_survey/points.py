@@ -6,9 +6,8 @@ from math import inf
 
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.rules import MoveSpec, Rule
-from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import carried, device_for
-from mmrs_core.planning.places import refuse_blocked, refuse_heights, stand_off
+from mmrs_core.planning.places import refuse_blocked, refuse_heights, refuse_unsteady, stand_off
 from mmrs_core.scene import ActionAt, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, text
 from mmrs_survey.names import APPROACH_TASK, GO_TO_TASK, OBSERVE_TASK
@@ -31,8 +30,7 @@ def go_to_work(task: Task, robot: Robot, scene: Scene) -> Work:
 
 def observe_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return a place from which the point is seen, what begins there, and how long to hold."""
-    if robot.kinematics is not None and robot.kinematics.slowest > 0.0:
-        raise InfeasibleError(f"holds no position: its smallest speed is {robot.kinematics.slowest:g} m/s")
+    refuse_unsteady(robot)
     point = position(task.part, "point")
     place = _place_to_look_from(task.part, point, robot, scene)
     device = carried(robot.type, text(task.part, "deviceId"))

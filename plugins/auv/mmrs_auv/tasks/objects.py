@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import atan2, ceil, cos, dist, pi, radians, sin
+from math import ceil, cos, dist, pi, radians, sin
 
 from mmrs_auv.names import ALIGN_TASK, INSPECT_OBJECT_TASK
 from mmrs_core.behaviour.program import BEHAVIOUR
 from mmrs_core.contributions.rules import MoveSpec, Rule
 from mmrs_core.errors import InfeasibleError
 from mmrs_core.planning.devices import carried, device_for
-from mmrs_core.planning.places import refuse_blocked, refuse_heights, stand_off
+from mmrs_core.planning.places import (
+    bearing_of_homes,
+    refuse_blocked,
+    refuse_heights,
+    refuse_unsteady,
+    stand_off,
+)
 from mmrs_core.scene import ActionAt, Look, Part, Position, Robot, Scene, Stroke, Task, Work
 from mmrs_core.scene.attributes import number, position, text
 
@@ -22,7 +28,7 @@ STEP = pi / 12.0
 
 def inspect_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return a way around the object that faces it, with a hold and an action at each place."""
-    _refuse_hasty(robot)
+    refuse_unsteady(robot)
     part, middle = task.part, position(task.part, "point")
     refuse_heights(robot, (middle,))
     distance, views = _distance(part), round(number(part, "views") or 0)
@@ -31,7 +37,7 @@ def inspect_work(task: Task, robot: Robot, scene: Scene) -> Work:
     device = carried(robot.type, text(part, "deviceId"))
     look, hold = Look(middle, device), number(part, "duration") or 0.0
     strokes = []
-    for way in _ways(middle, distance, views, _bearing_of_homes(scene, middle)):
+    for way in _ways(middle, distance, views, bearing_of_homes(scene, middle)):
         refuse_blocked(robot, scene, way, "the way around the object")
         done = _doing(part, robot, _length(way))
         strokes.append(Stroke(way, done, look, hold=hold))
@@ -52,20 +58,13 @@ def _around(middle: Position, distance: float, bearing: float) -> Position:
     return (middle[0] + distance * sin(bearing), middle[1] + distance * cos(bearing), middle[2])
 
 
-def _bearing_of_homes(scene: Scene, point: Position) -> float:
-    count = len(scene.robots) or 1
-    east = sum(robot.home[0] for robot in scene.robots) / count - point[0]
-    north = sum(robot.home[1] for robot in scene.robots) / count - point[1]
-    return atan2(east, north)
-
-
 def align_work(task: Task, robot: Robot, scene: Scene) -> Work:
     """Return the way up to an object from outside of where it may be, the hold there, and the way back.
 
     The second stroke ends the task where the robot's position is certain again, wherever the object
     was found.
     """
-    _refuse_hasty(robot)
+    refuse_unsteady(robot)
     part, expected = task.part, position(task.part, "point")
     refuse_heights(robot, (expected,))
     distance, tolerance = _distance(part), number(part, "tolerance")
@@ -117,11 +116,6 @@ def align_moves(stroke: Stroke, robot: Robot) -> tuple[MoveSpec, ...]:
         ),
         MoveSpec((BEHAVIOUR, "HoldPosition"), {"duration": stroke.hold}, after=stroke.actions),
     )
-
-
-def _refuse_hasty(robot: Robot) -> None:
-    if robot.kinematics is not None and robot.kinematics.slowest > 0.0:
-        raise InfeasibleError(f"holds no position: its smallest speed is {robot.kinematics.slowest:g} m/s")
 
 
 def _distance(part: Part) -> float:
