@@ -10,7 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -108,6 +108,7 @@ class World:
         parts = [Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet))]
         self._port = open_port("socketcand", f"can0@127.0.0.1:{hub.port}")
         self.trace = Trace(sheet)
+        self._emergency = self._codec.encode("Emergency", Reason="ORDERED", Release=False)
         nodes = [self.vehicle, *parts, Bridge(self._port), self.trace]
         self.rehearsal = Rehearsal(nodes, watch=self._watch)
 
@@ -124,7 +125,11 @@ class World:
         return found
 
     def run(self, until: subprocess.Popen[str], seconds: float, **orders: float) -> None:
-        """Let time go by until a process ends; an order counts from so many seconds on: cut."""
+        """Let time go by until a process ends.
+
+        An order counts from so many seconds on: ``cut`` ends the bus, ``strange`` has what looks like
+        emergencies on it but for their extended identifiers.
+        """
         behind = time.monotonic() - self.rehearsal.now
         while until.poll() is None:
             assert self.rehearsal.now < seconds, "it does not end"
@@ -132,6 +137,8 @@ class World:
                 self.hub.stop()
                 until.wait(30)
                 return
+            if self.rehearsal.now >= orders.get("strange", seconds):
+                self._port.send(replace(self._emergency, extended=True))
             self.rehearsal.run(0.05)
             time.sleep(max(0.0, self.rehearsal.now + behind - time.monotonic()))
 

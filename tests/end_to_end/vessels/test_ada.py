@@ -109,7 +109,7 @@ def controlled(behaviour, folder: Path) -> Dive:
         options = ["--can", f"can0@127.0.0.1:{port}", "--log", str(folder / "logs")]
         return [sys.executable, str(folder / "code" / "fleet.py"), *options]
 
-    return commanded(words, behaviour, folder)
+    return commanded(words, behaviour, folder, strange=1.0)
 
 
 def test_ada_python_and_the_interpreter_do_the_same(tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_ada_python_and_the_interpreter_do_the_same(tmp_path: Path) -> None:
     wanted, steps = rehearsed(behaviour, tmp_path / "sim")
     with ThreadPoolExecutor(2) as pool:
         found = [
-            pool.submit(run, program, behaviour, tmp_path / "ada"),
+            pool.submit(run, program, behaviour, tmp_path / "ada", strange=1.0),
             pool.submit(controlled, behaviour, tmp_path / "python"),
         ]
         for dive in (each.result() for each in found):
