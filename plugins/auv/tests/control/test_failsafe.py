@@ -283,6 +283,22 @@ def test_nothing_is_pushed_before_a_state_was_trusted() -> None:
     assert rig.emergencies == []
 
 
+def test_wrenches_said_again_by_whoever_kept_them_do_not_go_on_for_ever() -> None:
+    rig = diving(FLOATS)
+    movement, kept = rig.movement, []
+    for _ in range(4):
+        kept += movement.tick(rig.bus.now)[:2]
+    rig.bus.kill("Movement")
+    begin = rig.bus.now
+    while rig.bus.now - begin < failsafe.MOVEMENT_GONE + 2.0:
+        for frame in kept[:2]:
+            rig.bus.post(frame)
+        kept = kept[2:] + kept[:2]
+        rig.run(0.05)
+    assert rig.emergencies[0][1] == "COMMANDS_SILENT"
+    assert rig.pushed["command"] - begin <= failsafe.MOVEMENT_GONE + failsafe.MARGIN
+
+
 def test_declared_times_are_those_of_the_manual() -> None:
     """The times that documentation tells are those that are tested here."""
     manual = Path(__file__).parents[2] / "README.md"

@@ -67,6 +67,7 @@ class Actuators:
         self._hearers = by_id({
             "WrenchForce": self._hear_force, "WrenchMoment": self._hear_moment, "Depth": self._hear_depth,
             "Pressure": self._hear_pressure, "Health": self._hear_health, "Emergency": self._hear_emergency,
+            "MovementBeat": self._hear_beat,
         })  # fmt: skip
         self.emergency: str | None = None
         self.thrusts: Array = np.zeros(len(sheet.thrusters))
@@ -84,6 +85,7 @@ class Actuators:
         self._deep = False
         self._leaks = 0
         self._health_at: float | None = None
+        self._movement_at: float | None = None
         self._began: float | None = None
         self._emergency_at = 0.0
         self._due = {"Emergency": 0.0, "Reach": 0.0, "Beat": 0.0}
@@ -155,6 +157,8 @@ class Actuators:
             return "TOO_DEEP"
         if self._trusted_at is None or self._wrench_at is None or not self._dived:
             return None
+        if self._movement_at is not None and now - self._movement_at > failsafe.MOVEMENT_GONE:
+            return "COMMANDS_SILENT"
         if self._health_at is not None and now - self._health_at > failsafe.HEALTH_SILENT:
             return "SENSORS_SILENT"
         if now - self._wrench_at > failsafe.COMMANDS_GONE:
@@ -222,6 +226,9 @@ class Actuators:
     def _hear_health(self, found: Received, now: float) -> None:
         self._leaks = self._leaks + 1 if found.values["Leak"] else 0
         self._health_at = now
+
+    def _hear_beat(self, found: Received, now: float) -> None:
+        self._movement_at = now
 
     def _hear_emergency(self, found: Received, now: float) -> None:
         if self.emergency is None:

@@ -15,6 +15,9 @@ COMMANDS_SILENT = 0.3
 COMMANDS_GONE = 2.0
 """Seconds without a wrench after which the actuator controller gives up the dive: emergency, weight gone."""
 
+MOVEMENT_GONE = 10.0 * BEAT_PERIOD
+"""Seconds without a beat of movement, where there was one, after which it does, whatever wrenches come."""
+
 STATE_SILENT = 0.5
 """Seconds without a valid depth of the sensor controller after which it does."""
 
