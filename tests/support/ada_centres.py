@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
+from types import MappingProxyType
 
 from bus_traces import Trace
 from can_hub import RunningHub, running
@@ -163,6 +164,7 @@ def run(
     robot: int = 0,
     gateway: Path | None = None,
     detections: int = 0,
+    extra: Mapping[str, float] = MappingProxyType({}),
     **orders: float,
 ) -> Dive:
     """Have the decision centre of a robot command its vehicle until it ends."""
@@ -172,7 +174,7 @@ def run(
         given += ["--detections", str(detections)] if detections else []
         return [str(program), "--bus", f"127.0.0.1:{port}", "--logs", str(folder / "logs"), *given]
 
-    return commanded(words, behaviour, folder, seconds, robot=robot, **orders)
+    return commanded(words, behaviour, folder, seconds, robot=robot, extra=extra, **orders)
 
 
 def commanded(
@@ -182,11 +184,16 @@ def commanded(
     seconds: float = 120.0,
     *,
     robot: int = 0,
+    extra: Mapping[str, float] = MappingProxyType({}),
     **orders: float,
 ) -> Dive:
-    """Have a program, whose words depend on the port of the bus, command a robot's vehicle until it ends."""
+    """Have a program, whose words depend on the port of the bus, command a robot's vehicle until it ends.
+
+    More about the vehicle may be given than its type says.
+    """
     one = behaviour.robots[robot]
     sheet = sheet_of(diver(), one.id, home=one.home or (0.0, 0.0, 0.0), surface=behaviour.frame.surface)
+    sheet = replace(sheet, extra={**sheet.extra, **extra})
     logs = folder / "logs"
     with running() as hub:
         world = World(hub, sheet, Surroundings(noise=False))

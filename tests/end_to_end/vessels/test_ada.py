@@ -6,12 +6,13 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from math import atan2, degrees, hypot
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 from ada_centres import Dive, build, commanded, gateways, run, write
@@ -165,7 +166,7 @@ def buoy(tolerance: float) -> Move:
     return swim("near", 0.0, 0.0, 0.0, target=target, heading=Heading(target), distance=0.5)
 
 
-def sought(behaviour, folder: Path) -> Dive:
+def sought(behaviour, folder: Path, extra: Mapping[str, float] = MappingProxyType({})) -> Dive:
     """Return what comes of a behaviour whose choices are decided, while a buoy is seen."""
     robot = write(behaviour, folder / "out")
     conditions = robot / "conditions.adb"
@@ -176,7 +177,7 @@ def sought(behaviour, folder: Path) -> Dive:
         camera.bind(("127.0.0.1", 0))
         port = camera.getsockname()[1]
     with telling(port, Detection(0.0, "a buoy", 0.9, 0.4, 1.2, 1.2, "front")):
-        return run(build(robot), behaviour, folder, detections=port)
+        return run(build(robot), behaviour, folder, detections=port, extra=extra)
 
 
 def test_an_object_is_approached_and_choices_are_made_by_what_cameras_see(tmp_path: Path) -> None:
@@ -202,6 +203,17 @@ def test_an_object_that_is_too_far_from_where_it_is_expected_ends_the_dive(tmp_p
     assert found.status == 1
     assert found.replayed.faults == {"naiad": "OBJECT_NOT_FOUND"}
     assert found.replayed.accepted, found.replayed.complaints
+
+
+@pytest.mark.thorough
+def test_an_object_that_is_not_seen_is_looked_for_on_the_spot_and_along_a_spiral(tmp_path: Path) -> None:
+    target = Target((1.0, 0.0, -1.0), "another buoy", 2.0)
+    behaviour = dive(swim("near", 0.0, 0.0, 0.0, target=target))
+    found = sought(behaviour, tmp_path, {"search.radius": 0.8})
+    assert found.replayed.faults == {"naiad": "OBJECT_NOT_FOUND"}
+    assert found.replayed.accepted, found.replayed.complaints
+    ways = [(goal.values["Mode"], goal.values["FaceAlong"]) for goal in found.world.trace.told]
+    assert ways == [("GO_TO", True), ("SEARCH", False), ("SEARCH", True), ("SURFACE", False)]
 
 
 def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -> None:

@@ -102,7 +102,13 @@ def test_names_of_any_kind_compile_without_a_warning(order, tmp_path, compiler):
 
 @pytest.mark.parametrize(
     ("condition", "undecided"),
-    [("battery-below:0.3", 0), ('detected:a "b\n', 0), ("wind-above:3", 1), ("battery-below:low", 1)],
+    [
+        ("\x1f", 1),
+        ("battery-below:0.3", 0),
+        ('detected:a "b\n', 0),
+        ("wind-above:3", 1),
+        ("battery-below:low", 1),
+    ],
 )
 def test_conditions_of_any_kind_compile_without_a_warning(condition, undecided, tmp_path, compiler):
     ways = {1: Transition(1, 2, condition=condition, otherwise=3)}

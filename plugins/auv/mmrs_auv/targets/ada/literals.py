@@ -16,11 +16,13 @@ def string(value: object) -> str:
 
     >>> string('a "b"')
     '("a " & Character\'Val (34) & "b" & Character\'Val (34))'
-    >>> string("")
-    '("")'
+    >>> string(""), string("\n")
+    ('("")', '("" & Character\'Val (10))')
     """
     data = str(value).encode("utf-8", "surrogatepass")
-    pieces = list(_pieces(data)) or ['""']
+    pieces = list(_pieces(data))
+    if len(pieces) < 2 and not (pieces and pieces[0].startswith('"')):
+        pieces.insert(0, '""')  # a character alone is no text
     lines = [" & ".join(pieces[index : index + 4]) for index in range(0, len(pieces), 4)]
     return "(" + " &\n         ".join(lines) + ")"
 
