@@ -66,15 +66,22 @@ class RobotView:
         return TracedStep(name, self.id, "")
 
 
-def robot_view(robot: RobotProgram, input: TargetInput) -> RobotView:
-    """Return a robot as the template sees it."""
+def robot_view(robot: RobotProgram, input: TargetInput, plan: str = "") -> RobotView:
+    """Return a robot as the template sees it.
+
+    Args:
+        robot: of the program.
+        input: what is written down.
+        plan: what tells the plan apart from others, where the program was changed before; else its own.
+    """
     program, kept = input.program, _protection(robot, input)
     homes = [home[:2] for _, home in neighbours_of(robot, input)]
     geographic = not program.frame.is_local
     context = context_of(robot, input, [*kept.vertices, *homes], geographic=geographic)
     traced = zip(_ordered(robot), trace_of(robot), strict=True)
     steps = tuple(_step(index, context, step) for index, step in traced)
-    head = tuple(each for each in _head(context, input, kept) if each[1] != ())
+    named = plan or input.program.fingerprint
+    head = tuple(each for each in _head(context, input, kept, named) if each[1] != ())
     words = {"Robot"} | _words((head, [step.call for step in steps]))
     return RobotView(
         robot.id, program.name, tuple(sorted(words)), head, steps, conditions_of(robot), objects_in(robot)
@@ -184,12 +191,14 @@ def _protection(robot: RobotProgram, input: TargetInput) -> _Protection:
     return _Protection(fences_of(robot, input, escapes), refuges, escapes)
 
 
-def _head(context: RobotContext, input: TargetInput, kept: _Protection) -> Iterator[tuple[str, object]]:
+def _head(
+    context: RobotContext, input: TargetInput, kept: _Protection, plan: str
+) -> Iterator[tuple[str, object]]:
     robot, program = context.robot, input.program
     home = robot.home or (0.0, 0.0, 0.0)
     yield "id", robot.id
     yield "mission", program.name
-    yield "plan", program.fingerprint
+    yield "plan", plan
     yield "fleet", tuple(each.id for each in program.robots)
     yield "log", log_name(robot.id)
     yield "vehicle", context.vehicle.name

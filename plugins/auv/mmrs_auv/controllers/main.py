@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
+from math import inf
 from pathlib import Path
 
 from mmrs_auv.controllers.vehicle import CanVehicle
@@ -73,7 +74,15 @@ def main(
             stack.callback(let_go)
             patience, eyes = options.reach.patience, _eyes(ports.get(robot.id), stack)
             return CanVehicle(
-                robot, sheet, connection.craft, options.clock, guard, box, patience=patience, eyes=eyes
+                robot,
+                sheet,
+                connection.craft,
+                options.clock,
+                guard,
+                box,
+                patience=patience,
+                eyes=eyes,
+                clearance=given.clearance,
             )
 
         return run(robots, conditions, _locators(robots, ports, locators or {}), rest, vehicles=vehicle)
@@ -92,8 +101,16 @@ def _parser() -> argparse.ArgumentParser:
         metavar="[ROBOT=]PORT",
         help="UDP port on which cameras tell where objects are, whatever objects.py says",
     )
+    add("--clearance", type=_metres, default=0.0, help="metres ahead within which sonar must see nothing")
     add("--clock", choices=("real", "bus"), help="bus: time as a simulated vehicle tells it")
     return parser
+
+
+def _metres(text: str) -> float:
+    found = float(text)
+    if not 0.0 <= found < inf:
+        raise ValueError(text)
+    return found
 
 
 def _by_robot(

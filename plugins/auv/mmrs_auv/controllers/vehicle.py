@@ -65,12 +65,14 @@ class CanVehicle:
         *,
         patience: float = 30.0,
         eyes: Detections | None = None,
+        clearance: float = 0.0,
     ) -> None:
         """Tell it nothing yet.
 
         Args:
             patience: real seconds to wait for its first sign.
             eyes: what its cameras tell; None: nobody looks for objects.
+            clearance: metres ahead within which sonar must see nothing; 0: it may.
         """
         self._eyes, self._seen = eyes, frozenset[str]()
         self._box, self._fixed = box, -inf
@@ -78,7 +80,7 @@ class CanVehicle:
         self._guard, self._patience = guard, patience
         self.start = robot.home
         self._helm = Helm(craft)
-        self._watch = Watch(craft, robot.reserve, self._after)
+        self._watch = Watch(craft, robot.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._mode, self._armed = GUIDED, False
         self._told: set[str] = set()

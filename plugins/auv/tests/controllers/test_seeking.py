@@ -9,13 +9,15 @@ import pytest
 from mmrs_auv.controllers import vehicle as module
 from mmrs_auv.controllers.vehicle import CanVehicle
 from mmrs_auv.testing import pool_sheet
+from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings
 from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
 from vessel_rig import Rig
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.faults import OBSTACLE, Fault
 from mmrs_core.flight.program import GoTo, Local, Object, Robot
 from mmrs_core.flight.records.blackbox import BlackBox
+from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.vehicles.vehicle import Seeking
 
 Making = Callable[..., tuple[CanVehicle, Rig]]
@@ -49,15 +51,16 @@ def eyes() -> Iterator[Detections]:
 @pytest.fixture
 def vehicle_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Making]:
     monkeypatch.setattr(module, "LOOK_SECONDS", 0.0)
-    rig = Rig(SHEET)
+    rig = Rig(SHEET, Surroundings(bottom=20.0, obstacles=(Obstacle(15.0, 0.0, 1.0),)))
     rig.until(lambda: rig.state.trusted, 10.0)
     box = BlackBox(tmp_path / "box", "run", "naiad", lambda: rig.bus.now)
 
     def make(
-        eyes: Detections | None, sees: tuple[float, float, float] | None = None
+        eyes: Detections | None, sees: tuple[float, float, float] | None = None, **more: float
     ) -> tuple[CanVehicle, Rig]:
         robot, clock = Robot("naiad", "naiad.ndjson", "sub", HOME, "a", ()), RigClock(rig, eyes, sees)
-        return CanVehicle(robot, SHEET, rig.craft, clock, lambda: None, box, eyes=eyes), rig
+        made = CanVehicle(robot, SHEET, rig.craft, clock, lambda: None, box, eyes=eyes, **more)
+        return made, rig
 
     yield make
     box.close()
@@ -94,3 +97,11 @@ def test_without_cameras_somebody_else_says_where_it_is(vehicle_of):
     vehicle, _ = vehicle_of(None)
     assert vehicle.seek(GoTo(BUOY)) is None
     assert vehicle.state().detected == frozenset()
+
+
+def test_what_sonar_sees_too_near_is_an_obstacle(vehicle_of):
+    vehicle, _ = vehicle_of(None, clearance=30.0)
+    vehicle.prepare(Uploads())
+    with pytest.raises(Fault, match=r"\d+\.\d m ahead") as seen:
+        vehicle.go_to(Local(10.0, 0.0, -1.0), None, None, through=False)
+    assert seen.value.event == OBSTACLE

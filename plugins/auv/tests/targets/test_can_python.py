@@ -113,6 +113,11 @@ def test_each_robot_has_its_sheet(tmp_path: Path) -> None:
     assert "command=" not in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
 
 
+def test_its_plan_is_that_of_all_other_controllers_of_the_mission(tmp_path: Path) -> None:
+    folder = generated(pair(), tmp_path)
+    assert repr(pair().fingerprint)[1:-1] in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
+
+
 def test_a_vehicle_that_is_not_there_ends_the_program(tmp_path: Path) -> None:
     folder = generated(dive(swim("a", 1.0, 0.0, 1.0)), tmp_path / "code")
     done = call(folder, "--can", "can0@127.0.0.1:9", "--log", str(tmp_path / "logs"))

@@ -55,7 +55,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
         sheet = to_json(_sheet(robot, input))
-        view = {"robot": robot_view(robot, local), "sheet": f"{module}.json"}
+        view = {"robot": robot_view(robot, local, input.program.fingerprint), "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
     yield from fleet_files(local.program, modules)
