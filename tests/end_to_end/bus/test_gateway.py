@@ -124,6 +124,22 @@ def test_a_program_waits_for_its_slots_and_is_told_of_news(client, peer, until, 
     client.ask({"do": "pass", "slots": ["ready"], "lamport": found["lamport"] + 1}, "passed")
 
 
+def test_what_was_detected_goes_with_notifies_over_the_bus_and_through_the_gateway(client, peer, until):
+    until(lambda: not peer.missing(["a"]))
+    finds = [["buoy", [1.0, 2.0, -3.0]]]
+    client.say({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True, "finds": finds})
+    client.hear("asked")
+    client.ask({"do": "send", "number": 1, "lamport": client.hear("granted")["lamport"]}, "sent")
+    client.hear("acknowledged")
+    assert peer.finds("b") == (("buoy", (1.0, 2.0, -3.0)),)
+
+    delivery = peer.prepare(CommandId(RUN, "b", "", 1), (("a", "ready"),), True, (("wreck", None),))
+    until(lambda: delivery.lamport is not None)
+    delivery.send(delivery.lamport)
+    until(lambda: not delivery.waiting)
+    assert client.ask({"do": "state"}, "state")["finds"] == [["wreck", None]]
+
+
 def test_a_program_that_goes_is_a_lost_peer(client, peer, until):
     until(lambda: not peer.missing(["a"]))
     client.close()

@@ -81,6 +81,14 @@ def test_a_program_is_carried_out_and_the_others_are_told_that_it_has_ended(proc
     assert "'alpha': done" in capsys.readouterr().err
 
 
+def test_names_of_what_was_detected_go_with_notifies():
+    sender, receiver = robot_of(), replace(OTHER, slots=("go",), senders=(("go", ("alpha",)),))
+    slots = LocalSlots([sender, receiver])
+    slots.notify("alpha", [("beta", "go")], True, lambda lamport: None, lambda silent: None, {"buoy"})
+    assert slots.found("beta") == {"buoy"}
+    assert slots.found("alpha") == set()
+
+
 def test_a_robot_flies_and_tells_where_it_is_and_what_it_does(process, vehicle, tmp_path):
     simulated, port = vehicle
     shared = process(robot_of(), port=port)
