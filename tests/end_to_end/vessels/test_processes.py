@@ -47,7 +47,10 @@ def test_no_thrust_in_time_when_a_part_is_killed_and_the_vehicle_comes_up(
 
 
 def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
-    """Nobody hears anything meanwhile; the drives tell afterwards that their watchdogs stopped them."""
+    """Nobody hears anything meanwhile; the drives tell afterwards that their watchdogs stopped them.
+
+    On a slow computer the sensor controller has given up the dive by then, and they are off.
+    """
     with boat(pool_sheet(), tmp_path) as vehicle:
         under_way(vehicle)
         vehicle.kill("actuators")
@@ -57,7 +60,7 @@ def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
         mended = time.monotonic()
         assert until(lambda: len(vehicle.ear.said("Thruster", mended)) >= 6, 5)
         drives = [said for _, said in vehicle.ear.said("Thruster", mended)]
-        assert {said.values["Drive"] for said in drives} == {"WATCHDOG"}
+        assert {said.values["Drive"] for said in drives} <= {"WATCHDOG", "OFF"}
         assert {said.values["Thrust"] for said in drives} == {0.0}
 
 
