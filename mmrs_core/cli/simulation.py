@@ -61,8 +61,8 @@ def backends_of(given: Sequence[str] | None, usual: str) -> tuple[str, Mapping[s
     own: dict[str, str] = {}
     for robot, sign, name in (each.rpartition("=") for each in given or ()):
         if robot in own:
-            whose = f"'{robot}'" if sign else "all other robots"
-            raise typer.BadParameter(f"--backend {name}: {whose} have {own[robot]} already")
+            whose = f"'{robot}' has" if sign else "all other robots have"
+            raise typer.BadParameter(f"--backend {name}: {whose} {own[robot]} already")
         own[robot] = name
     return own.pop("", usual), own
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 import typer
 
-from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of
+from mmrs_core.cli.simulation import backends_of
+from mmrs_core.cli.wishes import Wishes, check_mavlink, links_of, options_of_robots
 
 LINK = "udpin:127.0.0.1:14550"
 
@@ -48,3 +49,37 @@ def test_one_robot_has_one_link():
 def test_names_of_robots_may_hold_what_stands_between_them_and_their_links():
     given = (f"a=b={LINK}", f"a={LINK}@2")
     assert links_of(given, ("a", "a=b")) == {"a=b": LINK, "a": f"{LINK}@2"}
+
+
+BOTH = ("alpha", "beta")
+
+
+def test_a_robot_may_have_a_backend_of_its_own():
+    assert backends_of(["beta=can", "simulation"], "mavlink") == ("simulation", {"beta": "can"})
+    assert backends_of(None, "mavlink") == ("mavlink", {})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["can", "simulation"], "all other robots have can already"),
+        (["beta=can", "beta=simulation"], "'beta' has can already"),
+    ],
+)
+def test_two_backends_for_one_robot_are_wrong_usage(given, said):
+    with pytest.raises(typer.BadParameter, match=said):
+        backends_of(given, "mavlink")
+
+
+def test_links_and_options_of_other_backends_are_not_mavlinks():
+    wishes = Wishes(Path("logs"), own_backends={"beta": "can"}, options={"beta:detections": "29700"})
+    check_mavlink(wishes, {"alpha": LINK, "beta": "can0@127.0.0.1:29600"}, BOTH)
+    with pytest.raises(typer.BadParameter, match="--backend-option 'detections'"):
+        check_mavlink(Wishes(Path("logs"), options={"alpha:detections": "1"}), {}, BOTH)
+
+
+def test_the_key_to_sign_with_is_for_robots_on_mavlink():
+    given = {"signing-key": "field.key", "patience": "9"}
+    wishes = Wishes(Path("logs"), own_backends={"beta": "can"}, options=given)
+    assert options_of_robots(wishes, BOTH) == {"patience": "9", "alpha:signing-key": "field.key"}
+    assert options_of_robots(Wishes(Path("logs"), options=given), BOTH) == given
