@@ -18,10 +18,11 @@ from mmrs_core.cli.wishes import Wishes
 from mmrs_core.errors import InvalidModelError
 from mmrs_core.flight.records.blackbox import black_box_path, last_time, plan_of
 from mmrs_core.runtime.resuming import over_by
+from mmrs_core.runtime.slots import slots_path
 
 
 def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tuple[StepRecord, ...]:
-    """Return the steps that the robots of this process made before.
+    """Return the steps that the robots of this process made before; none where nothing began then.
 
     Raises:
         typer.BadParameter: if there are logs without --resume, or none with it.
@@ -34,7 +35,8 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
             raise typer.BadParameter(f"--log {wishes.folder}: holds logs already; --resume goes on with them")
         return ()
     if not found:
-        raise typer.BadParameter(f"--resume: no logs in {wishes.folder}")
+        _refuse_unknown(wishes.folder, here)
+        return ()
     for path in found:
         if plan_of(black_box_path(path)) not in ("", program.fingerprint):
             raise InvalidModelError(f"{path}: was flown by another plan of the mission")
@@ -54,6 +56,13 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
         raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")
     return records
+
+
+def _refuse_unknown(folder: Path, robots: Sequence[str]) -> None:
+    """Refuse a folder in which nothing says that these robots were to begin; logs begin with a step."""
+    logs = [folder / log_name(robot) for robot in robots]
+    if not any(path.exists() for log in logs for path in (black_box_path(log), slots_path(log))):
+        raise typer.BadParameter(f"--resume: no logs in {folder}")
 
 
 def end_of(records: Sequence[StepRecord], folder: Path) -> float:

@@ -144,7 +144,7 @@ def node_of(
     """
     folder.mkdir(parents=True, exist_ok=True)
     members = members_of(program)
-    paths = {robot: folder / f"{Path(log_name(robot)).stem}.slots.ndjson" for robot in robots}
+    paths = {robot: slots_path(folder / log_name(robot)) for robot in robots}
     return Node(
         [members[robot] for robot in robots],
         run,
@@ -174,6 +174,11 @@ def members_of(program: Program) -> dict[str, Member]:
         )
         for robot in program.robots
     }
+
+
+def slots_path(log: Path) -> Path:
+    """Return where the slots of a robot are kept, given the path of its log of steps."""
+    return log.with_name(f"{log.stem}.slots.ndjson")
 
 
 def recorded_of(

@@ -1,0 +1,23 @@
+"""Which folders a run may be gone on with in."""
+
+from __future__ import annotations
+
+import pytest
+import typer
+
+from mmrs_core.cli.flown_before import resumed_steps
+from mmrs_core.cli.wishes import Wishes
+from mmrs_core.testing.programs import two_drones
+
+
+@pytest.mark.parametrize("name", ["alpha.blackbox.ndjson", "alpha.slots.ndjson"])
+def test_a_run_in_which_nothing_began_is_tried_again(tmp_path, name):
+    (tmp_path / name).write_text("")
+    assert resumed_steps(two_drones(), Wishes(tmp_path, resume=True), ("alpha",)) == ()
+
+
+@pytest.mark.parametrize("name", ["beta.blackbox.ndjson", "notes.txt"])
+def test_a_folder_that_knows_nothing_of_the_robots_is_refused(tmp_path, name):
+    (tmp_path / name).write_text("")
+    with pytest.raises(typer.BadParameter, match="no logs in"):
+        resumed_steps(two_drones(), Wishes(tmp_path, resume=True), ("alpha",))
