@@ -75,12 +75,12 @@ def telling(port: int, detection: Detection) -> Iterator[None]:
 def everything():
     """Return a behaviour with all kinds of moves and actions, whose choice all decide alike."""
     turn = replace(move('turn "x"\n', "HeadTo"), heading=Heading(Target((0.0, 10.0, -1.0))))
-    there = swim("there", 1.0, 1.0, 1.0, after=(notify(("naiad", "go")), feedback("there")))
+    there = swim("there", 0.5, 0.5, 0.7, after=(notify(("naiad", "go")), feedback("there")))
     hold = move("hold", "HoldPosition", duration=1.0)
     looking = swim(
-        "looking", 0.2, 0.4, 1.5, before=(PHOTO,), heading=Heading(Target((5.0, 5.0, -1.0)), "", 30.0)
+        "looking", 0.3, 0.2, 0.9, before=(PHOTO,), heading=Heading(Target((5.0, 5.0, -1.0)), "", 30.0)
     )
-    short = swim("é", -1.0, 0.0, 1.2, after=(PHOTO,), task="home", distance=0.5, speed=0.3)
+    short = swim("é", -0.5, 0.0, 0.8, after=(PHOTO,), task="home", distance=0.5, speed=0.3)
     return dive(
         there, hold, turn, looking, short, slots=("go",),
         transitions={2: Transition(2, 4, waits=("go",), condition="battery-below:0.3", otherwise=3)},
@@ -233,7 +233,7 @@ def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -
 
 def test_a_lost_bus_is_a_fault_of_the_move_that_was_under_way(tmp_path: Path) -> None:
     behaviour = dive(swim("far", 30.0, 0.0, 1.0))
-    found = run(build(write(behaviour, tmp_path / "out")), behaviour, tmp_path, cut=5.0)
+    found = run(build(write(behaviour, tmp_path / "out")), behaviour, tmp_path, cut=2.5)
     assert found.status == 1
     assert found.replayed.faults == {"naiad": "LINK_LOST"}
     assert found.replayed.accepted, found.replayed.complaints
