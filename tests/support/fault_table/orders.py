@@ -26,6 +26,9 @@ FAST = (
 )
 STAYS = {"on a mission (AUTO)": 5.0, "charging": 30.0, "landing at home": 2.0, "on the ground": 5.0}
 
+CHARGER = {"recharge": 20.0}
+"""What vehicles have that charge: a battery that stays as it is holds robots up that found it below full."""
+
 RESUMED_AFTER = 12.0
 """Seconds of the run for which robots are held before they may go on."""
 
@@ -44,6 +47,7 @@ def _row(order: str, state: str, event: str, ends: str, *, resumes: bool = False
         least=1.0,
         program=program,
         stay=STAYS.get(state, stay),
+        settings=CHARGER if state == "charging" else {},
         order=order,
         resumes=RESUMED_AFTER if resumes else None,
         fast=(order, state) in FAST and not resumes,
