@@ -89,7 +89,7 @@ class Trial:
             words = "; ".join(sorted({_short(each) for each in reasons}))
             return Capability(probe.group, probe.element, verdict, words)
         how = self._how(probe.element)
-        same = self._written(probe.given) == self._written(probe.without)
+        same = self._written(probe.given) == self._written_at_all(probe.without)
         return Capability(probe.group, probe.element, "no difference" if same else "expressed", how)
 
     def _how(self, element: str) -> str:
@@ -101,11 +101,14 @@ class Trial:
         return set(self._target.refusals(input))
 
     def _impossible(self, input: TargetInput) -> bool:
+        return self._written_at_all(input) is None
+
+    def _written_at_all(self, input: TargetInput) -> dict[str, bytes] | None:
+        """Return what is rendered; None where that is impossible."""
         try:
-            self._written(input)
+            return self._written(input)
         except UnsupportedError:
-            return True
-        return False
+            return None
 
     def _written(self, input: TargetInput) -> dict[str, bytes]:
         """Return what is rendered for this behaviour.

@@ -113,6 +113,20 @@ def test_each_robot_has_its_sheet(tmp_path: Path) -> None:
     assert "command=" not in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
 
 
+def test_robots_of_other_kinds_are_left_out_where_that_is_allowed(tmp_path: Path) -> None:
+    stays = replace(move("stay", "HoldPosition", duration=1.0), after=(notify(("naiad", "go")),))
+    waits = {0: Transition(0, 1, waits=("go",))}
+    naiad = dive(swim("a", 1.0, 0.0, 1.0), slots=("go",), transitions=waits).robots[0]
+    mixed = program(robot_program("Kite", [stays]), naiad, name="mixed", frame=POOL)
+    with pytest.raises(UnsupportedError, match="Kite"):
+        render(CAN_PYTHON, given(mixed))
+    write(render(CAN_PYTHON, given(mixed), allow_lossy=True), tmp_path / "code")
+    assert sorted(path.name for path in (tmp_path / "code").glob("robot_*.py")) == ["robot_naiad.py"]
+    alone = call(tmp_path / "code", "--dry-run", "--log", str(tmp_path / "logs"))
+    assert alone.returncode == 2
+    assert "needs 'Kite'" in alone.stderr
+
+
 def test_its_plan_is_that_of_all_other_controllers_of_the_mission(tmp_path: Path) -> None:
     folder = generated(pair(), tmp_path)
     assert repr(pair().fingerprint)[1:-1] in (folder / "robot_Pollux.py").read_text(encoding="utf-8")

@@ -40,6 +40,7 @@ RENAMED = {
 WIRED = "can.device"
 """A property that devices get here: their number on the bus, from 1 on."""
 
+NO_VEHICLE = "no robot is an underwater vehicle"
 FINDING_ITS_WAY = frozenset({"RETURN", "EMERGENCY_AREA"})
 
 
@@ -47,10 +48,12 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
     """Yield a controller and a sheet for each robot, the fleet, and all that they need.
 
     Raises:
-        UnsupportedError: a robot has no home, or is no underwater vehicle whose data are known.
+        UnsupportedError: no robot is an underwater vehicle, or one of these has no home or unknown data.
     """
     local = _local(input)
-    robots = local.program.robots
+    robots = tuple(robot for robot in local.program.robots if _is_vehicle(robot, input))
+    if not robots:
+        raise UnsupportedError(NO_VEHICLE, (NO_VEHICLE,))
     stems = file_stems([robot.id for robot in robots], hyphens=False)
     modules = [f"robot_{stems[robot.id]}" for robot in robots]
     for robot, module in zip(robots, modules, strict=True):
@@ -58,7 +61,7 @@ def files(input: TargetInput) -> Iterator[FileSpec]:
         view = {"robot": robot_view(robot, local, input.program.fingerprint), "sheet": f"{module}.json"}
         yield FileSpec(f"{module}.json", "", data=sheet.encode())
         yield FileSpec(f"{module}.py", "robot.py.jinja", view, trace=trace_of(robot))
-    yield from fleet_files(local.program, modules)
+    yield from fleet_files(replace(local.program, robots=robots), modules)
     for path in sorted(RUNTIME_SOURCES.rglob("*.py")):
         yield FileSpec(f"{RUNTIME}/{path.relative_to(RUNTIME_SOURCES).as_posix()}", path.name, source=path)
     yield from _carried()
@@ -68,17 +71,21 @@ def refusals(input: TargetInput) -> Iterator[str]:
     """Yield what no controller of a vehicle on a CAN bus can do."""
     local = _local(input)
     for robot in local.program.robots:
+        if not _is_vehicle(robot, input):
+            yield f"robot '{robot.id}': is no underwater vehicle: --allow-lossy leaves it out beside others"
+            continue
         if robot.home is None:
             yield homeless(robot)
-        type = input.types.get(robot.type_name)
-        if type is None or not is_vehicle(type):
-            yield f"robot '{robot.id}': is no underwater vehicle"
-            continue
         try:
             _sheet(robot, input)
         except UnsupportedError as error:
             yield from (f"robot '{robot.id}': {each}" for each in error.elements or (str(error),))
         yield from _refused(robot, local)
+
+
+def _is_vehicle(robot: RobotProgram, input: TargetInput) -> bool:
+    type = input.types.get(robot.type_name)
+    return type is not None and is_vehicle(type)
 
 
 def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
