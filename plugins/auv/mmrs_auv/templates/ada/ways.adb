@@ -78,7 +78,7 @@ package body Ways is
           others  => <>));
    end Search;
 
-   --  Go to an object, wherever it is seen near where it is expected.
+   --  Go to an object, wherever it is seen near where it is expected; what is farther from there is another.
    procedure Seek (Plan : Plans.Plan; Along : Move) is
       Here     : constant Place := Vehicle.Told.Here;
       Searches : Natural := 0;
@@ -89,7 +89,7 @@ package body Ways is
       loop
          Pause (Plan);
          Sight.Look_For (To_String (Along.Object), Now, Found, Where);
-         exit when Found;
+         exit when Found and then (Along.Tolerance < 0.0 or else Away (Where, Along.Target) <= Along.Tolerance);
          if (if Searches = 0 then Is_Reached else Vehicle.Told.Progress in PROGRESS_REACHED | PROGRESS_FAILED) then
             if Searches = 2 then
                Fail ("OBJECT_NOT_FOUND", "it is not seen where it is expected");
@@ -98,9 +98,6 @@ package body Ways is
             Search (Along => Searches = 2);
          end if;
       end loop;
-      if Along.Tolerance >= 0.0 and then Away (Where, Along.Target) > Along.Tolerance then
-         Fail ("OBJECT_NOT_FOUND", "it is too far from where it is expected");
-      end if;
       Vehicle.Begin_Goal (Goal_Of (Along, Here, Where, Found => True));
       Finish_Goal (Plan);
    end Seek;
