@@ -22,6 +22,7 @@ from mmrs_core.errors import UnsupportedError
 from mmrs_core.flight.program import Local, Robot
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
+from mmrs_core.mavlink.controllers import MAVLINK_PYTHON
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import feedback, move, notify, program, quad, robot_program, use
 from mmrs_core.transformation.kinds import MOVE_KINDS
@@ -113,14 +114,32 @@ def test_each_robot_has_its_sheet(tmp_path: Path) -> None:
     assert "command=" not in (folder / "robot_Pollux.py").read_text(encoding="utf-8")
 
 
-def test_robots_of_other_kinds_are_left_out_where_that_is_allowed(tmp_path: Path) -> None:
+def mixed() -> Program:
+    """Return a drone, and a vehicle that waits for it."""
     stays = replace(move("stay", "HoldPosition", duration=1.0), after=(notify(("naiad", "go")),))
     waits = {0: Transition(0, 1, waits=("go",))}
     naiad = dive(swim("a", 1.0, 0.0, 1.0), slots=("go",), transitions=waits).robots[0]
-    mixed = program(robot_program("Kite", [stays]), naiad, name="mixed", frame=POOL)
+    return program(robot_program("Kite", [stays]), naiad, name="mixed", frame=POOL)
+
+
+def test_controllers_of_a_mixed_team_meet_by_zenoh(tmp_path: Path) -> None:
+    for target, name in ((CAN_PYTHON, "can"), (MAVLINK_PYTHON, "mavlink")):
+        write(render(target, given(mixed()), allow_lossy=True), tmp_path / name)
+    common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "50")
+    endpoint = free_endpoint()
+    naiad = begun(tmp_path / "can", "robot_naiad.py", *common, "--bus-listen", endpoint)
+    words = [sys.executable, "robot_Kite.py", *common, "--bus-connect", endpoint]
+    kite = subprocess.run(words, cwd=tmp_path / "mavlink", capture_output=True, text=True, timeout=60)
+    _, told = naiad.communicate(timeout=60)
+    assert (naiad.returncode, kite.returncode) == (0, 0), told + kite.stderr
+    judged = replay(mixed(), read_logs([tmp_path / "logs"]))
+    assert (judged.accepted, judged.outcome) == (True, Outcome.SUCCESS)
+
+
+def test_robots_of_other_kinds_are_left_out_where_that_is_allowed(tmp_path: Path) -> None:
     with pytest.raises(UnsupportedError, match="Kite"):
-        render(CAN_PYTHON, given(mixed))
-    write(render(CAN_PYTHON, given(mixed), allow_lossy=True), tmp_path / "code")
+        render(CAN_PYTHON, given(mixed()))
+    write(render(CAN_PYTHON, given(mixed()), allow_lossy=True), tmp_path / "code")
     assert sorted(path.name for path in (tmp_path / "code").glob("robot_*.py")) == ["robot_naiad.py"]
     alone = call(tmp_path / "code", "--dry-run", "--log", str(tmp_path / "logs"))
     assert alone.returncode == 2
@@ -154,11 +173,15 @@ def test_what_controllers_cannot_do_is_refused() -> None:
         assert said in f"{refused.value} {refused.value.elements}"
 
 
-def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
-    folder = generated(pair(), tmp_path / "code")
+def free_endpoint() -> str:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
+    folder = generated(pair(), tmp_path / "code")
+    endpoint = free_endpoint()
     common = ("--dry-run", "--log", str(tmp_path / "logs"), "--speedup", "50")
     modules = sorted(path.name for path in folder.glob("robot_*.py"))
     ways = (("--bus-listen", endpoint), ("--bus-connect", endpoint))
