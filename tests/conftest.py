@@ -24,12 +24,16 @@ IN_REAL_TIME = {
 }
 """Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
 SHARING = (
-    "documentation/test_tutorial.py",
-    "documentation/test_diagnostics_page.py",
-    "end_to_end/new_plugins/test_new_plugins.py",
-    "end_to_end/reports/test_flights.py",
-    "conformance/emf/test_dates.py",
-    "unit/analysis/test_derived_behaviours.py",
+    "plugins/auv/tests/targets/test_ada_frames.py",
+    "plugins/auv/tests/vision/test_detecting.py",
+    "tests/conformance/emf/test_dates.py",
+    "tests/documentation/test_diagnostics_page.py",
+    "tests/documentation/test_tutorial.py",
+    "tests/end_to_end/new_plugins/test_new_plugins.py",
+    "tests/end_to_end/reports/test_flights.py",
+    "tests/installed/test_wheels.py",
+    "tests/unit/analysis/test_derived_behaviours.py",
+    "tests/unit/generation/test_capabilities.py",
 )
 """Modules whose tests share what is long in the making, so that one worker makes it once."""
 
@@ -75,7 +79,7 @@ def group_of(nodeid: str) -> str:
     for group, folders in IN_REAL_TIME.items():
         if any(path.is_relative_to(HERE / folder) for folder in folders):
             return group
-    return str(path) if any(path == HERE / module for module in SHARING) else nodeid
+    return str(path) if any(path == HERE.parent / module for module in SHARING) else nodeid
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -18,7 +19,6 @@ from mmrs_core.mavlink.targets import TARGETS
 from mmrs_core.plugins import load_plugins
 
 PROBES = probes()
-TABLES = {target.name: capabilities_of(target, PROBES) for target in TARGETS}
 BY_NAME = {target.name: target for target in TARGETS}
 LANGUAGES = (BEHAVIOUR, MULTICOPTER)
 
@@ -81,6 +81,12 @@ MAKE_NO_DIFFERENCE = {
 MAKE_NO_DIFFERENCE["wpl"] = MAKE_NO_DIFFERENCE["qgc-plan"] | {"Robot.typeName"}
 
 
+@cache
+def table_of(name):
+    """Return the table of a target, which takes seconds to make."""
+    return capabilities_of(BY_NAME[name], PROBES)
+
+
 @pytest.fixture(scope="module")
 def features():
     """Return ``Class.feature`` for each feature of each class of the languages of behaviours."""
@@ -95,32 +101,34 @@ def features():
 
 
 def test_every_feature_of_the_languages_of_behaviours_has_a_row(features):
-    elements = [row.element for row in TABLES["wpl"]]
+    elements = [row.element for row in table_of("wpl")]
     told = {name: TOLD_WITH.get(name, name) for name in features}
     assert len(features) > 60
     assert [n for n, begin in told.items() if not any(each.startswith(begin) for each in elements)] == []
 
 
-@pytest.mark.parametrize("name", sorted(TABLES))
+@pytest.mark.parametrize("name", sorted(BY_NAME))
 def test_nothing_but_what_is_known_to_be_for_others_makes_no_difference(name):
     """What a target neither writes nor refuses has been dropped silently."""
-    assert {row.element for row in TABLES[name] if row.verdict == "no difference"} == MAKE_NO_DIFFERENCE[name]
+    assert {row.element for row in table_of(name) if row.verdict == "no difference"} == MAKE_NO_DIFFERENCE[
+        name
+    ]
 
 
-@pytest.mark.parametrize("name", sorted(TABLES))
+@pytest.mark.parametrize("name", sorted(BY_NAME))
 def test_everything_that_is_expressed_is_told_how(name):
     silent = [
-        r.element for r in TABLES[name] if r.verdict != "lossy" and not r.how and "policy" not in r.group
+        r.element for r in table_of(name) if r.verdict != "lossy" and not r.how and "policy" not in r.group
     ]
     assert silent == []
 
 
-@pytest.mark.parametrize("name", sorted(TABLES))
+@pytest.mark.parametrize("name", sorted(BY_NAME))
 def test_rendering_does_what_the_table_says(name):
     check_table(name, every=6)
 
 
-@pytest.mark.parametrize("name", sorted(TABLES))
+@pytest.mark.parametrize("name", sorted(BY_NAME))
 @pytest.mark.thorough
 def test_rendering_does_what_the_whole_table_says(name):
     check_table(name, every=1)
@@ -128,7 +136,7 @@ def test_rendering_does_what_the_whole_table_says(name):
 
 def check_table(name, every):
     target = without_copies(BY_NAME[name])
-    for probe, row in list(zip(PROBES, TABLES[name], strict=True))[::every]:
+    for probe, row in list(zip(PROBES, table_of(name), strict=True))[::every]:
         assert outcome(target, probe.given) == row.verdict.replace("no difference", "expressed"), row
 
 
@@ -151,7 +159,7 @@ def outcome(target, given):
 
 
 def test_each_element_has_one_row():
-    rows = [(row.group, row.element) for row in TABLES["wpl"]]
+    rows = [(row.group, row.element) for row in table_of("wpl")]
     assert len(rows) == len(set(rows))
 
 
@@ -220,7 +228,7 @@ def test_the_command_line_prints_the_table_of_a_target(capsys):
 def test_the_command_line_prints_all_tables_for_programs(capsys):
     assert run(["--capabilities", "--json", "--no-plugins"], program="mmrs-gen") == 0
     targets = json.loads(capsys.readouterr().out)["targets"]
-    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(TABLES, len(PROBES))
+    assert {name: len(rows) for name, rows in targets.items()} == dict.fromkeys(BY_NAME, len(PROBES))
 
 
 def test_an_unknown_target_has_no_table(capsys):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
+from functools import lru_cache
 
 from mmrs_auv.vessel.sheet import Sheet
-from mmrs_auv.vessel.wire.catalogue import messages_of
-from mmrs_auv.vessel.wire.database import database_of
+from mmrs_auv.vessel.wire.catalogue import Message, messages_of
+from mmrs_auv.vessel.wire.database import entry_of
 
 HEARD_OR_SAID = ("Emergency", "Pressure", "Thruster")
 
@@ -20,15 +22,18 @@ def codec_of(sheet: Sheet) -> tuple[str, str]:
     Raises:
         SheetError: a bus cannot be made of the vehicle's data; lists all that is wrong.
     """
+    heard = (each for each in messages_of(sheet) if each.name.startswith(HEARD_OR_SAID))
+    # A thruster's name, which the comment holds, is no C.
+    return _written(tuple(replace(each, comment="") for each in heard))
+
+
+@lru_cache(maxsize=16)
+def _written(messages: tuple[Message, ...]) -> tuple[str, str]:
     from cantools.database import Database
     from cantools.database.can.c_source import generate
 
-    messages = [each for each in messages_of(sheet) if each.name.startswith(HEARD_OR_SAID)]
-    wanted = {each.id for each in messages}
-    coded = [each for each in database_of(sheet).messages if each.frame_id in wanted]
-    for message in coded:
-        message.comment = None  # holds the thruster's name, which is no C
+    database = Database([entry_of(message) for message in messages])
     header, source, _, _ = generate(
-        Database(coded), "bus", "bus.h", "bus.c", "", use_round=True, floating_point_numbers=True
+        database, "bus", "bus.h", "bus.c", "", use_round=True, floating_point_numbers=True
     )
     return STAMP.sub(r"\1.", header), STAMP.sub(r"\1.", source)

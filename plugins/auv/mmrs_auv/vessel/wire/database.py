@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
 from ..refusals import MOST_THRUSTERS
 from ..sheet import Sheet
 from .catalogue import COMMAND_BASE, EMERGENCY_ID, NODES, Message, messages_of
-from .layout import Layout, Slot, layout_of
+from .layout import Slot, layout_of
 
 if TYPE_CHECKING:
     from cantools.database import Database
     from cantools.database.can import Message as Entry
     from cantools.database.can import Signal
+    from cantools.database.can.formats.dbc.dbc_attribute import DbcAttribute
     from cantools.database.can.formats.dbc.dbc_attribute_definition import DbcAttributeDefinition
+
+Attributes: TypeAlias = "Mapping[str, DbcAttribute[int]]"
 
 WATCHDOG = "WatchdogTime"
 """Attribute of messages: milliseconds without a valid one after which the drives that obey it stop."""
@@ -32,7 +36,7 @@ def database_of(sheet: Sheet) -> Database:
     from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
 
     watchdog = DbcAttributeDefinition(WATCHDOG, 0, "BO_", "INT", 0, 65535)
-    entries = [_entry(layout_of(message), sheet, watchdog) for message in messages_of(sheet)]
+    entries = [entry_of(message, _attributes(message, sheet, watchdog)) for message in messages_of(sheet)]
     return Database(
         entries,
         [Node(name) for name in NODES],
@@ -52,14 +56,12 @@ def dbc_of(sheet: Sheet) -> str:
     return text.replace("\r\n", "\n")
 
 
-def _entry(layout: Layout, sheet: Sheet, watchdog: DbcAttributeDefinition[int]) -> Entry:
+def entry_of(message: Message, attributes: Attributes | None = None) -> Entry:
+    """Return a message as databases have it."""
     from cantools.database.can import Message as Entry
-    from cantools.database.can.formats.dbc.dbc_attribute import DbcAttribute
     from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
 
-    message = layout.message
-    limit = _patience(message, sheet)
-    attributes = {WATCHDOG: DbcAttribute(round(limit * 1000), watchdog)} if limit else {}
+    layout = layout_of(message)
     return Entry(
         message.id,
         message.name,
@@ -68,8 +70,15 @@ def _entry(layout: Layout, sheet: Sheet, watchdog: DbcAttributeDefinition[int]) 
         senders=_senders(message),
         cycle_time=None if message.period is None else round(message.period * 1000),
         comment=_ascii(message.comment) or None,
-        dbc_specifics=DbcSpecifics(attributes=OrderedDict(attributes)),
+        dbc_specifics=DbcSpecifics(attributes=OrderedDict(attributes or {})),
     )
+
+
+def _attributes(message: Message, sheet: Sheet, watchdog: DbcAttributeDefinition[int]) -> Attributes:
+    from cantools.database.can.formats.dbc.dbc_attribute import DbcAttribute
+
+    limit = _patience(message, sheet)
+    return {WATCHDOG: DbcAttribute(round(limit * 1000), watchdog)} if limit else {}
 
 
 def _senders(message: Message) -> list[str]:
