@@ -57,10 +57,22 @@ class Boat:
     """A vehicle that runs."""
 
     def __init__(self, sheet: Sheet, folder: Path, drives: Path | None = None) -> None:
+        self.sheet = sheet
         self.file = folder / "sheet.json"
         self.file.write_text(to_json(sheet))
+        hub = [
+            sys.executable,
+            "-m",
+            "mmrs_core",
+            "can",
+            "hub",
+            "--port",
+            "0",
+            "--log",
+            str(folder / "bus.log"),
+        ]
         self.hub = subprocess.Popen(
-            [sys.executable, "-m", "mmrs_core", "can", "hub", "--port", "0"],
+            hub,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, bufsize=1,
         )  # fmt: skip
         assert self.hub.stdout is not None

@@ -76,4 +76,6 @@ def test_lines_count_at_the_next_tick(vehicle):
     health = next(each for each in heard if each is not None and each.name == "Health")
     assert health.values["Leak"] is True
     assert said[0].startswith("nonsense: no such fault")
-    assert said[1:] == ["pool-auv: 0.0 s, 1.0 m north, 2.0 m east, 3.0 m down, battery 100%; leak"]
+    assert said[1:] == [
+        "pool-auv: 0.0 s, 1.0 m north, 2.0 m east, 3.0 m down, thrust 0.0 N, battery 100%; leak"
+    ]

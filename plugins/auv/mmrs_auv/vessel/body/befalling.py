@@ -87,7 +87,7 @@ class Befallen:
 
 
 def status_of(sheet: Sheet, vehicle: Vehicle) -> str:
-    """Return where a vehicle is, and what is wrong with it."""
+    """Return where a vehicle is, what its drives put out, all together, and what is wrong with it."""
     truth, faults = vehicle.truth, vehicle.faults
     wrong = [
         *(f"thruster {sheet.thrusters[number].id} dead" for number in sorted(faults.dead)),
@@ -99,7 +99,9 @@ def status_of(sheet: Sheet, vehicle: Vehicle) -> str:
     ]
     place = f"{truth.north:.1f} m north, {truth.east:.1f} m east, {truth.depth:.1f} m down"
     charge = f"battery {vehicle.charge / sheet.battery:.0%}"
-    return f"{sheet.robot}: {truth.time:.1f} s, {place}, {charge}{''.join(f'; {each}' for each in wrong)}"
+    thrust = f"thrust {sum(abs(drive.thrust) for drive in vehicle.drives):.1f} N"
+    faulty = "".join(f"; {each}" for each in wrong)
+    return f"{sheet.robot}: {truth.time:.1f} s, {place}, {thrust}, {charge}{faulty}"
 
 
 def _thruster(sheet: Sheet, name: str) -> int:
