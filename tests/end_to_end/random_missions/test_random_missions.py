@@ -19,12 +19,12 @@ def check(first, contributions, tmp_path):
     assert {o.seed: o.refused for o in outcomes if o.solvable and o.refused} == {}
 
 
-@pytest.mark.parametrize("first", range(0, 40, BATCH))
+@pytest.mark.parametrize("first", range(20, 40, BATCH))
 def test_behaviours_pass_and_solvable_missions_are_not_refused(first, contributions, tmp_path):
     check(first, contributions, tmp_path)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("first", range(40, 1000, BATCH))
+@pytest.mark.parametrize("first", [*range(0, 20, BATCH), *range(40, 1000, BATCH)])
 def test_a_thousand_behaviours_pass_and_solvable_missions_are_not_refused(first, contributions, tmp_path):
     check(first, contributions, tmp_path)

@@ -180,6 +180,7 @@ def sought(behaviour, folder: Path, extra: Mapping[str, float] = MappingProxyTyp
         return run(build(robot), behaviour, folder, detections=port, extra=extra)
 
 
+@pytest.mark.thorough
 def test_an_object_is_approached_and_choices_are_made_by_what_cameras_see(tmp_path: Path) -> None:
     ways = {
         1: Transition(1, 2, condition="detected:a buoy", otherwise=4),

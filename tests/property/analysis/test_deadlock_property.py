@@ -26,38 +26,38 @@ def agrees(behaviour):
     assert found(behaviour) == ({Status.VIOLATED} if truth else {Status.SAFE})
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours(choices=False))
 def test_without_choices_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours())
 def test_with_choices_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours(loops=True))
 def test_with_loops_the_check_finds_deadlocks_exactly(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours(resets=True, loops=True))
 def test_with_resets_a_deadlock_is_never_called_safe(behaviour):
     if deadlocks(behaviour):
         assert found(behaviour).isdisjoint({Status.SAFE})
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours(resets=True, loops=True, most=1))
 def test_with_resets_and_notifies_to_single_slots_the_check_is_exact(behaviour):
     agrees(behaviour)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(behaviours())
 def test_knowing_what_is_certain_does_not_change_what_the_search_finds(behaviour):
     network = network_of(behaviour)
@@ -73,7 +73,7 @@ def test_many_behaviours_with_loops_and_choices_agree_with_the_exploration(behav
 
 
 @pytest.mark.thorough
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(behaviours(choices=False))
 def test_many_behaviours_without_choices_agree_with_the_exploration(behaviour):
     agrees(behaviour)

@@ -76,12 +76,12 @@ def check(seed):
         assert (np.hypot(*np.diff(line.points, axis=0).T) >= 0.01).all()
 
 
-@pytest.mark.parametrize("seed", range(18))
+@pytest.mark.parametrize("seed", range(14))
 def test_a_random_target_is_covered_clear_of_what_is_closed(seed):
     check(seed)
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(18, 440))
+@pytest.mark.parametrize("seed", range(14, 440))
 def test_many_random_targets_are_covered_clear_of_what_is_closed(seed):
     check(seed)

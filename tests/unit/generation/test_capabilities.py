@@ -225,6 +225,7 @@ def test_the_command_line_prints_the_table_of_a_target(capsys):
     assert "qgc-plan" not in told
 
 
+@pytest.mark.thorough
 def test_the_command_line_prints_all_tables_for_programs(capsys):
     assert run(["--capabilities", "--json", "--no-plugins"], program="mmrs-gen") == 0
     targets = json.loads(capsys.readouterr().out)["targets"]
