@@ -90,7 +90,8 @@ class Cause:
     Attributes:
         fail: makes it.
         within: seconds until thrust is to be zero, margins left out.
-        heard: whether anything is heard on the bus after that.
+        heard: whether what is heard on the bus after that can be believed: one damaged frame in 256 has
+            a check that is right.
     """
 
     name: str
@@ -155,7 +156,7 @@ def tried(cause: Cause, word: str, sheet: Sheet) -> bool:
     """Print what became of a dive, and return whether thrust ended in time and the vehicle surfaced."""
     declared = cause.within + failsafe.MARGIN + DRIVE
     dive = dived(sheet, cause.fail)
-    asked, told = dive.last("Command"), dive.last("Status")
+    asked, told = dive.last("Command"), dive.last("Status") if cause.heard else 0.0
     kept = dive.surfaced < LONGEST and max(told, dive.pushed) <= declared
     heard = f"{asked:10.2f}{told:10.2f}" if cause.heard else f"{'dark':>10}{'dark':>10}"
     tell(f"{cause.name}, {word}", f"{declared:10.2f}{heard}{dive.pushed:10.2f}", dive, kept)
