@@ -13,10 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import atan2, cos, inf, pi, remainder
+from itertools import pairwise
+from math import atan2, cos, inf, pi, remainder, sin
 
 import numpy as np
-from shapely import LineString, MultiLineString, Point, Polygon, prepare, remove_repeated_points
+from shapely import (
+    LineString,
+    MultiLineString,
+    MultiPoint,
+    Point,
+    Polygon,
+    prepare,
+    remove_repeated_points,
+    unary_union,
+)
 from shapely.geometry.base import BaseGeometry
 
 from mmrs_core.behaviour.program import RobotProgram
@@ -40,11 +50,17 @@ An ArduCopter keeps less than a hundred in all. These two are farther away than 
 by a twelfth where the area's corner is a right angle, more where it is sharper (`reach_of`).
 """
 
+CHORDS = 16
+"""Chords to a circle where corners cannot be cut off; the circle is inside them."""
+
 FINE = 0.01
 """Metres to which the largest fence is found."""
 
 ONE = 1e-9
 """Metres within which two vertices are one."""
+
+TOUCHING = 1e-7
+"""Metres that rounding may take from a fence."""
 
 Leg = tuple[Vertex, Vertex]
 
@@ -201,7 +217,7 @@ def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fenc
     def leaves_room(metres: float) -> bool:
         return legs.is_empty or _grown(drawn, metres).distance(legs) >= stray
 
-    if wanted <= 0.0 or not drawn.is_valid or not leaves_room(0.0):
+    if wanted < FINE or not drawn.is_valid or not leaves_room(0.0):
         return Fence(area.name, area.shell, 0.0, wanted, stray, reach)
     kept, most = (wanted, wanted) if leaves_room(wanted) else (0.0, wanted)
     while most - kept > FINE:
@@ -213,8 +229,22 @@ def _around(area: Area, wanted: float, legs: BaseGeometry, stray: float) -> Fenc
 
 def _grown(drawn: Polygon, metres: float) -> Polygon:
     """Return an area with so many metres around it; what that closes in belongs to it."""
-    # Along a spike with no width, GEOS divides by zero on the way to the right ring.
+    if metres <= 0.0:
+        return Polygon(drawn.exterior)
+    # Along a spike with no width, GEOS divides by zero on its way.
     with np.errstate(divide="ignore", invalid="ignore"):
-        grown = drawn.buffer(metres, join_style="mitre", mitre_limit=BEVEL) if metres > 0.0 else drawn
+        grown: BaseGeometry = drawn.buffer(metres, join_style="mitre", mitre_limit=BEVEL)
+        if not grown.buffer(TOUCHING).covers(drawn.buffer(metres)):
+            # It loses some such spikes.
+            grown = unary_union([drawn, *_around_edges(drawn, metres)])
     assert isinstance(grown, Polygon)
     return Polygon(grown.exterior)
+
+
+def _around_edges(drawn: Polygon, metres: float) -> Iterator[BaseGeometry]:
+    """Yield what is so many metres around each edge of an area, its ends rounded by chords outside."""
+    far = metres / cos(pi / CHORDS)
+    turns = [2.0 * pi * chord / CHORDS for chord in range(CHORDS)]
+    circle = [(far * cos(turn), far * sin(turn)) for turn in turns]
+    for edge in pairwise(drawn.exterior.coords):
+        yield MultiPoint([(x + east, y + north) for x, y in edge for east, north in circle]).convex_hull

@@ -110,6 +110,7 @@ angles = st.lists(st.floats(0.0, 2.0 * pi), min_size=3, max_size=8, unique=True)
 @settings(deadline=None)
 @example([0.0, 1.8e-289, 1.2e-26, 1.0, 2.0], [2.0, 3.0, *[2.0] * 6], 1.0, 0.0, 0.0, 0.0)
 @example([0.0, 1.2e-26, 3.5, 4.0], [2.0] * 8, 1.0, 0.0, 0.0, 0.0)
+@example([0.0, 1.0, 2.0, 1.2e-26, 2.9e-147], [2.0, 2.66, *[2.0] * 6], 2.0, 0.0, 0.0, 0.0)
 @given(
     angles=angles,
     sizes=st.lists(st.floats(2.0, 40.0), min_size=8, max_size=8),
