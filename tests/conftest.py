@@ -50,6 +50,17 @@ def pytest_configure(config: pytest.Config) -> None:
         bytecode = tempfile.TemporaryDirectory(prefix="bytecode-", ignore_cleanup_errors=True)
         os.environ["PYTHONPYCACHEPREFIX"] = bytecode.name
         config.add_cleanup(bytecode.cleanup)
+    draw_the_same_examples_everywhere()
+
+
+def draw_the_same_examples_everywhere() -> None:
+    """Keep hypothesis from drawing constants out of the modules that happen to be loaded.
+
+    Workers load different ones, so that one seed would try other examples in each run.
+    """
+    from hypothesis.internal.conjecture import providers
+
+    providers._get_local_constants = lambda: providers._local_constants
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
