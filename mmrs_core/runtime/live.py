@@ -163,7 +163,11 @@ def _connect(
 
 
 def _let_go(robots: Mapping[str, Backend]) -> None:
-    """Close all robots at once: each may take seconds to know what to do when nobody talks to it."""
+    """Close all robots at once: each may take seconds to know what to do when nobody talks to it.
+
+    Raises:
+        Exception: one cannot be closed; its notes tell why others cannot.
+    """
     errors: list[Exception] = []
 
     def close(robot: Closing) -> None:
@@ -181,8 +185,10 @@ def _let_go(robots: Mapping[str, Backend]) -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    for error in errors[:1]:
-        raise error
+    if errors:
+        for other in errors[1:]:
+            errors[0].add_note(f"also: {other!r}")
+        raise errors[0]
 
 
 def _named(say: Callable[[str], None], robot: str) -> Callable[[str], None]:

@@ -7,6 +7,7 @@ from ..vehicles.vehicle import State
 from .blackbox import BlackBox
 
 FIX_SECONDS = 0.19
+"""Least time between two fixes: five in a second, and a little for uneven sending."""
 
 
 def fix(box: BlackBox, state: State, place: Place | None = None) -> None:

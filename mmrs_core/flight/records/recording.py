@@ -21,8 +21,6 @@ from ..vehicles.vehicle import State
 from .blackbox import BlackBox
 from .fixes import FIX_SECONDS, fix
 
-"""Least time between two fixes: five in a second, and a little for uneven sending."""
-
 OTHER_SECONDS = 1.0
 """Least time between two messages of one type that nothing here knows."""
 
