@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 from can_hub import running
@@ -39,12 +40,15 @@ def faults(text: str) -> Faults:
     return found
 
 
-@pytest.fixture
-def bus() -> Iterator[tuple[Port, Port]]:
+@contextmanager
+def between(text: str) -> Iterator[tuple[Port, Port]]:
+    """Yield the ports of a decision centre whose bus has such faults from now on, and of its vehicle."""
     with running() as hub:
         channel = f"can0@127.0.0.1:{hub.port}"
         with open_port("socketcand", channel) as ours, open_port("socketcand", channel) as theirs:
-            yield ours, theirs
+            made = faults(text)
+            yield injected(ours, made, "naiad"), theirs
+            made.let_go("naiad")
 
 
 @given(FRAMES)
@@ -62,37 +66,28 @@ def test_a_wrong_bit_leaves_a_frame(frame: Frame, data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("text", ["loss=1", "naiad:cut@0", "cut-in@0"])
-def test_what_is_lost_is_not_heard_but_simulated_time_is(text: str, bus: tuple[Port, Port]) -> None:
-    ours, theirs = bus
-    made = faults(text)
-    port = injected(ours, made, "naiad")
-    for frame in (SAID, clock_frame(1.0)):
-        theirs.send(frame)
-    assert port.receive(5.0) == clock_frame(1.0)
-    assert port.receive(0.2) is None
-    made.let_go("naiad")
+def test_what_is_lost_is_not_heard_but_simulated_time_is(text: str) -> None:
+    with between(text) as (centre, vehicle):
+        for frame in (SAID, clock_frame(1.0)):
+            vehicle.send(frame)
+        assert centre.receive(5.0) == clock_frame(1.0)
+        assert centre.receive(0.2) is None
 
 
-def test_what_is_said_is_lost_too(bus: tuple[Port, Port]) -> None:
-    ours, theirs = bus
-    made = faults("cut-out@0")
-    port = injected(ours, made, "naiad")
-    port.send(SAID)
-    port.send(clock_frame(2.0))
-    assert theirs.receive(5.0) == clock_frame(2.0)
-    assert theirs.receive(0.2) is None
-    made.let_go("naiad")
+def test_what_is_said_is_lost_too() -> None:
+    with between("cut-out@0") as (centre, vehicle):
+        for frame in (SAID, clock_frame(2.0)):
+            centre.send(frame)
+        assert vehicle.receive(5.0) == clock_frame(2.0)
+        assert vehicle.receive(0.2) is None
 
 
-def test_a_cut_ends_in_time(bus: tuple[Port, Port]) -> None:
-    ours, theirs = bus
-    made = faults("cut@0+0.3")
-    port = injected(ours, made, "naiad")
-    theirs.send(SAID)
-    assert port.receive(0.4) is None
-    theirs.send(SAID)
-    assert port.receive(5.0) == SAID
-    made.let_go("naiad")
+def test_a_cut_ends_in_time() -> None:
+    with between("cut@0+0.3") as (centre, vehicle):
+        vehicle.send(SAID)
+        assert centre.receive(0.4) is None
+        vehicle.send(SAID)
+        assert centre.receive(5.0) == SAID
 
 
 def test_all_robots_of_a_run_have_the_same_faults() -> None:
