@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from math import inf
 
+from .clock import Clock
 from .links.link import Link
 from .links.radios import Radios
 from .options import Options
@@ -25,10 +26,10 @@ class Linked:
     link: Link
     vehicle: MavlinkVehicle
 
-    def record(self, box: BlackBox, robot: Robot, options: Options) -> None:
+    def record(self, box: BlackBox, robot: Robot, clock: Clock) -> None:
         """Have all that goes over the link kept."""
         geographic = isinstance(robot.home, Geographic)
-        self.link.observe(Recording(box, options.clock, self.vehicle.state, geographic=geographic))
+        self.link.observe(Recording(box, clock, self.vehicle.state, geographic=geographic))
 
     def recognise(self, robot: Robot, options: Options, under_way: bool, starts: Sequence[Place]) -> None:
         """Make sure that the vehicle is the robot's.
@@ -51,14 +52,21 @@ def linked(
     """
     link = _link(robot, options, radios, guard, stack)
     near = options.tolerances
+    return at_end_of(link, robot, near.place, near.home, lambda line: say(f"{robot.id!r}: {line}"))
+
+
+def at_end_of(
+    link: Link, robot: Robot, acceptance: float | None, home_tolerance: float, tell: Callable[[str], None]
+) -> Linked:
+    """Return the vehicle of a robot at the end of an open link; arguments as those of `MavlinkVehicle`."""
     vehicle = MavlinkVehicle(
         link,
         robot.vehicle,
         robot.home,
-        acceptance=near.place,
+        acceptance=acceptance,
         travel=robot.travel,
-        home_tolerance=near.home,
-        tell=lambda line: say(f"{robot.id!r}: {line}"),
+        home_tolerance=home_tolerance,
+        tell=tell,
     )
     return Linked(link, vehicle)
 

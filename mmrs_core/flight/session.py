@@ -298,7 +298,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
     box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), link))
     if linked is not None:
         watch.begin(linked.link, linked.vehicle)
-        linked.record(box, robot, options)
+        linked.record(box, robot, options.clock)
         shared.rehearsal.attend(robot.id, linked.link)
         shared.crews.wake[robot.id] = linked.link.wake
     pilot = Pilot(robot, vehicle, desk, watch, obedience, fence=options.fence)

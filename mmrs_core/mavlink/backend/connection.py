@@ -17,16 +17,15 @@ from mmrs_core.errors import LinkLostError, UnsupportedError, UsageError
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Fault
 from mmrs_core.flight.injection import Rehearsal, injections
+from mmrs_core.flight.linked import at_end_of
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.links.ports import Port, address_of, split_system
 from mmrs_core.flight.links.radios import Radios
 from mmrs_core.flight.links.retries import Retries
 from mmrs_core.flight.links.signing import Signer, signer_for
 from mmrs_core.flight.objects import Locator, where_expected
-from mmrs_core.flight.program import Action, Geographic, Robot
+from mmrs_core.flight.program import Action, Robot
 from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
-from mmrs_core.flight.records.recording import Recording
-from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.flight.vehicles.recognition import system_of
 from mmrs_core.mavlink.actions import action_of
 from mmrs_core.mavlink.backend.equipment import Equipment
@@ -166,21 +165,13 @@ def _equipment(
     given: BackendInput, live: Live, input: TargetInput, program: Robot, fleet: Fleet, link: Link
 ) -> Equipment:
     options = link_options(given.options)
-    vehicle = MavlinkVehicle(
-        link,
-        program.vehicle,
-        program.home,
-        acceptance=options.acceptance,
-        travel=program.travel,
-        home_tolerance=inf if live.resumed else options.home_tolerance,
-        tell=live.say,
-    )
+    home_tolerance = inf if live.resumed else options.home_tolerance
+    linked = at_end_of(link, program, options.acceptance, home_tolerance, live.say)
     context = context_of(given.robot, input, geographic=False)
     home = given.robot.home or (0.0, 0.0, 0.0)
     box = _box(given, live, fleet.clock)
     if box is not None:
-        geographic = isinstance(program.home, Geographic)
-        link.observe(Recording(box, fleet.clock, vehicle.state, geographic=geographic))
+        linked.record(box, program, fleet.clock)
         fleet.rehearsal.record(
             given.robot.id, lambda text, content: box.write("injected", fault=text, **content)
         )
@@ -191,7 +182,7 @@ def _equipment(
     return Equipment(
         url=_url(given, live)[0],
         link=link,
-        vehicle=vehicle,
+        vehicle=linked.vehicle,
         radios=fleet.radios,
         clock=fleet.clock,
         ground=Ground(given.program.frame, home, context.zero),
