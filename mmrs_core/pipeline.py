@@ -214,6 +214,7 @@ def render(
         move_kinds=contributions.move_kinds,
         areas=place.areas or (),
         device_actions=contributions.device_actions,
+        environment=place.environment or {},
     )
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None

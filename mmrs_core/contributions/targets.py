@@ -38,6 +38,7 @@ class TargetInput:
         types: robot types by name.
         areas: of the context as drawn, empty where no context was given.
         device_actions: how devices are wired, by property; a target for MAVLink knows the core's anyway.
+        environment: weather and water, by attribute name, as far as the context states them.
     """
 
     program: Program
@@ -46,6 +47,7 @@ class TargetInput:
     move_kinds: Mapping[Name, MoveKind]
     areas: tuple[Area, ...] = ()
     device_actions: Wirings = field(default_factory=dict)
+    environment: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -163,6 +163,16 @@ def test_a_robot_without_thrusters_on_a_bus_is_refused():
         render(CAN_C, replace(given, types={}))
 
 
+def test_how_deep_is_deep_depends_on_the_water():
+    salty, fresh = ({"waterDensity": density} for density in (1028.0, 998.0))
+    deep = []
+    for water in (salty, fresh):
+        files = {file.path: file for file in render(CAN_C, replace(plain("sub"), environment=water))}
+        header = files["drives_alpha/vehicle.h"].content.decode()
+        deep.append(float(header.partition("VEHICLE_DEEP ")[2].split()[0]))
+    assert deep == pytest.approx([101_325.0 + each * 9.80665 * 0.5 for each in (1028.0, 998.0)])
+
+
 def test_what_is_the_users_is_said_to_be_so():
     files = {file.path: file for file in render(CAN_C, plain("sub"))}
     assert [path for path, file in files.items() if file.once] == ["drives_alpha/outputs.c"]

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from imc_reader import read_packet
 from lxml import etree
+from mmrs_auv.commands.modelled import sheets_in
+from mmrs_auv.vessel.sheet import from_json
 from moos_reader import Helm, read, run
 
 from mmrs_core.testing.conformance.missions import run_command
@@ -38,6 +40,12 @@ def test_the_vehicle_faces_the_object_wherever_it_is_found(planned):
     index = int(turn.find("heading").get("target").rpartition(".")[2])
     target = root.findall("targets")[index]
     assert (target.get(kind), target.get("description")) == ("behaviour:ObjectTarget", "marker buoy")
+
+
+def test_its_controller_and_its_control_layer_know_the_same_vehicle_in_the_same_water(planned):
+    sheet = from_json((generated(planned, "can-python") / "robot_Nereid.json").read_text(encoding="utf-8"))
+    assert sheet == sheets_in(planned)["Nereid"]
+    assert sheet.water_density == 1026.0
 
 
 def test_its_plan_for_lsts_vehicles_is_read_back(planned):

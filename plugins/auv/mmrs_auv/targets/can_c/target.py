@@ -96,7 +96,8 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     if not is_vehicle(type):
         why = "is no underwater vehicle"
         raise UnsupportedError(f"robot '{robot.id}': {why}", (why,))
-    return sheet_of(type, robot.id, payload=robot.payload)
+    density = input.environment.get("waterDensity")
+    return sheet_of(type, robot.id, payload=robot.payload, density=density)
 
 
 def _view(sheet: Sheet) -> dict[str, object]:

@@ -150,8 +150,14 @@ def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:
     type = input.types.get(robot.type_name)
     if type is None:
         raise UnsupportedError(f"robot '{robot.id}': type '{robot.type_name}' is not known")
-    home = require_home(robot)
-    return sheet_of(type, robot.id, home=home, surface=input.program.frame.surface, payload=robot.payload)
+    return sheet_of(
+        type,
+        robot.id,
+        home=require_home(robot),
+        surface=input.program.frame.surface,
+        payload=robot.payload,
+        density=input.environment.get("waterDensity"),
+    )
 
 
 @cache
