@@ -8,8 +8,9 @@ from math import hypot
 from mmrs_auv.kinds import SEA_WATER, largest_depth
 from mmrs_auv.names import AUV_MOVEMENT, IN_WATER_SIZE, MOUNTING
 from mmrs_auv.vessel.refusals import MOST_DEPTH, MOST_SPEED, SheetError, refuse
-from mmrs_auv.vessel.sheet import Sheet, Thruster, Vector
+from mmrs_auv.vessel.sheet import Sheet, Thruster, Vector, unknown
 from mmrs_core.errors import InfeasibleError, UnsupportedError
+from mmrs_core.planning.devices import figure
 from mmrs_core.scene import Device, Part, Position, RobotType
 from mmrs_core.transformation.kinds import capability_for
 
@@ -17,6 +18,7 @@ POSITION = ("forward", "starboard", "down")
 PUSH = ("pushForward", "pushStarboard", "pushDown")
 HULL = ("length", "width", "height", "weight", "weightInWater")
 FIGURES = ("operatingThrust", "maxThrust", "operatingPower", "maxPower")
+LOG_KEYS = "dvl."
 LOG = {"dvl.range.min": "log.least", "dvl.range.max": "log.most"}
 """What properties of a Doppler log are called in a sheet."""
 
@@ -104,6 +106,8 @@ def _missing(robot_type: RobotType, payload: float) -> Iterator[str]:
         yield "size: no InWaterSize, which says what it weighs in water"
     else:
         yield from (f"size: {feature}" for feature in HULL if _number(size, feature) is None)
+    for name, device in robot_type.devices.items():
+        yield from (f"device '{name}': {wrong}" for wrong in _wrong_log(device))
     if not robot_type.batteries:
         yield "batteries: none"
     thrusters = _thrusters(capability.part)
@@ -117,6 +121,15 @@ def _missing(robot_type: RobotType, payload: float) -> Iterator[str]:
             yield f"{label}: mounting, which says where it sits and which way it pushes"
         elif not any(_vector(mounting, PUSH)):
             yield f"{label}: mounting: {', '.join(PUSH)} are all 0"
+
+
+def _wrong_log(device: Device) -> Iterator[str]:
+    """Yield which properties of a Doppler log say nothing."""
+    for key, text in device.properties.items():
+        if key.startswith(LOG_KEYS) and key not in LOG:
+            yield f"property {key!r}: {unknown(key, LOG)}"
+        elif key in LOG and figure(device.properties, key) is None:
+            yield f"property {key!r} is {text!r}, no number above 0"
 
 
 def _thruster(part: Part) -> Thruster:

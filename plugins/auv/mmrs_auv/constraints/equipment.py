@@ -11,6 +11,7 @@ from mmrs_core.diagnostics import Severity
 from mmrs_core.languages.element import Element
 from mmrs_core.languages.grounding.values import children, number, text
 from mmrs_core.languages.modelset import ModelSet
+from mmrs_core.languages.naming import nearest
 from mmrs_core.planning.devices import figure
 
 DEVICE = ("urn:mmrs:robot:1.0", "Device")
@@ -18,6 +19,8 @@ DEVICE = ("urn:mmrs:robot:1.0", "Device")
 KIND = "sensor.kind"
 KINDS = ("depth", "imu", "compass", "dvl", "sonar", "altimeter")
 FIGURES = (*SONAR_KEYS, "dvl.range.min", "dvl.range.max")
+OURS = ("sensor.", "sonar.", "dvl.")
+"""What names of properties begin with that are read here."""
 
 
 def _stays_down(size: Element, models: ModelSet) -> Iterator[Finding]:
@@ -45,6 +48,13 @@ def _unreadable(device: Element, models: ModelSet) -> Iterator[Finding]:
         elif key == KIND and said not in KINDS:
             known = ", ".join(KINDS)
             yield Finding(each, f"{KIND} of device '{text(device, 'id')}' is '{said}', none of {known}")
+        elif key.startswith(OURS) and key not in (KIND, *FIGURES):
+            hint = nearest(key, (KIND, *FIGURES))
+            yield Finding(
+                each,
+                f"property '{key}' of device '{text(device, 'id')}' is read by nobody"
+                + (f"; {hint}" * bool(hint)),
+            )
 
 
 EQUIPMENT_CONSTRAINTS = (
@@ -65,7 +75,7 @@ EQUIPMENT_CONSTRAINTS = (
     ),
     Constraint(
         "AUV021",
-        "Sensors are of kinds that are known, and their figures are numbers above 0",
+        "Sensors are of kinds that are known, and say figures above 0 under names that are known",
         DEVICE,
         _unreadable,
         "metres and degrees as plain numbers, such as 30.0",

@@ -7,6 +7,8 @@ from math import hypot
 from sys import float_info
 from typing import Any
 
+from .extras import misnamed
+from .instruments import Instruments
 from .sheet import Sheet, Thruster
 
 MOST_THRUSTERS, MOST_DEVICES = 32, 256
@@ -80,9 +82,19 @@ def _hull(sheet: Sheet) -> Iterator[str]:
     yield from _number("bit_rate", sheet.bit_rate, least=LEAST_BIT_RATE, most=MOST_BIT_RATE)
     yield from _number("watchdog", sheet.watchdog, least=LEAST_WATCHDOG, most=MOST_WATCHDOG)
     yield from _vector("home", sheet.home, most=MOST_PLACE)
+    yield from misnamed(sheet)
     for key, value in sheet.extra.items():
         above = 0.0 if key in POSITIVE else None
         yield from _number(f"extra {key!r}", value, above=above, least=-MOST_EXTRA, most=MOST_EXTRA)
+    yield from _log(sheet)
+
+
+def _log(sheet: Sheet) -> Iterator[str]:
+    """Yield that a Doppler log has the bottom at no height, if that is so."""
+    usual = Instruments()
+    least, most = sheet.extra.get("log.least", usual.log_least), sheet.extra.get("log.most", usual.log_most)
+    if not [*_number("", least), *_number("", most)] and least >= most:
+        yield f"extra 'log.least': {least!r} is not below 'log.most', {most!r}"
 
 
 def _weights(sheet: Sheet) -> Iterator[str]:

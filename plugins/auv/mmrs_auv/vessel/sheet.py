@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
-from typing import TypeAlias
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import MISSING, asdict, dataclass, field, fields
+from difflib import get_close_matches
+from typing import Any, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -83,16 +85,49 @@ def from_json(text: str) -> Sheet:
     """Return the sheet of a file.
 
     Raises:
-        ValueError: the text is no sheet.
+        ValueError: the text is no sheet, or has names that no sheet has; lists these.
     """
     try:
-        found = json.loads(text)
+        found = json.loads(text, object_pairs_hook=_once)
+        rows = found.pop("thrusters")
+        wrong = [*_misnamed(found, Sheet, ("thrusters",)), *_misnamed_thrusters(rows)]
+        if wrong:
+            raise ValueError("; ".join(wrong))
         thrusters = tuple(
             Thruster(**{**each, "position": tuple(each["position"]), "direction": tuple(each["direction"])})
-            for each in found.pop("thrusters")
+            for each in rows
         )
         home, devices = tuple(found.pop("home")), tuple(found.pop("devices", ()))
         extra = dict(found.pop("extra", {}).items())
         return Sheet(**found, thrusters=thrusters, home=home, devices=devices, extra=extra)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"no sheet of a vehicle: {error}") from error
+
+
+def unknown(name: object, known: Collection[str]) -> str:
+    """Return that there is nothing of that name, and the name that was perhaps meant."""
+    nearest = get_close_matches(str(name), sorted(known), n=1)
+    return "there is no such name" + (f"; did you mean {nearest[0]!r}?" if nearest else "")
+
+
+def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of JSON, whose names are there once."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = next(name for number, (name, _) in enumerate(pairs) if name in dict(pairs[:number]))
+        raise ValueError(f"{twice!r} is there more than once")
+    return found
+
+
+def _misnamed(found: Mapping[str, Any], kind: type, taken: Collection[str] = ()) -> Iterator[str]:
+    """Yield a line for each name that is not of a kind, and for each of its names that is missing."""
+    known = {each.name: each for each in fields(kind) if each.name not in taken}
+    yield from (f"{name!r}: {unknown(name, known)}" for name in found if name not in known)
+    for name, each in known.items():
+        if name not in found and each.default is MISSING and each.default_factory is MISSING:
+            yield f"{name!r} is missing"
+
+
+def _misnamed_thrusters(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    for number, row in enumerate(rows):
+        yield from (f"thruster {number}: {wrong}" for wrong in _misnamed(row, Thruster))
