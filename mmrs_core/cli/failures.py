@@ -102,7 +102,7 @@ def _usage(error: typer.TyperException) -> str:
         return error.format_message()
     message = error.format_message().rstrip(".")
     command = getattr(getattr(error, "ctx", None), "command_path", "")
-    where = f"; try '{command} --help'" if command else ""
+    where = f"{'' if message.endswith('?') else ';'} try '{command} --help'" if command else ""
     return message[:1].lower() + message[1:] + where
 
 

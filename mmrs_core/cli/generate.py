@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -76,7 +77,7 @@ def generate(
         left_out = {"losses": manifest.losses, "overrides": sorted(manifest.overrides), "asks": asks}
         say_json({"target": target, "files": written, **left_out})
     else:
-        _tell_written(written, manifest, asks)
+        _tell_written(written, output, manifest, asks)
     return 0
 
 
@@ -93,10 +94,14 @@ class _Order:
     force: bool
 
 
-def _tell_written(written: tuple[Path, ...], manifest: Manifest, asks: tuple[str, ...]) -> None:
+_MANY = 20
+"""Files of a folder that are told one by one; of a larger folder, only how many there are."""
+
+
+def _tell_written(written: tuple[Path, ...], folder: Path, manifest: Manifest, asks: tuple[str, ...]) -> None:
     say(f"{manifest.target}: {counted(len(written), 'file')} written")
-    for path in written:
-        say(f"  {path}")
+    for line in _listed(written, folder):
+        say(f"  {line}")
     for sort, names in (
         ("with a file of yours in place of the target's own", sorted(manifest.overrides)),
         ("left out, since the target cannot express it", manifest.losses),
@@ -106,6 +111,21 @@ def _tell_written(written: tuple[Path, ...], manifest: Manifest, asks: tuple[str
             say(f"{sort}:")
         for name in names:
             say(f"  {name}")
+
+
+def _listed(written: tuple[Path, ...], folder: Path) -> list[str]:
+    """Return a line for each file, and for each large folder of the target's own.
+
+    >>> _listed((Path("code/a.py"), *(Path(f"code/lib/{i}.py") for i in range(30))), Path("code"))
+    ['code/a.py', 'code/lib/ (30 files)']
+    """
+    tops = [folder.joinpath(*path.relative_to(folder).parts[:1]) for path in written]
+    sizes = Counter(tops)
+    lines = (
+        f"{top}/ ({counted(sizes[top], 'file')})" if sizes[top] > _MANY else str(path)
+        for top, path in zip(tops, written, strict=True)
+    )
+    return list(dict.fromkeys(lines))
 
 
 def _generate(

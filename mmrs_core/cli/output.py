@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, suppress
 from typing import TYPE_CHECKING, Any, TextIO
 from unicodedata import category
@@ -100,21 +100,27 @@ def coloured(stream: TextIO) -> bool:
 
 
 @contextmanager
-def progress(doing: str) -> Iterator[None]:
-    """Show what is being done while it is done, on a terminal only.
+def progress(doing: str) -> Iterator[Callable[[str], None]]:
+    """Show what is being done while it is done, on a terminal only; yield what shows how far it is.
 
     It is erased afterwards: by spaces where no escape sequences are wanted.
     """
     if not sys.stderr.isatty():
-        yield
+        yield lambda far: None
         return
-    words = f"{printable(doing)} …"
-    erased = "\r\x1b[K" if coloured(sys.stderr) else f"\r{' ' * len(words)}\r"
-    _write(sys.stderr, f"\r{words}")
+    longest = 0
+
+    def show(far: str) -> None:
+        nonlocal longest
+        words = f"{printable(doing)} … {printable(far)}".rstrip()
+        _write(sys.stderr, f"\r{words.ljust(longest)}")
+        longest = max(longest, len(words))
+
+    show("")
     try:
-        yield
+        yield show
     finally:
-        _write(sys.stderr, erased)
+        _write(sys.stderr, "\r\x1b[K" if coloured(sys.stderr) else f"\r{' ' * longest}\r")
 
 
 def counted(number: int, thing: str) -> str:

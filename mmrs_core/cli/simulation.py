@@ -13,8 +13,10 @@ import typer
 from mmrs_core.behaviour.log import SUFFIX, LogWriter, log_name, read_log
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome
+from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.figures import clock, length
 from mmrs_core.cli.journey import Workshop
+from mmrs_core.cli.output import progress
 from mmrs_core.errors import MmrsError
 from mmrs_core.pipeline import Place, simulate
 from mmrs_core.runtime.run import Run
@@ -94,20 +96,26 @@ def fly(
             asks for one of the conditions.
         UnsupportedError: if it does not know what the behaviour holds.
     """
-    return workshop.stage(
-        "simulate",
-        "simulating",
-        lambda: simulate(
-            program,
-            place,
-            workshop.contributions,
-            backend=chosen.backend,
-            own_backends=chosen.own,
-            options=chosen.options,
-            assume=conditions,
-            observe=workshop.onlookers.see_step,
-        ),
-    )
+
+    def make() -> Run:
+        with progress("simulating") as show:
+
+            def observe(record: StepRecord) -> None:
+                show(clock(record.time))
+                workshop.onlookers.see_step(record)
+
+            return simulate(
+                program,
+                place,
+                workshop.contributions,
+                backend=chosen.backend,
+                own_backends=chosen.own,
+                options=chosen.options,
+                assume=conditions,
+                observe=observe,
+            )
+
+    return workshop.stage("simulate", "simulating", make)
 
 
 def write_logs(

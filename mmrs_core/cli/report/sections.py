@@ -94,8 +94,7 @@ def waits(report: Report) -> str:
 def events(report: Report) -> str:
     """Return faults, decisions, orders and warnings."""
     rows = [
-        (clock(each.time), each.robot, _event(each), spoken(each.what), spoken(each.why))
-        for each in report.events
+        (clock(each.time), each.robot, _event(each), _what(each), spoken(each.why)) for each in report.events
     ]
     head = ("time", "robot", "kind", "what", "why, and what was done")
     shown = table(head, rows) if rows else element("p", None, "None.")
@@ -105,6 +104,11 @@ def events(report: Report) -> str:
 def _event(event: Event) -> Markup:
     words = {"text": "vehicle warns", "injected": "made on purpose"}.get(event.kind, event.kind)
     return badge(words, {"fault": "bad", "decision": "fair", "text": "fair"}.get(event.kind, "none"))
+
+
+def _what(event: Event) -> str:
+    """Return what happened; what a vehicle said stays as it said it."""
+    return event.what if event.kind == "text" else spoken(event.what)
 
 
 def moves(report: Report) -> str:

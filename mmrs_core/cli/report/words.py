@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from typing import get_args
 
 from mmrs_core.cli.figures import clock, energy, length
 from mmrs_core.cli.flights.places import Place
+from mmrs_core.scene.values import PolicyEvent, PolicyResponse
 
 UNKNOWN = "not known"
-_CODE = re.compile(r"(?<![\w'])[A-Z]{3,}(?:_[A-Z]+)*(?![\w'])")
+_CODES = frozenset(
+    (*get_args(PolicyEvent), *get_args(PolicyResponse), "ORDERED", "REFUSED", "STOPPED", "CRASHED")
+)
+_CODE = re.compile(r"(?<![\w'])[A-Z]+(?:_[A-Z]+)*(?![\w'])")
 
 
 def seconds(value: float | None) -> str:
@@ -83,12 +88,16 @@ def place(where: Place | None) -> str:
 
 
 def spoken(words: str) -> str:
-    """Return words with those that are written as codes written as people do.
+    """Return words with the names of events and responses as people write them; GPS stays GPS.
 
-    >>> spoken("less than 30% of the energy is left; response: EMERGENCY_AREA")
-    'less than 30% of the energy is left; response: emergency area'
+    >>> spoken("no GPS fix; by itself it has gone into mode land; response: EMERGENCY_AREA")
+    'no GPS fix; by itself it has gone into mode land; response: emergency area'
     """
-    return _CODE.sub(lambda found: found[0].replace("_", " ").lower(), words)
+    return _CODE.sub(lambda found: _plain(found[0]), words)
+
+
+def _plain(code: str) -> str:
+    return code.replace("_", " ").lower() if "_" in code or code in _CODES else code
 
 
 def span(times: tuple[float, float | None] | None) -> str:

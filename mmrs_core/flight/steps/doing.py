@@ -79,7 +79,7 @@ class Doing:
             self._vehicle.rest(action.seconds)
             self._journal.record("measured", action.value, {"device": action.device, "result": found})
         elif isinstance(action, Report):
-            self._desk.say(f"{self._robot.id!r} reports {action.name!r} {dict(action.pairs)!r}")
+            self._desk.say(words_of(f"{self._robot.id!r}: reported", action.name, dict(action.pairs)))
             self._vehicle.tell_ground(words_of(self._robot.id, action.name, dict(action.pairs)))
             self._journal.record("reported", action.name, dict(action.pairs))
         elif isinstance(action, NoEffect):

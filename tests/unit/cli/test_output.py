@@ -87,6 +87,17 @@ def test_progress_uses_no_escape_sequence_without_colour(monkeypatch):
     assert terminal.getvalue() == f"\rplanning …\r{' ' * len('planning …')}\r"
 
 
+def test_progress_tells_how_far_it_is_and_leaves_no_trace_of_the_longest(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("NO_COLOR", "1")
+    with output.progress("simulating") as show:
+        show("10:05")
+        show("0:07")
+        assert terminal.getvalue().endswith("\rsimulating … 10:05\rsimulating … 0:07 ")
+    assert terminal.getvalue().endswith(f"\r{' ' * len('simulating … 10:05')}\r")
+
+
 def test_progress_is_silent_elsewhere(capsys):
     with output.progress("planning"):
         pass
