@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from mmrs_core.diagnostics import Diagnostic, has_errors, in_order
-from mmrs_core.errors import InvalidModelError, UnreadableError, UsageError
+from mmrs_core.errors import InternalError, InvalidModelError, PluginError, UnreadableError, UsageError
 
 if TYPE_CHECKING:
     from mmrs_core.behaviour.program import Program
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mmrs_core.transformation.engine import Trace
 
 Contributed = TypeVar("Contributed")
+CORE_DISTRIBUTION = "mmrs-core"
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +202,7 @@ def render(
         UnsupportedError: if it cannot express what the behaviour holds.
         UnreadableError: if there is no such folder of templates.
         MmrsError: if that folder holds something unknown or broken.
+        PluginError: if the target is a plug-in's, and its templates are broken.
     """
     from mmrs_core.contributions.targets import TargetInput
     from mmrs_core.generation.overrides import overrides_in
@@ -218,7 +220,12 @@ def render(
     )
     provider = contributions.distribution_of("targets", chosen)
     overrides = overrides_in(templates, chosen, contributions.targets) if templates is not None else None
-    return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider, overrides=overrides)
+    try:
+        return rendered(chosen, given, allow_lossy=allow_lossy, provider=provider, overrides=overrides)
+    except InternalError as error:
+        if provider == CORE_DISTRIBUTION:
+            raise
+        raise PluginError(f"{contributions.blamed('targets', chosen)}: {error}") from error
 
 
 def capabilities(target: str | None, contributions: Contributions) -> dict[str, tuple[Capability, ...]]:

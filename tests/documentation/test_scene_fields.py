@@ -1,4 +1,4 @@
-"""The page about hooks tells what rules and kinds work with; `--update-golden` writes that part anew."""
+"""The page about hooks tells what contributions work with; `--update-golden` writes those parts anew."""
 
 import inspect
 import re
@@ -8,26 +8,46 @@ from pathlib import Path
 import pytest
 
 from mmrs_core import scene
+from mmrs_core.behaviour import program
+from mmrs_core.contributions.checks import CheckInput, Verdict
 from mmrs_core.contributions.rules import MoveSpec
+from mmrs_core.contributions.targets import FileSpec, GeneratedFile, TargetInput, TracedStep
 from mmrs_core.diagnostics import Place
 
 PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
-MARK = "<!-- made from mmrs_core.scene -->\n"
-TOLD = (
-    scene.Task,
-    scene.Part,
-    scene.Robot,
-    scene.RobotType,
-    scene.Capability,
-    scene.Kinematics,
-    scene.Work,
-    scene.Stroke,
-    scene.ActionAt,
-    scene.Look,
-    scene.Coverage,
-    scene.Scene,
-    MoveSpec,
-)
+TOLD = {
+    "mmrs_core.scene": (
+        scene.Task,
+        scene.Part,
+        scene.Robot,
+        scene.RobotType,
+        scene.Capability,
+        scene.Kinematics,
+        scene.Work,
+        scene.Stroke,
+        scene.ActionAt,
+        scene.Look,
+        scene.Coverage,
+        scene.Scene,
+        MoveSpec,
+    ),
+    "mmrs_core.behaviour.program": (
+        CheckInput,
+        Verdict,
+        TargetInput,
+        FileSpec,
+        GeneratedFile,
+        TracedStep,
+        program.Program,
+        program.RobotProgram,
+        program.Move,
+        program.Target,
+        program.Heading,
+        program.Action,
+        program.Transition,
+    ),
+}
+END = "<!-- until here -->\n"
 ENTRY = re.compile(r"(?:^|(?:[.;]) )(\w+(?:, \w+)*): ")
 
 
@@ -69,28 +89,39 @@ def section_of(told):
     return "\n".join(lines)
 
 
+def made_of(part):
+    return "\n" + "\n\n".join(map(section_of, TOLD[part])) + "\n\n"
+
+
 @pytest.fixture(scope="module")
 def made():
-    return "\n" + "\n\n".join(map(section_of, TOLD)) + "\n"
+    return "".join(map(made_of, TOLD))
 
 
-def test_the_part_about_the_scene_is_current(made, update_golden):
-    head, mark, told = PAGE.read_text(encoding="utf-8").partition(MARK)
+@pytest.mark.parametrize("part", TOLD)
+def test_what_is_made_from_docstrings_is_current(part, update_golden):
+    head, mark, rest = PAGE.read_text(encoding="utf-8").partition(f"<!-- made from {part} -->\n")
+    told, end, tail = rest.partition(END)
     assert mark
+    assert end
     if update_golden:
-        PAGE.write_text(head + mark + made, encoding="utf-8", newline="\n")
-        told = made
-    assert told == made
+        told = made_of(part)
+        PAGE.write_text(head + mark + told + end + tail, encoding="utf-8", newline="\n")
+    assert told == made_of(part)
 
 
-@pytest.mark.parametrize("told", TOLD)
+@pytest.mark.parametrize("told", [each for part in TOLD.values() for each in part])
 def test_docstrings_speak_of_fields_that_exist(told):
     assert set(words_of(told)[1]) - {field.name for field in fields(told)} == set()
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("attributes", "grounded to `Position`"), ("strokes", "in an order that is good to follow")],
+    [
+        ("attributes", "grounded to `Position`"),
+        ("strokes", "in an order that is good to follow"),
+        ("distance", "of a GoTo"),
+    ],
 )
-def test_what_a_rule_author_needs_is_told(made, name, words):
+def test_what_an_author_needs_is_told(made, name, words):
     assert re.search(rf"^- `{name}: .*{re.escape(words)}", made, re.MULTILINE)

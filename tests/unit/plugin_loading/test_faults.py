@@ -2,16 +2,18 @@
 
 import pytest
 
+from mmrs_core import pipeline
 from mmrs_core.contributions.checks import Check
 from mmrs_core.contributions.commands import Command
 from mmrs_core.contributions.constraints import Constraint
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.contributions.rules import MoveKind, RobotKind, Rule
 from mmrs_core.contributions.symbols import MapSymbol
-from mmrs_core.contributions.targets import Target
+from mmrs_core.contributions.targets import FileSpec, Target
 from mmrs_core.errors import InfeasibleError, PluginError
 from mmrs_core.hookspecs import hookimpl
 from mmrs_core.plugins import load_plugins
+from mmrs_core.testing.programs import two_drones
 
 KITE = ("urn:test:kite:1.0", "Kite")
 MISSPELT = ("urn:mmrs:mission:1.0", "PontTask")
@@ -71,6 +73,19 @@ def test_an_error_that_the_contract_allows_passes():
     rule = contributions_with("mmrs_rules", Rule("wave", KITE, refuses)).rules[KITE]
     with pytest.raises(InfeasibleError, match="too windy"):
         rule.work(1, 2, 3)
+
+
+def test_a_template_that_is_broken_names_the_plug_in_and_the_line(tmp_path):
+    (tmp_path / "card.txt.jinja").write_text("first line\n{{ robot }}\n", "utf-8")
+
+    def cards(given):
+        yield FileSpec("card.txt", "card.txt.jinja", {"robot": given.program.robots[0].id})
+
+    target = Target("kite-cards", "d", tmp_path, cards, lambda given: ())
+    contributions = contributions_with("mmrs_targets", target)
+    with pytest.raises(PluginError) as caught:
+        pipeline.render(two_drones(), pipeline.Place({}), "kite-cards", contributions)
+    assert str(caught.value).startswith(f"{BLAMED}target 'kite-cards': template card.txt.jinja, line 2: ")
 
 
 def test_what_works_gives_what_it_gives():
