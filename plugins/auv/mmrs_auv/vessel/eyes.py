@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import logging
 import socket
 import threading
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from math import hypot
 from statistics import median
@@ -25,7 +26,9 @@ KEPT, NAMES = 9, 256
 """Detections that are kept of each object, and objects of which any are kept."""
 
 REPEATED = 60.0
-"""Seconds: who tells of times that lie farther back than this has another clock, and is heard again."""
+"""Seconds: who tells of times that lie farther back than this may have another clock, and is heard again."""
+
+_LOG = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +105,7 @@ class Detections:
 
     Attributes:
         port: that is listened to.
-        bad: how many datagrams were refused, by why.
+        bad: how many datagrams were refused, by why; the first of each kind is logged.
     """
 
     def __init__(
@@ -195,7 +198,7 @@ class Detections:
         try:
             detection = from_datagram(data)
         except ValueError as error:
-            self.bad[str(error)] += 1
+            self._refuse(str(error))
             return
         if detection.confidence < self._confidence:
             return
@@ -209,14 +212,31 @@ class Detections:
             if len(self._kept) >= NAMES:
                 self._forget(now)
             if len(self._kept) >= NAMES:
-                self.bad["too many names"] += 1
+                self._refuse("too many names")
                 return
             kept = self._kept[detection.name] = deque(maxlen=KEPT)
-        if any(-REPEATED < detection.time - other.time <= 0.0 and other.camera == detection.camera
-               for _, other in kept):  # fmt: skip
-            self.bad["late"] += 1
+        if self._is_late(detection, kept, now):
+            self._refuse("late")
             return
         kept.append((now, detection))
+
+    def _is_late(self, detection: Detection, kept: Iterable[tuple[float, Detection]], now: float) -> bool:
+        """Return whether a detection repeats one that is kept, or is older than most of its camera's.
+
+        A few that pretend to be of the future do not make all others late. Those of a camera whose clock
+        begins anew count once what it told before has been forgotten.
+        """
+        others = [each for each in kept if each[1].camera == detection.camera]
+        ahead = [(arrived, other.time - detection.time) for arrived, other in others]
+        newer = [
+            by for arrived, by in ahead if by > 0.0 and (by < REPEATED or now - arrived <= self._lasting)
+        ]
+        return any(by == 0.0 for _, by in ahead) or len(newer) > max(1, len(others) // 2)
+
+    def _refuse(self, why: str) -> None:
+        self.bad[why] += 1
+        if self.bad[why] == 1:
+            _LOG.warning("a detection at port %d is refused: %s", self.port, why)
 
     def _forget(self, now: float) -> None:
         for name in [name for name, kept in self._kept.items() if now - kept[-1][0] > self._lasting]:

@@ -19,6 +19,7 @@ from mmrs_auv.targets.ada.target import ADA
 
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Transition
 from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Policy
 from mmrs_core.testing.conformance.missions import run_command
@@ -47,9 +48,10 @@ def bound_by(policy):
     return replace(made, robots=(replace(made.robots[0], policies=(policy,)),))
 
 
-def mission_of(behaviour, type=None):
+def mission_of(behaviour, type=None, *, allow_lossy=False):
     """Return what is written of the first robot's mission."""
-    files = {file.path: file.content for file in render(ADA, input_of(behaviour, type))}
+    made = render(ADA, input_of(behaviour, type), allow_lossy=allow_lossy)
+    files = {file.path: file.content for file in made}
     return files["robot-naiad/mission.adb"].decode()
 
 
@@ -106,6 +108,7 @@ def test_names_of_any_kind_compile_without_a_warning(order, tmp_path, compiler):
         ("\x1f", 1),
         ("battery-below:0.3", 0),
         ('detected:a "b\n', 0),
+        ('found:a "b\n', 0),
         ("wind-above:3", 1),
         ("battery-below:low", 1),
     ],
@@ -144,24 +147,34 @@ def test_the_project_is_built_by_gprbuild(tmp_path):
 @pytest.mark.parametrize(
     ("policy", "refused"),
     [
-        (Policy("BATTERY_LOW", "SURFACE"), False),
-        (Policy("BATTERY_LOW", "SURFACE", 5.0), False),
-        (Policy("LINK_LOST", "CONTINUE"), False),
-        (Policy("BATTERY_LOW", "RETURN"), True),
-        (Policy("OBSTACLE", "SURFACE"), True),
+        (Policy("BATTERY_LOW", "RETURN", 5.0), False),
+        (Policy("OBSTACLE", "HOLD"), False),
+        (Policy("DEVICE_SILENT", "CONTINUE"), False),
+        (Policy("GROUND_LOST", "EMERGENCY_AREA"), False),
+        (Policy("BATTERY_LOW", "EMERGENCY_AREA"), True),
+        (Policy("POSITION_LOST", "RETURN"), True),
+        (Policy("LOG_FAILED", "CONTINUE"), True),
     ],
 )
-def test_policies_that_it_does_not_keep_are_refused(policy, refused):
+def test_policies_that_it_does_not_keep_are_refused_and_else_it_comes_up(policy, refused):
     found = [each for each in refusals(input_of(bound_by(policy))) if policy.event in each]
     assert bool(found) == refused
 
 
+@pytest.mark.parametrize("event", ["BATTERY_LOW", "POSITION_LOST"])
+def test_what_cannot_be_done_about_a_fault_is_to_come_up_where_that_is_allowed(event):
+    lost = bound_by(Policy(event, "EMERGENCY_AREA"))
+    with pytest.raises(UnsupportedError):
+        mission_of(lost)
+    assert f"Into.Answer ({event}) := Comes_Up;" in mission_of(lost, allow_lossy=True)
+
+
 def test_a_policy_of_the_type_counts_only_where_the_mission_has_none():
     fearful = replace(diver(), policies=(Policy("BATTERY_LOW", "RETURN"),))
-    mission = bound_by(Policy("BATTERY_LOW", "SURFACE", 7.0))
-    assert list(refusals(input_of(mission, fearful))) == []
-    assert len(list(refusals(input_of(dive(swim("a", 1.0, 2.0, 1.0)), fearful)))) == 1
-    assert "After (BATTERY_LOW) := 7.0" in mission_of(mission, fearful)
+    mission = bound_by(Policy("BATTERY_LOW", "HOLD", 7.0))
+    assert "Into.Bears (BATTERY_LOW) := 7.0;" in mission_of(mission, fearful)
+    assert "Into.Answer (BATTERY_LOW) := Holds_Place;" in mission_of(mission, fearful)
+    assert "Into.Answer (BATTERY_LOW) := Backs_Out;" in mission_of(dive(swim("a", 1.0, 2.0, 1.0)), fearful)
 
 
 def test_places_and_parameters_that_no_message_holds_are_refused():
@@ -173,9 +186,12 @@ def test_places_and_parameters_that_no_message_holds_are_refused():
 
 
 def test_a_wait_takes_as_long_as_its_own_policy_says():
-    own = Transition(1, 2, waits=("go",), policies=(Policy("WAIT_TOO_LONG", "SURFACE", 9.0),))
+    own = Transition(1, 2, waits=("go",), policies=(Policy("WAIT_TOO_LONG", "HOLD", 9.0),))
     behaviour = dive(swim("a", 1.0, 2.0, 1.0), slots=("go",), transitions={1: own})
-    assert "Made.Longest := 9.0;" in mission_of(behaviour)
+    mission = mission_of(behaviour)
+    assert "Made.Bears (WAIT_TOO_LONG) := 9.0;" in mission
+    assert "Made.Answer (WAIT_TOO_LONG) := Holds_Place;" in mission
+    assert "Into.Bears (WAIT_TOO_LONG)" not in mission
 
 
 @pytest.mark.thorough

@@ -115,14 +115,57 @@ def test_detections_are_forgotten(eyes: Detections, clock: Hands) -> None:
 
 
 def test_a_repeated_or_late_datagram_counts_once(eyes: Detections) -> None:
-    tell(eyes, {"time": 12.0}, {"time": 12.0}, {"time": 11.0})
-    assert eyes.bad == {"late": 2}
+    tell(eyes, {"time": 12.0}, {"time": 12.0})
+    assert eyes.bad == {"late": 1}
     assert eyes.place("red buoy") is None
+    tell(eyes, {"time": 12.5}, {"time": 11.0}, {"time": 13.0}, {"time": 11.0})
+    assert eyes.bad == {"late": 3}
 
 
-def test_one_datagram_from_the_far_future_does_not_silence_the_camera(eyes: Detections) -> None:
-    tell(eyes, {"time": 1e11}, {"time": 12.0}, {"time": 12.5})
-    assert eyes.place("red buoy") is not None
+@pytest.mark.parametrize("future", [1e11, 70.0, 13.0])
+@pytest.mark.parametrize("before", [0, 1, 2, 5])
+def test_one_datagram_from_the_future_does_not_silence_the_camera(
+    eyes: Detections, clock: Hands, future: float, before: int
+) -> None:
+    tell(eyes, *({"time": 12.0 + 0.01 * number} for number in range(before)))
+    tell(eyes, {"time": future})
+    for number in range(100):
+        clock.now += 0.2
+        tell(eyes, {"time": 12.1 + 0.005 * number, "north": 4.0})
+    assert eyes.place("red buoy") == (4.0, -1.0, 2.0)
+    assert eyes.bad == {}
+
+
+@pytest.mark.parametrize("age", [2.0, 30.0, 300.0, 3000.0])
+def test_what_was_told_before_does_not_count_again_beside_what_is_told_now(
+    eyes: Detections, clock: Hands, age: float
+) -> None:
+    for number in range(50):
+        clock.now += 0.2
+        tell(eyes, {"time": 5000.0 + number})
+        if number > 2:
+            tell(eyes, *({"time": 5000.0 + number - age - more, "north": 30.0} for more in (0.0, 1.0)))
+    assert eyes.place("red buoy") == (3.0, -1.0, 2.0)
+    assert eyes.bad["late"] > 90
+
+
+def test_a_camera_whose_clock_begins_anew_is_heard_again(eyes: Detections, clock: Hands) -> None:
+    tell(eyes, *({"time": 500.0 + number} for number in range(9)))
+    tell(eyes, {"time": 1.0})
+    assert eyes.bad == {"late": 1}
+    clock.now += 10.5
+    tell(eyes, {"time": 12.0, "north": 4.0}, {"time": 12.2, "north": 4.0})
+    assert eyes.place("red buoy") == (4.0, -1.0, 2.0)
+
+
+def test_the_first_datagram_that_is_refused_for_a_reason_is_logged(
+    eyes: Detections, caplog: pytest.LogCaptureFixture
+) -> None:
+    for _ in range(3):
+        eyes.take(b"nonsense")
+    assert [each.getMessage() for each in caplog.records] == [
+        f"a detection at port {eyes.port} is refused: no JSON"
+    ]
 
 
 def test_names_without_end_take_no_memory_without_end(eyes: Detections, clock: Hands) -> None:

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from mmrs_auv.vessel.wire.catalogue import BEATS, COMMON, MODES, PROGRESS, REASONS, Message
+from mmrs_auv.kinds import SEA_WATER, largest_depth
+from mmrs_auv.vessel.refusals import MOST_DEPTH
+from mmrs_auv.vessel.wire.catalogue import BEATS, COMMON, MODES, PROGRESS, REASONS, Message, depth_step
 from mmrs_auv.vessel.wire.layout import layout_of
+from mmrs_core.behaviour.program import RobotProgram
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import InfeasibleError
 
 SPOKEN = ("GoalPlace", "GoalPose", "DeviceCommand", "Emergency", "DecisionBeat")
 HEARD = ("Position", "Depth", "Pose", "Health", "Progress", "DeviceStatus")
@@ -23,6 +28,16 @@ def can_be_said(message: str, field: str, value: float) -> bool:
     """Return whether a field of a message holds a value."""
     part = layout_of(_KNOWN[message]).slots[field].field
     return part.low <= value <= part.high
+
+
+def depth_step_of(robot: RobotProgram, input: TargetInput) -> float:
+    """Return metres of depth in a step on a robot's bus; 0: its type does not say how deep it goes."""
+    type, density = input.types.get(robot.type_name), input.environment.get("waterDensity", SEA_WATER)
+    try:
+        deepest = largest_depth(type, robot.payload, density) if type is not None else None
+    except InfeasibleError:
+        return 0.0
+    return 0.0 if deepest is None else depth_step(min(deepest, MOST_DEPTH))
 
 
 def _message(message: Message) -> Mapping[str, object]:

@@ -4,42 +4,48 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from math import isfinite
 
 from mmrs_auv.backend.duties_of import ANSWER, parameter_of
-from mmrs_auv.kinds import SEA_WATER, largest_depth
 from mmrs_auv.names import IN_WATER_SIZE
 from mmrs_auv.sheets import action_number
-from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY
-from mmrs_auv.targets.moves import MOVES, seconds_of, seconds_of_hold
-from mmrs_auv.vessel.refusals import MOST_DEPTH
-from mmrs_auv.vessel.wire.catalogue import depth_step
+from mmrs_auv.targets.ada import policies as answers
+from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, mount_of, of_action, of_movement
+from mmrs_auv.targets.moves import seconds_of
+from mmrs_auv.vessel.refusals import MOST_SPEED
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move, Program, RobotProgram, SlotId, Target, Transition
 from mmrs_core.behaviour.semantics import slot_text
 from mmrs_core.contributions.targets import TracedStep
-from mmrs_core.errors import InfeasibleError
-from mmrs_core.flight.conditions import BATTERY, DETECTED, is_standard
+from mmrs_core.flight.conditions import BATTERY, DETECTED, FOUND, is_standard
 from mmrs_core.mavlink.context import RobotContext
-from mmrs_core.mavlink.vehicles import capability_of
+from mmrs_core.mavlink.vehicles import TRAVEL_FACTORS, capability_of
 from mmrs_core.scene import Part, Policy, Position
 
 KINDS: Mapping[str, str] = {
-    "start": "Starts", "go": "Goes", "hold": "Holds", "turn": "Turns", "stop": "Stops",
+    "start": "Starts", "go": "Goes", "hold": "Holds", "charge": "Charges", "turn": "Turns", "stop": "Stops",
 }  # fmt: skip
 
-
-WATCHED = ("LINK_LOST", "POSITION_LOST", "BATTERY_LOW")
-"""Events that last before they count."""
+UNITS: Mapping[str, str] = {DETECTED: "Sight", FOUND: "Sightings"}
+"""What decides standard conditions."""
 
 
 class Mission:
     """A robot's behaviour as its decision centre holds it."""
 
-    def __init__(self, context: RobotContext, program: Program, policies: Sequence[Policy]) -> None:
-        """Hold it; `policies` of the robot, the first for an event counts."""
+    def __init__(
+        self, context: RobotContext, program: Program, policies: Sequence[Policy], step: float
+    ) -> None:
+        """Hold it.
+
+        Args:
+            context: of the robot.
+            program: of all robots.
+            policies: of the robot, the first for an event counts.
+            step: metres of depth in a step on its bus; 0: its type does not say how deep it goes.
+        """
         self._context, self._program, self._policies = context, program, tuple(policies)
+        self._step = step
         robot = context.robot
         self._tasks = tuple(dict.fromkeys(move.task for move in robot.moves if move.task))
         self._slots = {slot: number for number, slot in enumerate(robot.slots, start=1)}
@@ -52,9 +58,11 @@ class Mission:
             "name": robot.id,
             "mission": self._program.name,
             "log": log_name(robot.id),
-            "step": self._depth_step(),
+            "step": self._step,
             "reserve": float(self._program.reserve),
-            "after": [(event, patience(event, self._policies) or 0.0) for event in WATCHED],
+            "cruise": self._cruise(),
+            "surface": float(self._program.frame.surface),
+            "policies": answers.view(self._policies),
             "floats": self._floats(),
             "alone": are_apart(self._program),
             "robots": json.dumps([each.id for each in self._program.robots]),
@@ -72,7 +80,8 @@ class Mission:
             if transition.condition is not None:
                 asked.setdefault(transition.condition, []).append(self._trace(robot.moves[index]))
         found = [{"id": id, "steps": tuple(steps), **_standard(id)} for id, steps in asked.items()]
-        return {"conditions": found, "sees": any(each["word"] == DETECTED for each in found)}
+        units = [unit for word, unit in UNITS.items() if any(each["word"] == word for each in found)]
+        return {"conditions": found, "units": units}
 
     def undecided(self) -> tuple[str, ...]:
         """Return the conditions that somebody has to decide."""
@@ -81,11 +90,13 @@ class Mission:
 
     def _move(self, index: int, move: Move) -> Mapping[str, object]:
         transition = self._context.robot.transitions.get(index)
+        special = (*transition.policies, *self._policies) if transition and transition.policies else ()
         return {
-            "kind": KINDS[MOVES[move.metaclasses[0]]],
+            "kind": KINDS[self._sort(move)],
             "way": _kind_of_way(transition),
             "trace": self._trace(move),
             "features": [*self._features(move), *_way(transition), *self._waits(transition)],
+            "policies": answers.view(special) if special else {"bears": (), "answer": ()},
             "actions": [
                 *(("Before", self._action(each, f"pre:{n}")) for n, each in enumerate(move.before)),
                 *(("After", self._action(each, f"post:{n}")) for n, each in enumerate(move.after)),
@@ -93,23 +104,27 @@ class Mission:
             "waits": [self._slots[slot] for slot in transition.waits] if transition is not None else [],
         }
 
+    def _sort(self, move: Move) -> str:
+        """Return what sort of move it is; one that cannot be made holds for no time."""
+        return "hold" if any(of_movement(move, self._context, self._step)) else SORTS[move.metaclasses[0]]
+
     def _features(self, move: Move) -> Iterator[tuple[str, object]]:
         yield "Id", _json(move.id)
         yield "Name", move.id
         if move.task:
             yield "Task_Number", self._tasks.index(move.task) + 1
-        sort = MOVES[move.metaclasses[0]]
+        sort = self._sort(move)
         if sort == "go" and move.target is not None and move.target.position is not None:
             yield "Target", self._place(move.target.position)
             yield "Away", float(move.distance)
             yield "Speed", self._speed(move)
             yield from self._object(move, move.target)
-        if move.heading is not None and move.heading.target.position is not None:
+        if sort in ("go", "turn") and move.heading is not None and move.heading.target.position is not None:
             yield "Looks", True
             yield "Seen", self._place(move.heading.target.position)
-            yield "Angle", float(move.heading.angle_degrees)
-        if sort == "hold":
-            yield "Seconds", seconds_of_hold(move)
+            yield "Angle", move.heading.angle_degrees + mount_of(move.heading.device, self._context)
+        if sort in ("hold", "charge"):
+            yield "Seconds", _duration(move)
 
     def _object(self, move: Move, target: Target) -> Iterator[tuple[str, object]]:
         """Yield what is told of the object that a move leads to."""
@@ -122,19 +137,31 @@ class Mission:
         yield "Looks_At_It", looked_at == target.description
 
     def _speed(self, move: Move) -> float:
-        """Return metres per second, no more than the vehicle can."""
-        speed, type = self._context.speed(move) or 0.0, self._context.type
+        """Return metres per second, no more than the vehicle can, or its bus can say."""
+        fastest = self._speeds[1] if self._speeds is not None else MOST_SPEED
+        return min(self._context.speed(move) or 0.0, fastest, MOST_SPEED)
+
+    def _cruise(self) -> float:
+        """Return metres per second at which the vehicle goes back; 0: as it likes."""
+        if self._speeds is None:
+            return 0.0
+        slowest, fastest = self._speeds
+        factor = TRAVEL_FACTORS.get(self._context.robot.travel_mode, 0.75)
+        return min(max(slowest, factor * fastest), MOST_SPEED)
+
+    @property
+    def _speeds(self) -> tuple[float, float] | None:
+        type = self._context.type
         capability = capability_of(self._context.robot, type) if type is not None else None
-        return speed if capability is None else min(speed, capability.speed[1])
+        return capability.speed if capability is not None else None
 
     def _waits(self, transition: Transition | None) -> Iterator[tuple[str, object]]:
-        if transition is None or not transition.waits:
+        if transition is None:
             return
-        policies = (*transition.policies, *self._policies)
-        longest = patience("WAIT_TOO_LONG", policies)
-        if longest is not None and isfinite(longest):
-            yield "Longest", longest
-        yield "Alone", patience("PEER_LOST", policies) or 0.0
+        if transition.policies:
+            yield "Is_Special", True
+        if not transition.waits:
+            return
         wanted = {(self._context.robot.id, slot) for slot in transition.waits}
         yield "Awaited", json.dumps(transition.waits)
         yield (
@@ -155,6 +182,8 @@ class Mission:
 
     def _action(self, action: Action, detail: str) -> Mapping[str, object]:
         told: list[tuple[str, object]] = [("Detail", _json(detail))]
+        if missing := "; ".join(of_action(action, self._context)):
+            return {"kind": "Feedback", "features": [*told, ("Words", f"is left out: {missing}")]}
         if action.is_a(NOTIFY):
             own = tuple(self._slots[slot] for robot, slot in action.sets if robot == self._context.robot.id)
             told += [("Slots", _json(slot_text(action))), ("Told", json.dumps(action.sets))]
@@ -172,15 +201,6 @@ class Mission:
 
     def _trace(self, move: Move) -> TracedStep:
         return TracedStep(f"move {move.id}", self._context.robot.id, move.id, move.task, move.rule)
-
-    def _depth_step(self) -> float:
-        """Return metres in a step of a goal's depth on the bus; 0: the type does not say how deep it goes."""
-        type, payload = self._context.type, self._context.robot.payload
-        try:
-            deepest = largest_depth(type, payload, SEA_WATER) if type is not None else None
-        except InfeasibleError:
-            return 0.0
-        return 0.0 if deepest is None else depth_step(min(deepest, MOST_DEPTH))
 
     def _floats(self) -> bool:
         size = self._context.type.part.attributes.get("size") if self._context.type is not None else None
@@ -207,9 +227,15 @@ def _standard(condition: str) -> Mapping[str, object]:
     word, _, rest = condition.partition(":")
     if is_standard(condition) and word == BATTERY:
         return {"word": "battery", "argument": float(rest)}
-    if is_standard(condition) and word == DETECTED:
-        return {"word": DETECTED, "argument": _json(rest)}
+    if is_standard(condition) and word in UNITS:
+        return {"word": word, "argument": _json(rest)}
     return {"word": ""}
+
+
+def _duration(move: Move) -> float:
+    found = move.attributes.get("duration")
+    known = SORTS.get(move.metaclasses[0]) in ("hold", "charge") and isinstance(found, (int, float))
+    return float(found) if known and isinstance(found, (int, float)) else 0.0
 
 
 def _kind_of_way(transition: Transition | None) -> str:

@@ -8,39 +8,40 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_auv.targets.ada import literals
-from mmrs_auv.targets.ada.bus import catalogue
+from mmrs_auv.targets.ada.bus import catalogue, depth_step_of
 from mmrs_auv.targets.ada.capabilities import CAPABILITIES
 from mmrs_auv.targets.ada.missions import Mission
-from mmrs_auv.targets.ada.refusals import refusals
+from mmrs_auv.targets.ada.policies import declared
+from mmrs_auv.targets.ada.refusals import is_diver, refusals
 from mmrs_auv.targets.places import templates_of
 from mmrs_core.contributions.targets import FileSpec, Target, TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.context import context_of
-from mmrs_core.mavlink.safety import policies_of
 
 TEMPLATES = templates_of("ada")
+NO_VEHICLE = "no robot is an underwater vehicle"
 OWN = ("decision_centre.gpr", "mission.ads")
 
 
 def files(input: TargetInput) -> Iterator[FileSpec]:
-    """Yield the sources in ``common`` and those of each robot.
+    """Yield the sources in ``common`` and those of each underwater vehicle.
 
     Raises:
-        UnsupportedError: a robot does something that its decision centre cannot; lists all.
+        UnsupportedError: no robot is one.
     """
-    refused = tuple(refusals(input))
-    if refused:
-        raise UnsupportedError("a decision centre in Ada leaves nothing out", refused)
+    robots = [robot for robot in input.program.robots if is_diver(robot, input)]
+    if not robots:
+        raise UnsupportedError(NO_VEHICLE, (NO_VEHICLE,))
     for source in sorted(TEMPLATES.glob("*.ad[bs]")):
         if source.name not in OWN:
             yield FileSpec(f"common/{source.name}", source.name, source=source)
     yield FileSpec("common/catalogue.ads", "catalogue.ads.jinja", catalogue())
-    stems = file_stems([robot.id for robot in input.program.robots])
+    stems = file_stems([robot.id for robot in robots])
     yield FileSpec("README.md", "README.md.jinja", {"robots": list(stems.items())})
-    for robot in input.program.robots:
-        policies = policies_of(robot, input)
-        mission = Mission(context_of(robot, input, geographic=False), input.program, policies)
+    for robot in robots:
+        context = context_of(robot, input, geographic=False)
+        mission = Mission(context, input.program, declared(robot, input), depth_step_of(robot, input))
         folder = f"robot-{stems[robot.id]}"
         for name in OWN:
             yield FileSpec(f"{folder}/{name}", name, source=TEMPLATES / name)

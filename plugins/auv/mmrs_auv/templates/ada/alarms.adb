@@ -1,5 +1,6 @@
 with Ada.Text_IO; use Ada.Text_IO;
 with Bus;
+with Catalogue;
 with Clocks;      use Clocks;
 with Craft;       use Craft;
 with Gateway;
@@ -11,6 +12,10 @@ package body Alarms is
    --  Seconds of silence of the whole bus that count as loss.
    Silent : constant Long_Float := 2.0;
 
+   --  Seconds in which nobody tells of leaks and battery, after which the dive is given up: a little later than
+   --  an actuator controller does that by itself.
+   Health_Silent : constant Long_Float := 5.5;
+
    --  Metres of uncertainty of one sigma above which the place counts as lost.
    Lost : constant Long_Float := 10.0;
 
@@ -20,44 +25,87 @@ package body Alarms is
    --  Since when events have lasted; Endless: they do not happen.
    Since : Seconds_Of := (others => Endless);
 
-   procedure Watch (Plan : Plans.Plan; For_Event : Event; Happens : Boolean; Why : String);
+   Borne     : Seconds_Of := (others => Endless);
+   Clearance : Long_Float := 0.0;
+
+   Is_Answering : Boolean := False;
+   Answers      : array (Event) of Boolean := (others => False);
+
+   procedure Watch (What : Lasting; Happens : Boolean; Why : String);
+   procedure Look_At_Health (Known : State);
+   function Is_Lost (Known : State) return Boolean;
    function Is_Ready return Boolean;
 
-   procedure Fail (Event, Why : String) is
+   procedure Fail (What : Event; Why : String) is
    begin
-      Put_Line (Standard_Error, Event & ": " & Why);
-      raise Failed with Event;
+      Put_Line (Standard_Error, What'Image & ": " & Why);
+      raise Failed with What'Image;
    end Fail;
 
-   --  Raise Failed where an event has lasted as long as the plan says.
-   procedure Watch (Plan : Plans.Plan; For_Event : Event; Happens : Boolean; Why : String) is
+   procedure Heed (Bears : Seconds_Of) is
+   begin
+      Borne := Bears;
+   end Heed;
+
+   function Patience (What : Lasting) return Long_Float is (Borne (What));
+
+   procedure Answered (What : Event) is
+   begin
+      Is_Answering := True;
+      Answers (What) := True;
+   end Answered;
+
+   procedure Keep_Clear (Metres : Long_Float) is
+   begin
+      Clearance := Metres;
+   end Keep_Clear;
+
+   --  Raise Failed where an event has lasted for so long that it counts.
+   procedure Watch (What : Lasting; Happens : Boolean; Why : String) is
    begin
       if not Happens then
-         Since (For_Event) := Endless;
+         Since (What) := Endless;
          return;
       end if;
-      Since (For_Event) := Long_Float'Min (Since (For_Event), Now);
-      if Now - Since (For_Event) >= Plan.After (For_Event) then
-         Fail (For_Event'Image, Why);
+      Since (What) := Long_Float'Min (Since (What), Now);
+      if not Answers (What) and then Now - Since (What) >= Borne (What) then
+         Fail (What, Why);
       end if;
    end Watch;
+
+   procedure Look_At_Health (Known : State) is
+   begin
+      if Known.Health_At /= Never and then Now - Known.Health_At > Health_Silent then
+         Vehicle.Give_Up (Catalogue.REASON_SENSORS_SILENT);
+         Fail (CRASHED, "nobody tells of leaks and battery any more");
+      end if;
+   end Look_At_Health;
+
+   function Is_Lost (Known : State) return Boolean is
+     (not Known.Trusted or else Now - Known.Known_At > Stale or else Known.Uncertainty > Lost);
+
+   function Place_Is_Lost return Boolean is (Is_Lost (Vehicle.Told));
 
    procedure Look (Plan : Plans.Plan) is
       Known   : constant State := Vehicle.Told;
       Is_Mute : constant Boolean := Now - Known.Heard_At > Stale;
-      Is_Lost : constant Boolean :=
-        not Known.Trusted or else Now - Known.Known_At > Stale or else Known.Uncertainty > Lost;
       Is_Low  : constant Boolean := Known.Charge >= 0.0 and then Known.Charge < Plan.Reserve;
    begin
       Guards.Kick;
-      if Known.Emergency /= 0 then
-         Fail ("CRASHED", "the dive was given up, reason" & Known.Emergency'Image);
+      if Known.Emergency /= 0 and then not Answers (CRASHED) then
+         Fail (CRASHED, "the dive was given up, reason" & Known.Emergency'Image);
       elsif Bus.Is_Gone then
-         Fail ("LINK_LOST", "the bus is gone");
+         Fail (LINK_LOST, "the bus is gone");
       end if;
-      Watch (Plan, LINK_LOST, Now - Known.Heard_At > Silent, "nothing is heard on the bus");
-      Watch (Plan, POSITION_LOST, Is_Lost and not Is_Mute, "depth, heading or place are not known");
-      Watch (Plan, BATTERY_LOW, Is_Low and not Is_Mute, "the battery has no more than the reserve");
+      Watch (LINK_LOST, Now - Known.Heard_At > Silent, "nothing is heard on the bus");
+      if not (Is_Mute or Answers (CRASHED)) then
+         Look_At_Health (Known);
+      end if;
+      Watch (POSITION_LOST, Is_Lost (Known) and not Is_Mute, "depth, heading or place are not known");
+      Watch (BATTERY_LOW, Is_Low and not Is_Mute, "the battery has no more than the reserve");
+      if not Is_Answering then
+         Watch (OBSTACLE, Known.Sonar < Clearance and not Is_Mute, "sonar sees something ahead");
+      end if;
    end Look;
 
    function Is_Ready return Boolean is
@@ -73,9 +121,9 @@ package body Alarms is
          Guards.Kick;
          if Bus.Is_Gone or else Now > Until_Then then
             if Bus.Is_Gone or else Now - Vehicle.Told.Heard_At > Silent then
-               Fail ("LINK_LOST", "no vehicle is heard on its bus");
+               Fail (LINK_LOST, "no vehicle is heard on its bus");
             end if;
-            Fail ("POSITION_LOST", "the vehicle does not know where it is");
+            Fail (POSITION_LOST, "the vehicle does not know where it is");
          end if;
          delay 0.05;
       end loop;

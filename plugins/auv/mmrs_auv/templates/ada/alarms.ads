@@ -3,14 +3,28 @@ with Plans;
 
 package Alarms is
 
-   --  Its message is the event, in the words of policies.
+   --  Its message is the event.
    Failed : exception;
 
    --  Raise Failed, and say why.
-   procedure Fail (Event, Why : String);
+   procedure Fail (What : Plans.Event; Why : String);
+
+   --  Bear events for so many seconds from now on.
+   procedure Heed (Bears : Plans.Seconds_Of);
+
+   --  Seconds that an event lasts before it counts.
+   function Patience (What : Plans.Lasting) return Long_Float;
+
+   --  An event is answered: it is not looked for any more, nor what cannot hinder the answer.
+   procedure Answered (What : Plans.Event);
+
+   --  Metres ahead within which sonar must see nothing.
+   procedure Keep_Clear (Metres : Long_Float);
 
    --  Raise Failed where something has gone wrong; let the watchdog know that the machine lives.
    procedure Look (Plan : Plans.Plan);
+
+   function Place_Is_Lost return Boolean;
 
    --  Wait until the vehicle knows where it is. Raises Failed.
    procedure Get_Ready;

@@ -97,6 +97,7 @@ package body Craft is
          elsif Is_Sound (Item, Pose) then
             Known.Heading := Value (Item, Pose_Heading);
          elsif Is_Sound (Item, Health) then
+            Known.Health_At := Now;
             Known.Leak := Number (Item, Health_Leak) = 1;
             Known.Charge := Value (Item, Health_Charge);
             Known.Sonar := Value (Item, Health_SonarRange);

@@ -23,6 +23,7 @@ package Craft is
       Emergency          : Natural := 0;
       Asked, Answer      : Natural := 0;
       Known_At, Heard_At : Long_Float := Never;
+      Health_At          : Long_Float := Never;
    end record;
 
    type Frames is array (Positive range <>) of Wire.Frame;

@@ -4,18 +4,21 @@ with Ada.Exceptions;
 with Ada.Strings.Fixed;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Ada.Text_IO;           use Ada.Text_IO;
+with Alarms;
 with Bus;
 with Clocks;
+with Conditions;
 with Craft;
 with GNAT.OS_Lib;
 with Gateway;
 with Guards;
 with Machine;
 with Mission;
-with Plans;
+with Plans;                 use Plans;
 with Sight;
 with Slots;
 with Step_Log;
+with Undecided;
 
 --  The decision centre of one vehicle. Exit status: 0 at its end, 1 after a fault, 2 where it cannot begin.
 procedure Decision_Centre is
@@ -23,6 +26,7 @@ procedure Decision_Centre is
    Wrong : exception;
 
    function Option (Name, Otherwise : String) return String;
+   procedure Make_Sure_Of_Choices (Plan : Plans.Plan);
 
    function Option (Name, Otherwise : String) return String is
    begin
@@ -34,9 +38,29 @@ procedure Decision_Centre is
       return Otherwise;
    end Option;
 
+   --  Raise Wrong where a choice of the plan is decided by nobody. Each condition is asked for, once.
+   procedure Make_Sure_Of_Choices (Plan : Plans.Plan) is
+      Nothing_Known : Craft.State;
+      Holds         : Boolean;
+      pragma Unreferenced (Holds);
+   begin
+      for Each of Plan.Moves loop
+         if Each.Way = Chooses then
+            begin
+               Holds := Conditions.Holds (To_String (Each.Condition), Nothing_Known);
+            exception
+               when Error : Undecided.Not_Decided =>
+                  raise Wrong with Ada.Exceptions.Exception_Message (Error);
+               when others =>
+                  null;  --  what decides it needs to know more of the vehicle
+            end;
+         end if;
+      end loop;
+   end Make_Sure_Of_Choices;
+
    Usage : constant String :=
      "decision_centre --bus HOST:PORT [--channel can0] [--logs FOLDER] [--run ID] [--patience SECONDS] "
-     & "[--depth-step METRES] [--gateway FILE] [--detections PORT]";
+     & "[--depth-step METRES] [--gateway FILE] [--detections PORT] [--clearance METRES]";
 
    Server : constant String := Option ("--bus", "");
    Colon  : constant Natural := Ada.Strings.Fixed.Index (Server, ":", Ada.Strings.Backward);
@@ -67,9 +91,11 @@ begin
    if not Plan.Alone then
       Gateway.Open (Option ("--gateway", ""), To_String (Plan.Robots), Late);
    end if;
+   Alarms.Keep_Clear (Long_Float'Value (Option ("--clearance", "0.0")));
    if Option ("--detections", "") /= "" then
       Sight.Open (Natural'Value (Option ("--detections", "")));
    end if;
+   Make_Sure_Of_Choices (Plan);
    Step_Log.Shift (Late - Clocks.Now);
    Guards.Begin_Work;
    Done := Machine.Runs (Plan);

@@ -4,12 +4,14 @@ with Ada.Strings.Fixed;     use Ada.Strings.Fixed;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Clocks;
 with GNAT.Sockets;          use GNAT.Sockets;
+with Guards;
 
 package body Gateway is
 
-   --  Seconds for which other robots are waited for, and an answer; between two signs of life.
+   --  Seconds for which other robots are waited for, and an answer, at first and later; between two signs of life.
    Gathering : constant := 60;
-   Patience  : constant Long_Float := 75.0;
+   Patience  : Long_Float := 75.0;
+   Later     : constant Long_Float := 5.0;
    Sign      : constant Long_Float := 0.5;
 
    Link    : Socket_Type;
@@ -175,6 +177,7 @@ package body Gateway is
                return Answer;
             end if;
          end;
+         Guards.Kick;
          if Clocks.Now > Until_Then then
             raise Refused with "the gateway does not answer";
          end if;
@@ -210,6 +213,7 @@ package body Gateway is
          Offset := Long_Float'Max (0.0, Number_After (Begun, "late"));
       end;
       Opened := True;
+      Patience := Later;
    exception
       when Socket_Error | Ada.Streams.Stream_IO.Name_Error | Ada.Streams.Stream_IO.Use_Error =>
          raise Refused with "no gateway as " & File & " says";
@@ -224,14 +228,14 @@ package body Gateway is
       end if;
    end Live;
 
-   procedure Prepare (Slots : String; Active : Boolean) is
+   procedure Prepare (Slots : String; Active : Boolean; Finds : String) is
    begin
       Number := Number + 1;
       Allowed := 0;
       Done := False;
       Expect
         ("{""do"": ""prepare"", ""number"": " & Whole (Number) & ", ""slots"": " & Slots & ", ""active"": "
-         & (if Active then "true" else "false") & "}",
+         & (if Active then "true" else "false") & ", ""finds"": " & Finds & "}",
          "asked");
    end Prepare;
 
@@ -272,11 +276,30 @@ package body Gateway is
    function Are_Lost (Robots : String) return Boolean is
      (Index (Asked ("{""do"": ""lost"", ""robots"": " & Robots & "}"), """robots"": " & Robots) > 0);
 
+   function Finds return String is
+      Mark : constant String := """finds"": [";
+   begin
+      if not Opened then
+         return "";
+      end if;
+      declare
+         State : constant String := Asked ("{""do"": ""state""}");
+         Place : constant Natural := Index (State, Mark);
+      begin
+         return (if Place = 0 then "" else State (Place + Mark'Length .. State'Last - 2));
+      end;
+   end Finds;
+
    procedure Leave is
    begin
       if Opened then
          Expect ("{""do"": ""leave""}", "left");
+         Opened := False;
+         Close_Socket (Link);
       end if;
+   exception
+      when Refused | Socket_Error =>
+         Opened := False;
    end Leave;
 
 end Gateway;

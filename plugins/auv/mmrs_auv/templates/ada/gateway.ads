@@ -12,8 +12,9 @@ package Gateway is
    --  Say now and then that this program lives, and hear what is new. Raises Refused.
    procedure Live;
 
-   --  Ask that slots are set; Granted: the logical time from which on that may be, 0 while it is not yet known.
-   procedure Prepare (Slots : String; Active : Boolean);
+   --  Ask that slots are set, and tell what was detected, lists in JSON; Granted: the logical time from which on
+   --  that may be, 0 while it is not yet known.
+   procedure Prepare (Slots : String; Active : Boolean; Finds : String);
    function Granted return Natural;
 
    --  Set them, once that is in the log with its logical time; Is_Set: whether all owners know.
@@ -29,6 +30,10 @@ package Gateway is
    --  Whether all of these robots, a list in JSON, have ended or are out of reach.
    function Are_Lost (Robots : String) return Boolean;
 
+   --  What robots that have notified this one had detected: the items of a list in JSON; empty: nothing.
+   function Finds return String;
+
+   --  Need no slots any more, and set none; raises nothing.
    procedure Leave;
 
 end Gateway;

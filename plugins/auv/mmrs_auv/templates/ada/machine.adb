@@ -1,28 +1,32 @@
 with Ada.Text_IO;           use Ada.Text_IO;
-with Ada.Exceptions;
+with Ada.Exceptions;        use Ada.Exceptions;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Alarms;                use Alarms;
-with Bus;
 with Catalogue;             use Catalogue;
 with Clocks;                use Clocks;
 with Conditions;
 with Craft;                 use Craft;
 with Gateway;
-with Guards;
 with Plans;                 use Plans;
+with Responses;
 with Slots;
 with Step_Log;
+with Tracks;
 with Undecided;
 with Ways;
 
 package body Machine is
 
-   --  Seconds for which the vehicle comes up, after a fault, and in which the last goal is still said.
-   Coming_Up : constant Long_Float := 600.0;
-   Farewell  : constant Duration := 0.5;
+   --  Seconds in which the last goal is still said.
+   Farewell : constant Duration := 0.5;
 
-   --  Number of the move that the robot is at.
+   --  Part of the battery that counts as full; times as long as it should take until charging has failed.
+   Full     : constant Long_Float := 0.95;
+   Charging : constant Long_Float := 3.0;
+
+   --  Number of the move that the robot is at, and how faults are answered there.
    Current : Positive := 1;
+   Answer  : Response_To := (others => Comes_Up);
 
    Nothing : constant String := """""";
 
@@ -30,13 +34,16 @@ package body Machine is
    procedure Use_Device (Plan : Plans.Plan; Does : Action);
    procedure Act (Plan : Plans.Plan; At_Move : Move; Actions : Action_Lists.Vector);
    procedure Follow (Plan : Plans.Plan; Along : Move);
-   procedure Pause_Within (Plan : Plans.Plan; Along : Move; Since : Long_Float);
+   procedure Charge (Plan : Plans.Plan; Seconds : Long_Float);
+   procedure Heed (Plan : Plans.Plan; Along : Move);
+   procedure Fail_Unless_Borne (What : Event; Why : String);
+   procedure Pause_Within (Plan : Plans.Plan; Since : Long_Float);
    procedure Wait (Plan : Plans.Plan; Along : Move; Since : Long_Float);
    function Is_Chosen (Plan : Plans.Plan; Along : Move; Since : Long_Float) return Boolean;
    procedure Move_On (Plan : Plans.Plan; Along : Move; To : out Natural);
    procedure Enter (Plan : Plans.Plan; From : in out Natural; To : Natural);
    procedure Carry_Out (Plan : Plans.Plan);
-   procedure Surface;
+   procedure End_Early (Plan : Plans.Plan; What : Event);
 
    procedure Stay (Plan : Plans.Plan; Seconds : Long_Float) is
       Until_Then : constant Long_Float := Now + Seconds;
@@ -46,6 +53,32 @@ package body Machine is
       end loop;
    end Stay;
 
+   --  Stay at the surface until the battery is full.
+   procedure Charge (Plan : Plans.Plan; Seconds : Long_Float) is
+      Since : constant Long_Float := Now;
+      Left  : Long_Float;
+   begin
+      Tracks.Forget;
+      Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
+      loop
+         Pause (Plan);
+         Left := Vehicle.Told.Charge;
+         exit when Now - Since >= Seconds and then (Left < 0.0 or else Left >= Full);
+         if Now - Since >= Charging * Seconds + 5.0 then
+            Fail_Unless_Borne (BATTERY_LOW, "charging has not filled the battery");
+            exit;
+         end if;
+      end loop;
+   end Charge;
+
+   procedure Fail_Unless_Borne (What : Event; Why : String) is
+   begin
+      if Answer (What) /= Goes_On then
+         Fail (What, Why);
+      end if;
+      Put_Line (Standard_Error, What'Image & ": " & Why & "; it goes on");
+   end Fail_Unless_Borne;
+
    procedure Use_Device (Plan : Plans.Plan; Does : Action) is
       Until_Then : constant Long_Float := Now + Does.Patience;
    begin
@@ -54,18 +87,23 @@ package body Machine is
          Pause (Plan);
          exit when Vehicle.Told.Answer = PROGRESS_REACHED;
          if Vehicle.Told.Answer = PROGRESS_FAILED or else Now >= Until_Then then
-            Fail ("DEVICE_SILENT", "device" & Does.Number'Image & " does not do it");
+            Fail_Unless_Borne (DEVICE_SILENT, "device" & Does.Number'Image & " does not do it");
+            exit;
          end if;
       end loop;
    end Use_Device;
 
    procedure Act (Plan : Plans.Plan; At_Move : Move; Actions : Action_Lists.Vector) is
-      Id : constant String := To_String (At_Move.Id);
+      Id    : constant String := To_String (At_Move.Id);
+      Since : Long_Float;
 
       procedure Wait;
 
       procedure Wait is
       begin
+         if Now - Since >= Patience (PEER_LOST) then
+            Fail (PEER_LOST, "not all robots answer whose slots are to be set");
+         end if;
          Pause (Plan);
       end Wait;
    begin
@@ -81,7 +119,8 @@ package body Machine is
                Step_Log.Write ("act", Id, To_String (Each.Detail), Nothing);
 
             when Notify =>
-               Slots.Tell (Each, Id, Wait'Access);
+               Since := Now;
+               Slots.Tell (Plan, Each, Id, Wait'Access);
          end case;
       end loop;
    end Act;
@@ -93,10 +132,13 @@ package body Machine is
             null;
 
          when Goes =>
-            Ways.Go (Plan, Along);
+            Ways.Go (Plan, Current);
 
          when Holds =>
             Stay (Plan, Along.Seconds);
+
+         when Charges =>
+            Charge (Plan, Along.Seconds);
 
          when Turns =>
             Ways.Turn (Plan, Along);
@@ -107,11 +149,18 @@ package body Machine is
       end case;
    end Follow;
 
-   --  Pause, unless what is waited for since then takes too long.
-   procedure Pause_Within (Plan : Plans.Plan; Along : Move; Since : Long_Float) is
+   --  Answer faults as the wait of a move says, or else as the whole plan does.
+   procedure Heed (Plan : Plans.Plan; Along : Move) is
    begin
-      if Now - Since >= Along.Longest then
-         Fail (WAIT_TOO_LONG'Image, "what is waited for does not come");
+      Answer := (if Along.Is_Special then Along.Answer else Plan.Answer);
+      Alarms.Heed (if Along.Is_Special then Along.Bears else Plan.Bears);
+   end Heed;
+
+   --  Pause, unless what is waited for since then takes too long.
+   procedure Pause_Within (Plan : Plans.Plan; Since : Long_Float) is
+   begin
+      if Now - Since >= Patience (WAIT_TOO_LONG) then
+         Fail (WAIT_TOO_LONG, "what is waited for does not come");
       end if;
       Pause (Plan);
    end Pause_Within;
@@ -124,13 +173,13 @@ package body Machine is
          exit when Slots.Pass (Along);
          if Slots.Is_Hopeless (Along) then
             Alone_Since := Long_Float'Min (Alone_Since, Now);
-            if Now - Alone_Since >= Along.Alone then
-               Fail (PEER_LOST'Image, "nobody is left who could set what is waited for");
+            if Now - Alone_Since >= Patience (PEER_LOST) then
+               Fail (PEER_LOST, "nobody is left who could set what is waited for");
             end if;
          else
             Alone_Since := Endless;
          end if;
-         Pause_Within (Plan, Along, Since);
+         Pause_Within (Plan, Since);
       end loop;
    end Wait;
 
@@ -142,7 +191,9 @@ package body Machine is
             return Conditions.Holds (To_String (Along.Condition), Vehicle.Told);
          exception
             when Undecided.Not_Known =>
-               Pause_Within (Plan, Along, Since);
+               Pause_Within (Plan, Since);
+            when Error : others =>
+               Fail (CONDITION_FAILED, Exception_Message (Error));
          end;
       end loop;
    end Is_Chosen;
@@ -151,6 +202,7 @@ package body Machine is
       Id    : constant String := To_String (Along.Id);
       Since : constant Long_Float := Now;
    begin
+      Heed (Plan, Along);
       Wait (Plan, Along, Since);
       case Along.Way is
          when Ends =>
@@ -169,6 +221,8 @@ package body Machine is
                Step_Log.Write ("choose", Id, """false""", Nothing);
             end if;
       end case;
+      Answer := Plan.Answer;
+      Alarms.Heed (Plan.Bears);
    end Move_On;
 
    --  Leave and enter composed states.
@@ -208,49 +262,43 @@ package body Machine is
       Enter (Plan, Inside, 0);
    end Carry_Out;
 
-   --  Come up, by thrust unless the dive was given up, as long as the bus is there.
-   procedure Surface is
-      Until_Then : constant Long_Float := Now + Coming_Up;
+   --  Answer what has ended the plan; others need not wait for this robot any more.
+   procedure End_Early (Plan : Plans.Plan; What : Event) is
    begin
-      Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
-      loop
-         Guards.Kick;
-         exit when Bus.Is_Gone or else Now > Until_Then;
-         exit when Vehicle.Told.Progress = PROGRESS_REACHED;
-         exit when Now - Vehicle.Told.Known_At < Stale and then Vehicle.Told.Here.Depth < 0.5;
-         delay 0.05;
-      end loop;
-   end Surface;
+      begin
+         Step_Log.Write ("fault", To_String (Plan.Moves (Current).Id), """" & What'Image & """", Nothing);
+      exception
+         when Error : Step_Log.Unwritten =>
+            Put_Line (Standard_Error, Exception_Message (Error));
+      end;
+      Gateway.Leave;
+      Responses.Carry_Out (Plan, What, Answer);
+   end End_Early;
 
    function Runs (Plan : Plans.Plan) return Boolean is
-      procedure Give_Up (Event : String);
-
-      procedure Give_Up (Event : String) is
-      begin
-         Step_Log.Write ("fault", To_String (Plan.Moves (Current).Id), """" & Event & """", Nothing);
-         Surface;
-      end Give_Up;
    begin
       Current := Plan.Start;
+      Answer := Plan.Answer;
+      Alarms.Heed (Plan.Bears);
       Carry_Out (Plan);
       Gateway.Leave;
       delay Farewell;
       return True;
    exception
       when Error : Failed =>
-         Give_Up (Ada.Exceptions.Exception_Message (Error));
+         End_Early (Plan, Event'Value (Exception_Message (Error)));
          return False;
       when Error : Gateway.Refused =>
-         Put_Line (Standard_Error, Ada.Exceptions.Exception_Message (Error));
-         Give_Up ("PEER_LOST");
+         Put_Line (Standard_Error, Exception_Message (Error));
+         End_Early (Plan, PEER_LOST);
          return False;
-      when Error : Undecided.Not_Decided =>
-         Put_Line (Standard_Error, Ada.Exceptions.Exception_Message (Error));
-         Give_Up ("CONDITION");
+      when Error : Step_Log.Unwritten =>
+         Put_Line (Standard_Error, Exception_Message (Error));
+         End_Early (Plan, LOG_FAILED);
          return False;
       when Error : others =>
-         Put_Line (Standard_Error, Ada.Exceptions.Exception_Information (Error));
-         Give_Up ("CRASHED");
+         Put_Line (Standard_Error, Exception_Information (Error));
+         End_Early (Plan, CRASHED);
          return False;
    end Runs;
 

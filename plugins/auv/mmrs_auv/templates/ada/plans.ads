@@ -14,6 +14,9 @@ package Plans is
 
    function Away (From, To : Place) return Long_Float;
 
+   --  The place on the straight way so many metres before its end; From where that is nearer.
+   function Short_Of (From, To : Place; Metres : Long_Float) return Place;
+
    package Numbers is new Ada.Containers.Vectors (Positive, Positive);
 
    None : constant Numbers.Vector := Numbers.Empty_Vector;
@@ -43,23 +46,32 @@ package Plans is
 
    package Action_Lists is new Ada.Containers.Vectors (Positive, Action);
 
-   type Move_Kind is (Starts, Goes, Holds, Turns, Stops);
+   type Move_Kind is (Starts, Goes, Holds, Charges, Turns, Stops);
 
    type Way_Kind is (Ends, Takes, Chooses);
 
-   --  What may go wrong and has to last before it counts.
-   type Event is (LINK_LOST, POSITION_LOST, BATTERY_LOW, WAIT_TOO_LONG, PEER_LOST);
+   --  What may go wrong. The first of them have to last before they count.
+   type Event is
+     (LINK_LOST, POSITION_LOST, BATTERY_LOW, OBSTACLE, WAIT_TOO_LONG, PEER_LOST, DEVICE_SILENT, LOG_FAILED,
+      OBJECT_NOT_FOUND, NO_PROGRESS, CONDITION_FAILED, CRASHED);
 
-   type Seconds_Of is array (Event) of Long_Float;
+   subtype Lasting is Event range LINK_LOST .. PEER_LOST;
+
+   type Seconds_Of is array (Lasting) of Long_Float;
 
    Endless : constant Long_Float := Long_Float'Last;
+
+   --  What the vehicle does then; Backs_Out: it goes back by the way that it came, and comes up.
+   type Response is (Holds_Place, Backs_Out, Comes_Up, Stops_Thrust, Goes_On);
+
+   type Response_To is array (Event) of Response;
 
    --  Id in JSON, Name for people. Task_Number: the composed state that the move belongs to; 0: none.
    --  Awaited, Senders: own slots, and other robots that set them, lists in JSON.
    --  Target, Away and Speed of Goes: it ends so many metres before the target. Looks: at Seen, turned by
    --  Angle degrees. Object: what the target is, its name in JSON, which is no farther than Tolerance from there
    --  (negative: it may be anywhere); Looks_At_It: it is what is looked at too. Waits: own slots that must be
-   --  active; Longest, Alone: how long that may take, and with nobody left who sets them.
+   --  active; Is_Special: the wait has Bears and an Answer of its own.
    --  Otherwise: where a choice leads that does not hold.
    type Move is record
       Kind          : Move_Kind := Starts;
@@ -80,22 +92,27 @@ package Plans is
       Waits         : Numbers.Vector;
       Awaited       : Text;
       Senders       : Text;
-      Longest       : Long_Float := Endless;
-      Alone         : Long_Float := 0.0;
+      Is_Special    : Boolean := False;
+      Bears         : Seconds_Of := (others => Endless);
+      Answer        : Response_To := (others => Comes_Up);
    end record;
 
    package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
    package Text_Lists is new Ada.Containers.Vectors (Positive, Text);
 
    --  Robot, Robots (all of the mission) and Slots in JSON; Log: the name of its file. Step: metres of depth in a
-   --  step of goals on the bus; 0: not known. Reserve: part of the battery that must remain. Alone: no other
-   --  robot is waited for. After: seconds that an event lasts before the vehicle comes up.
+   --  step of goals on the bus; 0: not known. Reserve: part of the battery that must remain. Cruise: metres per
+   --  second on the way back. Surface: height of the water above the mission's origin. Alone: no other robot is
+   --  waited for. Bears: seconds that an event lasts before it is answered; Answer: how.
    type Plan is record
       Robot, Robots : Text;
       Name, Log     : Text;
       Step, Reserve : Long_Float := 0.0;
+      Cruise        : Long_Float := 0.0;
+      Surface       : Long_Float := 0.0;
       Floats, Alone : Boolean := True;
-      After         : Seconds_Of := (others => 0.0);
+      Bears         : Seconds_Of := (others => Endless);
+      Answer        : Response_To := (others => Comes_Up);
       Start         : Positive := 1;
       Slots, Tasks  : Text_Lists.Vector;
       Moves         : Move_Lists.Vector;

@@ -1,4 +1,4 @@
-with Ada.Containers.Vectors;
+with Ada.Containers;
 with Ada.Streams;           use Ada.Streams;
 with Ada.Strings.Fixed;     use Ada.Strings.Fixed;
 with Ada.Strings.Maps;
@@ -18,7 +18,9 @@ package body Sight is
    Most       : constant := 1024;
    Longest    : constant := 1024;
 
-   --  Who tells of times that lie farther back has another clock, and is heard again.
+   Most_Things : constant := 256;
+
+   --  Who tells of times that lie farther back may have another clock, and is heard again.
    Repeated : constant Long_Float := 60.0;
 
    Blank : constant Ada.Strings.Maps.Character_Set := Ada.Strings.Maps.To_Set (" " & ASCII.LF & ASCII.CR);
@@ -34,7 +36,6 @@ package body Sight is
    end record;
 
    package Detections is new Ada.Containers.Vectors (Positive, Detection);
-   package Names is new Ada.Containers.Vectors (Positive, Unbounded_String);
    package Reals is new Ada.Containers.Vectors (Positive, Long_Float);
    package Sorting is new Reals.Generic_Sorting;
 
@@ -42,13 +43,15 @@ package body Sight is
    function Middle (Found : Detections.Vector) return Plans.Place;
    function Agreeing (Found : Detections.Vector; Where : Plans.Place) return Detections.Vector;
 
+   function Is_Newer (Earlier, Item : Detection) return Boolean;
+
    protected Memory is
       procedure Keep (Item : Detection);
       procedure Find (Name : Unbounded_String; Now : Long_Float; Seen : out Boolean; Where : out Plans.Place);
-      function Knows (Name : Unbounded_String) return Boolean;
+      function Seen_So_Far return Thing_Lists.Vector;
    private
       Latest : Detections.Vector;
-      Seen   : Names.Vector;
+      Things : Thing_Lists.Vector;
    end Memory;
 
    task Listener is
@@ -94,24 +97,36 @@ package body Sight is
       return Near;
    end Agreeing;
 
+   --  Whether what was kept earlier is of a later time, by the same clock.
+   function Is_Newer (Earlier, Item : Detection) return Boolean is
+     (Earlier.Time > Item.Time
+      and then (Earlier.Time - Item.Time < Repeated or else Item.Since - Earlier.Since <= Lasting));
+
    protected body Memory is
       procedure Keep (Item : Detection) is
-         Oldest, Of_Name : Natural := 0;
-         Is_Seen         : Boolean;
-         Where           : Plans.Place;
+         Oldest, Of_Name  : Natural := 0;
+         Of_Camera, Newer : Natural := 0;
+         Is_Seen          : Boolean;
+         Where            : Plans.Place;
       begin
          for Index in 1 .. Natural (Latest.Length) loop
             if Latest (Index).Name = Item.Name then
                Oldest := (if Oldest = 0 then Index else Oldest);
                Of_Name := Of_Name + 1;
-               if Latest (Index).Camera = Item.Camera
-                 and then Item.Time - Latest (Index).Time <= 0.0
-                 and then Item.Time - Latest (Index).Time > -Repeated
-               then
-                  return;
+               if Latest (Index).Camera = Item.Camera then
+                  if Latest (Index).Time = Item.Time then
+                     return;
+                  end if;
+                  Of_Camera := Of_Camera + 1;
+                  if Is_Newer (Latest (Index), Item) then
+                     Newer := Newer + 1;
+                  end if;
                end if;
             end if;
          end loop;
+         if Newer > Natural'Max (1, Of_Camera / 2) then
+            return;
+         end if;
          if Of_Name = Kept then
             Latest.Delete (Oldest);
          elsif Natural (Latest.Length) = Most then
@@ -119,8 +134,17 @@ package body Sight is
          end if;
          Latest.Append (Item);
          Find (Item.Name, Item.Since, Is_Seen, Where);
-         if Is_Seen and then not Seen.Contains (Item.Name) then
-            Seen.Append (Item.Name);
+         if not Is_Seen then
+            return;
+         end if;
+         for Each of Things loop
+            if Each.Name = Item.Name then
+               Each.Where := Where;
+               return;
+            end if;
+         end loop;
+         if Natural (Things.Length) < Most_Things then
+            Things.Append ((Item.Name, Where));
          end if;
       end Keep;
 
@@ -143,7 +167,7 @@ package body Sight is
          end loop;
       end Find;
 
-      function Knows (Name : Unbounded_String) return Boolean is (Seen.Contains (Name));
+      function Seen_So_Far return Thing_Lists.Vector is (Things);
    end Memory;
 
    function Number_After (Line, Key : String) return Long_Float is
@@ -220,12 +244,22 @@ package body Sight is
       Memory.Find (To_Unbounded_String (Name), Now, Seen, Where);
    end Look_For;
 
+   function Known_Things (Most : Positive) return Thing_Lists.Vector is
+      Found : Thing_Lists.Vector := Memory.Seen_So_Far;
+   begin
+      Found.Set_Length (Ada.Containers.Count_Type'Min (Found.Length, Ada.Containers.Count_Type (Most)));
+      return Found;
+   end Known_Things;
+
+   function Is_Known (Name : String) return Boolean is
+     (for some Each of Memory.Seen_So_Far => Each.Name = Name);
+
    function Has_Seen (Name : String) return Boolean is
    begin
       if not Listening then
          raise Undecided.Not_Decided with "nobody listens to detections: --detections PORT";
       end if;
-      return Memory.Knows (To_Unbounded_String (Name));
+      return Is_Known (Name);
    end Has_Seen;
 
    task body Listener is

@@ -1,6 +1,7 @@
 with Ada.Containers.Vectors;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Gateway;
+with Sightings;
 with Step_Log;
 
 package body Slots is
@@ -14,10 +15,10 @@ package body Slots is
       Active := Flags.To_Vector (False, Plan.Slots.Length);
    end Prepare;
 
-   procedure Tell (Action : Plans.Action; Move : String; Wait : not null access procedure) is
+   procedure Tell (Plan : Plans.Plan; Action : Plans.Action; Move : String; Wait : not null access procedure) is
    begin
       if Gateway.Is_Open then
-         Gateway.Prepare (To_String (Action.Told), Action.Active);
+         Gateway.Prepare (To_String (Action.Told), Action.Active, Sightings.Known (Plan));
          while Gateway.Granted = 0 loop
             Wait.all;
          end loop;

@@ -6,7 +6,7 @@ package Slots is
    procedure Prepare (Plan : Plans.Plan);
 
    --  Set slots, and log that; Wait is called again and again until all their owners know.
-   procedure Tell (Action : Plans.Action; Move : String; Wait : not null access procedure);
+   procedure Tell (Plan : Plans.Plan; Action : Plans.Action; Move : String; Wait : not null access procedure);
 
    --  Return whether all slots that a move waits for are active.
    function Pass (Move : Plans.Move) return Boolean;

@@ -19,19 +19,24 @@ package body Step_Log is
 
    function Seconds return String;
 
-   function Seconds return String is
+   function Image (Item : Long_Float) return String is
       Found : String (1 .. 30);
    begin
-      Latest := Long_Float'Max (Latest, Clocks.Now + Offset);
-      Ada.Long_Float_Text_IO.Put (Found, Latest, Aft => 6, Exp => 0);
+      Ada.Long_Float_Text_IO.Put (Found, Item, Aft => 6, Exp => 0);
       return Trim (Found, Ada.Strings.Both);
+   end Image;
+
+   function Seconds return String is
+   begin
+      Latest := Long_Float'Max (Latest, Clocks.Now + Offset);
+      return Image (Latest);
    end Seconds;
 
    procedure Open (Path, Run, Robot : String) is
    begin
       File := Create_File (Path, Binary);
       if File = Invalid_FD then
-         raise Program_Error with "cannot write " & Path;
+         raise Unwritten with "cannot write " & Path;
       end if;
       Head := To_Unbounded_String ("{""run"":" & Run & ",""robot"":" & Robot & ",""seq"":");
    end Open;
@@ -43,10 +48,10 @@ package body Step_Log is
         & "}" & ASCII.LF;
    begin
       if Write (File, Line'Address, Line'Length) /= Line'Length then
-         raise Program_Error with "cannot write the log";
+         raise Unwritten with "cannot write the log";
       end if;
       if Interfaces.C."/=" (Fsync (Interfaces.C.int (File)), 0) then
-         raise Program_Error with "cannot keep the log";
+         raise Unwritten with "cannot keep the log";
       end if;
       Seq := Seq + 1;
       Logical := Logical + 1;

@@ -3,11 +3,14 @@ with Plans;
 
 package Ways is
 
-   --  Go where a move leads: to its object, wherever it is seen, where somebody looks for it.
+   --  Go where the move of that number leads: to its object, wherever it is seen, where somebody looks for it.
    --  Raises Alarms.Failed.
-   procedure Go (Plan : Plans.Plan; Along : Plans.Move);
+   procedure Go (Plan : Plans.Plan; Number : Positive);
 
    --  Turn on the spot. Raises Alarms.Failed.
    procedure Turn (Plan : Plans.Plan; To : Plans.Move);
+
+   --  Go back by the way that the vehicle came. Raises Alarms.Failed.
+   procedure Back_Out (Plan : Plans.Plan);
 
 end Ways;

@@ -1,0 +1,109 @@
+with Ada.Exceptions; use Ada.Exceptions;
+with Ada.Text_IO;    use Ada.Text_IO;
+with Alarms;         use Alarms;
+with Bus;
+with Catalogue;      use Catalogue;
+with Clocks;         use Clocks;
+with Craft;          use Craft;
+with Guards;
+with Plans;          use Plans;
+with Ways;
+
+package body Responses is
+
+   --  Seconds for which the vehicle comes up, in which a silent one may be heard again, and in which the last
+   --  goal is still said.
+   Coming_Up : constant Long_Float := 600.0;
+   Silent    : constant Long_Float := 60.0;
+   Farewell  : constant Duration := 0.5;
+
+   procedure Come_Up;
+   procedure Hold (Plan : Plans.Plan);
+   procedure Do_It (Plan : Plans.Plan; By : Response);
+   function First (What : Event; Answer : Response_To) return Response;
+   function Plainer (Than : Response; Is_Low : Boolean) return Response;
+
+   --  Come up, by thrust unless the dive was given up, as long as the bus is there.
+   procedure Come_Up is
+      Until_Then : constant Long_Float := Now + Coming_Up;
+   begin
+      Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
+      loop
+         Guards.Kick;
+         exit when Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent;
+         exit when Vehicle.Told.Progress = PROGRESS_REACHED;
+         exit when Now - Vehicle.Told.Known_At < Stale and then Vehicle.Told.Here.Depth < 0.5;
+         delay 0.05;
+      end loop;
+   end Come_Up;
+
+   --  Stay where the vehicle is, by thrust, until something else goes wrong or nobody is there any more.
+   procedure Hold (Plan : Plans.Plan) is
+      Known : constant State := Vehicle.Told;
+      Here  : Place := Known.Here;
+   begin
+      Here.Depth := Long_Float'Max (0.0, Here.Depth);
+      Vehicle.Begin_Goal ((Mode => MODE_HOLD, Where => Here, Heading => Known.Heading, others => <>));
+      while not Bus.Is_Gone loop
+         Pause (Plan);
+         if Vehicle.Told.Progress = PROGRESS_FAILED then
+            Fail (NO_PROGRESS, "cannot stay");
+         end if;
+      end loop;
+   end Hold;
+
+   procedure Do_It (Plan : Plans.Plan; By : Response) is
+   begin
+      case By is
+         when Holds_Place | Goes_On =>
+            Hold (Plan);
+
+         when Backs_Out =>
+            if Place_Is_Lost then
+               Put_Line (Standard_Error, "without its place, it comes up");
+            else
+               Ways.Back_Out (Plan);
+            end if;
+            Come_Up;
+
+         when Comes_Up =>
+            Come_Up;
+
+         when Stops_Thrust =>
+            Vehicle.Begin_Goal ((Mode => MODE_IDLE, others => <>));
+      end case;
+   end Do_It;
+
+   --  What is done first. That links and robots may be lost is about radio: nobody controls a vehicle without
+   --  its bus, or goes on without the gateway.
+   function First (What : Event; Answer : Response_To) return Response is
+     (if Answer (What) /= Goes_On then Answer (What)
+      elsif What in LINK_LOST | PEER_LOST then Comes_Up
+      else Holds_Place);
+
+   function Plainer (Than : Response; Is_Low : Boolean) return Response is
+     (if Than = Holds_Place or else Is_Low then Comes_Up else Holds_Place);
+
+   procedure Carry_Out (Plan : Plans.Plan; What : Event; Answer : Response_To) is
+      By     : Response := First (What, Answer);
+      Is_Low : Boolean := What = BATTERY_LOW;
+      Other  : Event;
+   begin
+      Answered (What);
+      loop
+         Put_Line (Standard_Error, "response: " & By'Image);
+         begin
+            Do_It (Plan, By);
+            exit;
+         exception
+            when Error : Failed =>
+               Other := Event'Value (Exception_Message (Error));
+               Answered (Other);
+               Is_Low := Is_Low or else Other = BATTERY_LOW;
+               By := (if Other = NO_PROGRESS then Plainer (By, Is_Low) else First (Other, Answer));
+         end;
+      end loop;
+      delay Farewell;
+   end Carry_Out;
+
+end Responses;
