@@ -96,7 +96,7 @@ def test_a_dark_film_stands_for_cameras_and_ends_the_process_when_it_ends(tmp_pa
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--front", "nowhere.avi"), "there is no such file"),
+        (("--front", "nowhere.avi"), "there is no such film or camera"),
         (("--bottom", "97"), "cannot open"),
         (("--surroundings", "nowhere.json"), "No such file"),
         (("--rate", "0"), "not a rate"),

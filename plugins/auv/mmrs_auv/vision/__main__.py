@@ -8,6 +8,7 @@ python -m mmrs_auv.vision bottom --sheet auv.json --surroundings pool.json --to 
 from __future__ import annotations
 
 import argparse
+import logging
 import signal
 import sys
 import threading
@@ -15,16 +16,18 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from urllib.parse import quote
 
 from ..vessel.body.surroundings import Surroundings
 from ..vessel.body.surroundings import from_json as surroundings_from
 from ..vessel.eyes import CAMERAS
+from ..vessel.refusals import refuse
 from ..vessel.sheet import Sheet
 from ..vessel.sheet import from_json as sheet_from
 from .cameras import Camera, Pose, cameras_of
 from .ring import Reader, Writer
 
-FRAMES = "frames"
+FRAMES, NONE = "frames", "none"
 EXIT_USAGE, EXIT_GONE = 2, 3
 
 
@@ -35,6 +38,7 @@ class GoneError(Exception):
 def main(words: Sequence[str] | None = None) -> int:
     """Serve until SIGTERM, SIGINT or the end of a file; return the exit status."""
     given = _parser().parse_args(words)
+    logging.getLogger("can").setLevel(logging.ERROR)
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda _signal, _frame: stop.set())
@@ -47,6 +51,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return EXIT_USAGE
     try:
         sheet = sheet_from(given.sheet.read_text(encoding="utf-8"))
+        refuse(sheet)
         around = surroundings_from(given.surroundings.read_text(encoding="utf-8"))
         _serve(given, sheet, around, stop)
     except GoneError as error:
@@ -72,11 +77,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--surroundings", type=Path, required=True, help="file that says what things there are to see"
     )
-    parser.add_argument("--memory", default="mmrs-eyes", help="name of the shared memory")
+    parser.add_argument("--memory", help="name of the shared memory; else that of the vehicle")
     parser.add_argument("--to", type=_address, default=("127.0.0.1", 29600), help="HOST:PORT of who decides")
     for camera in CAMERAS:
         parser.add_argument(
-            f"--{camera}", default="simulated", metavar="SOURCE", help="simulated, a video file, N or N,N"
+            f"--{camera}",
+            metavar="SOURCE",
+            help="simulated, none, a film, a camera's number or device, or two as in 0,1; "
+            "if neither is given both are simulated, if one is given the other is none",
         )
     parser.add_argument("--rate", type=_rate, default=5.0, help="pairs of each camera in a second")
     parser.add_argument("--seed", type=int, default=0, help="of simulated pictures' noise")
@@ -103,16 +111,26 @@ def _rate(text: str) -> float:
     return rate
 
 
+def memory_of(robot: str) -> str:
+    """Return the name of the memory of a vehicle's eyes: each has its own."""
+    return f"mmrs-eyes-{quote(robot, safe='')[:200]}"
+
+
 def _serve(given: argparse.Namespace, sheet: Sheet, around: Surroundings, stop: threading.Event) -> None:
     cameras = dict(zip(CAMERAS, cameras_of(sheet), strict=True))
+    given.memory = given.memory or memory_of(sheet.robot)
     if given.part == FRAMES:
         _serve_frames(given, sheet, around, cameras, stop)
         return
-    from .detecting import sought_in
+    from .detecting import sought_in, unseen
     from .processes import watch
+    from .water import POOL, hazier
 
+    camera, sought = cameras[given.part], sought_in(around)
+    for each in unseen(camera, sought):
+        print(f"{given.part}: {each}", file=sys.stderr)
     with Reader(f"{given.memory}-{given.part}") as reader:
-        watch(reader, cameras[given.part], sought_in(around), given.to, stop)
+        watch(reader, camera, sought, given.to, stop, hazier(POOL, around.haze))
 
 
 def _serve_frames(
@@ -124,16 +142,24 @@ def _serve_frames(
 ) -> None:
     from .processes import handle
     from .renderer import Renderer
-    from .sources import SourceError, opened
+    from .sources import SIMULATED, SourceError, opened
 
+    told = {name: getattr(given, name) for name in CAMERAS}
+    otherwise = SIMULATED if set(told.values()) == {None} else NONE
+    chosen = {name: otherwise if text is None else text for name, text in told.items()}
+    used = {name: text for name, text in chosen.items() if text != NONE}
+    if not used:
+        raise ValueError("no camera is left to take pictures with")
     with ExitStack() as stack:
         renderer = Renderer(around, given.seed)
-        sources = {name: opened(getattr(given, name), cameras[name], lambda: renderer) for name in CAMERAS}
+        sources = {name: opened(text, cameras[name], lambda: renderer) for name, text in used.items()}
         for source in sources.values():
             stack.callback(source.close)
         writers = {
-            name: stack.enter_context(Writer(f"{given.memory}-{name}", camera.width, camera.height))
-            for name, camera in cameras.items()
+            name: stack.enter_context(
+                Writer(f"{given.memory}-{name}", cameras[name].width, cameras[name].height)
+            )
+            for name in used
         }
         where, clock, lost = _whereabouts(given, sheet, stop, stack)
         try:

@@ -18,7 +18,7 @@ from .confidence import confidence_of
 from .segments import Segment, View, matted, segments_of, view_of
 from .shapes import Disc, Frame, Post, Strip, discs_of, frames_of, strip_of
 from .stereo import disparities
-from .water import POOL, Water
+from .water import POOL, TOLD_APART, Water
 
 _MOST_SEGMENTS = 12
 _MOST_COVERED = 0.4
@@ -70,6 +70,19 @@ def sought_in(surroundings: Surroundings) -> tuple[Sought, ...]:
         Sought(each.kind, each.name, each.colour, each.size, (each.north, each.east, each.depth))
         for each in surroundings.things
     )
+
+
+def unseen(camera: Camera, sought: Iterable[Sought]) -> list[str]:
+    """Return which of what is sought a camera sees never, though it should, and why."""
+    kinds = (GATE, BUOY) if camera.name == FRONT else (PATH,)
+    found = []
+    for each in sought:
+        if each.kind not in (GATE, BUOY, PATH):
+            found.append(f"{each.name!r} is never seen: nobody knows what a {each.kind!r} looks like")
+        elif each.kind in kinds and each.colour not in TOLD_APART:
+            apart = ", ".join(TOLD_APART)
+            found.append(f"{each.name!r} is never seen: {each.colour} is none of {apart}")
+    return found
 
 
 def detect(

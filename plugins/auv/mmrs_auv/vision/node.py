@@ -11,7 +11,7 @@ from .cameras import Pose, cameras_of
 from .detecting import Sought, detect, sought_in
 from .placing import detections_of
 from .renderer import Conditions, Renderer
-from .water import POOL, Water
+from .water import POOL, Water, hazier
 
 
 class Eyes:
@@ -35,7 +35,7 @@ class Eyes:
         self._cameras = cameras_of(sheet)
         self._renderer = Renderer(surroundings, seed, conditions, water)
         self.sought = sought_in(surroundings) if sought is None else tuple(sought)
-        self._water = water
+        self._water = hazier(water, surroundings.haze)
 
     def look(self, time: float, pose: Pose, believed: Pose | None = None) -> list[Detection]:
         """Return what both cameras see, by the clock of the vehicle, seconds.

@@ -19,6 +19,31 @@ from .water import POOL, Water
 WAIT, AGAIN = 0.01, 1.0
 """Seconds between two looks for new pictures, and without any until the memory is opened anew."""
 
+PATIENCE = 3.0
+"""Seconds that something may be amiss before it is said."""
+
+
+class Notice:
+    """Says when something has been amiss for a while, and when it no longer is; each time once."""
+
+    def __init__(self, amiss: str, mended: str) -> None:
+        self._amiss, self._mended = amiss, mended
+        self._since: float | None = None
+        self._said = False
+
+    def note(self, is_amiss: bool) -> None:
+        """Take how it is now."""
+        now = time.monotonic()
+        if not is_amiss:
+            if self._said:
+                print(self._mended, file=sys.stderr, flush=True)
+            self._since, self._said = None, False
+        elif self._since is None:
+            self._since = now
+        elif not self._said and now - self._since > PATIENCE:
+            self._said = True
+            print(self._amiss, file=sys.stderr, flush=True)
+
 
 def handle(
     sources: Mapping[str, Source],
@@ -31,7 +56,8 @@ def handle(
 ) -> None:
     """Put pairs of all cameras into shared memory, so many each second, until a source has no more.
 
-    Pairs bear the pose that the vehicle believed in when they were taken, and none where it knows none.
+    Pairs bear the pose that the vehicle believed in when they were taken, and none where it knows none;
+    that, and the end of a film, is said.
 
     Args:
         sources, cameras, writers: by the camera's name.
@@ -39,13 +65,19 @@ def handle(
     Raises:
         SourceError: a camera is gone.
     """
+    lost = Notice(
+        "frames: the bus does not tell where the vehicle is, or that it is not sure: nothing counts as seen",
+        "frames: the bus tells where the vehicle is",
+    )
     adjusted = {name: Adjusted(camera) for name, camera in cameras.items()}
     begin, taken = time.monotonic(), 0
     while not stop.wait(max(0.0, begin + taken / rate - time.monotonic())):
         pose, now = where(), clock()
+        lost.note(pose is None)
         for name, source in sources.items():
             pictures = source.take(now, pose or Pose(0.0, 0.0, 0.0))
             if pictures is None:
+                print(f"frames: the film for {name} has ended", file=sys.stderr)
                 return
             writers[name].write(now, pose, *adjusted[name].pair(*pictures), adjusted[name].gain)
         taken = max(taken + 1, int((time.monotonic() - begin) * rate))
@@ -63,17 +95,23 @@ def watch(
 
     Only the newest pair counts. Pairs without a pose are left out, since nobody could say where things are.
     """
-    looked, heard = 0, time.monotonic()
+    looked = 0
+    heard = seen = time.monotonic()
+    blind = Notice(
+        f"{camera.name}: no pictures come: does frames run, for this vehicle, with the same --memory?",
+        f"{camera.name}: pictures come",
+    )
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
         while not stop.is_set():
             pair = reader.newest()
+            blind.note(pair is None and time.monotonic() - seen > AGAIN)
             if pair is None:
                 if time.monotonic() - heard > AGAIN:
                     reader.look_again()
                     heard = time.monotonic()
                 stop.wait(WAIT)
                 continue
-            heard = time.monotonic()
+            heard = seen = time.monotonic()
             if pair.pose is None:
                 continue
             looked += 1
@@ -89,4 +127,4 @@ def _send(out: socket.socket, data: bytes, to: tuple[str, int]) -> None:
     try:
         out.sendto(data, to)
     except OSError as error:
-        print(f"detections are not heard: {error}", file=sys.stderr)
+        print(f"detections cannot be sent: {error}", file=sys.stderr)

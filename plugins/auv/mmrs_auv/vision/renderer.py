@@ -11,7 +11,7 @@ import numpy as np
 
 from ..vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
 from .cameras import LEFT, RIGHT, Camera, Numbers, Picture, Pose
-from .water import POOL, Water, bgr
+from .water import POOL, Water, bgr, hazier
 
 NEAR = 0.15
 """Metres ahead of an eye within which nothing is drawn."""
@@ -51,7 +51,7 @@ class Renderer:
         conditions: Conditions | None = None,
         water: Water = POOL,
     ) -> None:
-        self._surroundings, self._water = surroundings, water
+        self._surroundings, self._water = surroundings, hazier(water, surroundings.haze)
         self._conditions = conditions or Conditions(noise=4.0 if surroundings.noise else 0.0)
         self._random = np.random.default_rng(seed)
         self._store: Numbers = np.empty(0)

@@ -15,6 +15,7 @@ from dataclasses import astuple, dataclass
 from math import isfinite, nan
 from multiprocessing import resource_tracker
 from multiprocessing.shared_memory import SharedMemory
+from pathlib import Path
 from secrets import randbits
 from types import TracebackType
 from typing import Final
@@ -26,8 +27,10 @@ from .cameras import Picture, Pose
 
 SLOTS: Final = 4
 
-_MAGIC: Final = 0x4D4D5253_45594501
-_HEADER: Final = struct.Struct("=QQqqqqQ")  # magic, generation, process, slots, width, height, newest
+_MAGIC: Final = 0x4D4D5253_45594502
+_HEADER: Final = struct.Struct("=QQqqqqqQ")
+"""Magic, generation, process and when it began, slots, width, height, newest."""
+
 _NEWEST: Final = _HEADER.size - 8
 _SLOT: Final = struct.Struct("=QQ8d")  # mark, checksum, time, pose, gain
 _WORD: Final = struct.Struct("=Q")
@@ -75,7 +78,10 @@ class Writer:
         self._stride = _stride(width, height)
         self._slots, self._number = slots, 0
         self._memory = _made(name, _HEADER.size + slots * self._stride)
-        _HEADER.pack_into(self._buffer, 0, 0, randbits(63), os.getpid(), slots, width, height, 0)
+        owner = os.getpid()
+        _HEADER.pack_into(
+            self._buffer, 0, 0, randbits(63), owner, _beginning(owner) or 0, slots, width, height, 0
+        )
         _WORD.pack_into(self._buffer, 0, _MAGIC)
 
     def __enter__(self) -> Writer:
@@ -229,8 +235,8 @@ def _made(name: str, size: int) -> SharedMemory:
     if left is not None:
         owner = _owner(left)
         left.close()
-        if owner is not None and _is_alive(owner):
-            raise MemoryTakenError(f"shared memory {name!r}: process {owner} writes there")
+        if owner is not None and owner[1] == _beginning(owner[0]):
+            raise MemoryTakenError(f"shared memory {name!r}: process {owner[0]} writes there")
         with suppress(FileNotFoundError):
             resource_tracker.register(f"/{name}", "shared_memory")
             left.unlink()
@@ -261,27 +267,39 @@ def _is_own(memory: SharedMemory) -> bool:
     return bool(magic == _MAGIC and owner == os.getpid())
 
 
-def _owner(memory: SharedMemory) -> int | None:
-    """Return the process that made memory; None: the memory is not such, or not finished."""
+def _owner(memory: SharedMemory) -> tuple[int, int] | None:
+    """Return the process that made memory, and when it began; None: the memory is not finished.
+
+    Raises:
+        MemoryTakenError: it is something else.
+    """
     assert memory.buf is not None
     if memory.size < _HEADER.size:
         return None
-    magic, _, owner, *_ = _HEADER.unpack_from(memory.buf, 0)
+    magic, _, owner, began, *_ = _HEADER.unpack_from(memory.buf, 0)
     if magic == 0:
         return None
     if magic != _MAGIC:
         raise MemoryTakenError(f"shared memory {memory.name!r} holds something else")
-    return int(owner)
+    return int(owner), int(began)
 
 
-def _is_alive(process: int) -> bool:
+def _beginning(process: int) -> int | None:
+    """Return when a process began, as the system counts it; None: it has ended.
+
+    Another process may have got its number since, and one that was killed keeps its own until somebody asks
+    how it ended. Where the system does not tell, 0 stands for all that live.
+    """
     try:
-        os.kill(process, 0)
+        with suppress(PermissionError):
+            os.kill(process, 0)
+        words = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
     except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
+        return None
+    except OSError:
+        return 0
+    state, *rest = words.rpartition(")")[2].split()
+    return None if state in "ZX" else int(rest[18])
 
 
 def _header(memory: SharedMemory) -> tuple[int, int, int, int] | None:
@@ -289,7 +307,7 @@ def _header(memory: SharedMemory) -> tuple[int, int, int, int] | None:
     assert memory.buf is not None
     if memory.size < _HEADER.size:
         return None
-    magic, generation, _, slots, width, height, _ = _HEADER.unpack_from(memory.buf, 0)
+    magic, generation, _, _, slots, width, height, _ = _HEADER.unpack_from(memory.buf, 0)
     if magic == 0:
         return None
     sound = slots > 0 and width > 0 and height > 0 and width * height < _LARGEST

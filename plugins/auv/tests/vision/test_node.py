@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.body.surroundings import BUOY, GATE, PATH, Surroundings, Thing
-from mmrs_auv.vision.cameras import Pose
+from mmrs_auv.vision.cameras import Pose, cameras_of
+from mmrs_auv.vision.detecting import detect, sought_in
 from mmrs_auv.vision.node import Eyes
+from mmrs_auv.vision.renderer import Renderer
 
 POOL = Surroundings(
     bottom=4.0,
@@ -51,3 +55,13 @@ def test_an_empty_pool_shows_nothing() -> None:
     for number in range(24):
         pose = Pose(0.0, 0.0, 0.3 + 0.14 * number, 4.0, -6.0, 15.0 * number)
         assert eyes.look(0.5 * number, pose) == []
+
+
+def test_haze_that_is_known_is_undone_and_haze_that_is_not_hides_things() -> None:
+    hazy = replace(POOL, haze=2.0)
+    known = {each.name for each in Eyes(pool_sheet(), hazy, seed=1).look(0.0, HERE)}
+    assert known >= {"gate", "red buoy", "yellow buoy", "path"}
+    drawn, told = Renderer(hazy, seed=1), sought_in(POOL)
+    front, bottom = cameras_of(pool_sheet())
+    unknown = [each for camera in (front, bottom) for each in detect(*drawn.pair(camera, HERE), camera, told)]
+    assert len(unknown) < len(known) - 1

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from multiprocessing import resource_tracker
 from multiprocessing.shared_memory import SharedMemory
 from pathlib import Path
 from secrets import token_hex
 
 import numpy as np
 import pytest
+from mmrs_auv.vision import ring
 from mmrs_auv.vision.cameras import Picture, Pose
 from mmrs_auv.vision.ring import MemoryTakenError, Pair, Reader, Writer
 
@@ -61,13 +64,16 @@ def children() -> Iterator[list[subprocess.Popen[str]]]:
         child.communicate()
 
 
-def start(children: list[subprocess.Popen[str]], script: str, *words: str) -> subprocess.Popen[str]:
+def start(
+    children: list[subprocess.Popen[str]], script: str, *words: str, own_group: bool = False
+) -> subprocess.Popen[str]:
     child = subprocess.Popen(
         [sys.executable, "-c", script, *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         cwd=Path(__file__).parents[2],
+        start_new_session=own_group,
     )
     children.append(child)
     assert child.stdout is not None
@@ -179,6 +185,29 @@ def test_a_writer_that_was_killed_is_replaced_by_the_next(
         again = soon(reader)
         assert again is not None
         assert (again.left == again.number % 256).all()
+
+
+def test_memory_of_a_killed_writer_that_nobody_asked_how_it_ended_is_replaced(
+    name: str, children: list[subprocess.Popen[str]]
+) -> None:
+    first = start(children, WRITES, name, "0.01", own_group=True)
+    os.killpg(first.pid, signal.SIGKILL)
+    os.waitid(os.P_PID, first.pid, os.WEXITED | os.WNOWAIT)
+    assert exists(name)
+    with Writer(name, WIDTH, HEIGHT):
+        pass
+    assert not exists(name)
+
+
+def test_another_process_with_the_number_of_a_killed_writer_is_not_taken_for_it(name: str) -> None:
+    left = SharedMemory(name, create=True, size=1000)
+    assert left.buf is not None
+    ring._HEADER.pack_into(left.buf, 0, ring._MAGIC, 1, 1, 7, 4, 4, 3, 0)
+    resource_tracker.unregister(f"/{name}", "shared_memory")
+    left.close()
+    with Writer(name, WIDTH, HEIGHT):
+        pass
+    assert not exists(name)
 
 
 def test_what_a_writer_left_that_nobody_could_clean_up_after_is_replaced(name: str) -> None:

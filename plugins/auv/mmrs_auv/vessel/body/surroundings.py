@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
-from math import inf
+from dataclasses import asdict, dataclass, fields
+from math import inf, isfinite
 
 GATE, BUOY, PATH = "gate", "buoy", "path"
+
+HAZIEST = 10.0
+"""Times as hazy as a clear pool, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +64,7 @@ class Surroundings:
         bottom: its depth, metres.
         density: of the water, kilograms per cubic metre; None: that of the vehicle's sheet.
         noise: whether sensors have noise and bias.
+        haze: how many times the haze of a clear pool the water has; cameras undo as much of it.
         obstacles: that sonar sees; things: that cameras see.
     """
 
@@ -68,6 +72,7 @@ class Surroundings:
     bottom: float = 100.0
     density: float | None = None
     noise: bool = True
+    haze: float = 1.0
     obstacles: tuple[Obstacle, ...] = ()
     things: tuple[Thing, ...] = ()
 
@@ -85,13 +90,44 @@ def from_json(text: str) -> Surroundings:
     """Return the surroundings of a file.
 
     Raises:
-        ValueError: the text describes no surroundings.
+        ValueError: the text describes no surroundings; says what is wrong with it.
     """
     try:
         found = json.loads(text)
         north, east = found.pop("current", (0.0, 0.0))
         obstacles = tuple(Obstacle(**each) for each in found.pop("obstacles", ()))
         things = tuple(Thing(**each) for each in found.pop("things", ()))
-        return Surroundings(**found, current=(north, east), obstacles=obstacles, things=things)
+        around = Surroundings(**found, current=(north, east), obstacles=obstacles, things=things)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"no surroundings: {error}") from error
+    _check(around)
+    return around
+
+
+def _check(around: Surroundings) -> None:
+    """Raise ValueError for the first value that no water, or nothing in it, has."""
+    _check_values(around, "the water", {"bottom": inf, "haze": HAZIEST})
+    for key, value in zip(("current", "current", "density"), (*around.current, around.density), strict=True):
+        if value is not None or key == "current":
+            _check_number("the water", key, value)
+    for thing in around.things:
+        _check_values(thing, f"thing {thing.name!r}", {"size": inf})
+    for number, obstacle in enumerate(around.obstacles):
+        _check_values(obstacle, f"obstacle {number}", {"radius": inf})
+
+
+def _check_values(found: Surroundings | Thing | Obstacle, where: str, most: dict[str, float]) -> None:
+    """Check the types of all values; those that `most` names are above zero, and no more than that."""
+    for each in fields(found):
+        value = getattr(found, each.name)
+        if each.type in ("str", "bool") and type(value).__name__ != each.type:
+            raise ValueError(f"no surroundings: {where}: {each.name} is {value!r}")
+        if each.type == "float" and value != each.default:
+            _check_number(where, each.name, value)
+        if each.name in most and not 0.0 < value <= most[each.name]:
+            raise ValueError(f"no surroundings: {where}: {each.name} is {value:g}")
+
+
+def _check_number(where: str, key: str, value: object) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        raise ValueError(f"no surroundings: {where}: {key} is {value!r}")
