@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 from mmrs_auv.testing import pool_sheet
+from mmrs_auv.vessel import hosting
 from mmrs_auv.vessel.hosting import (
     LAG,
     SEEN_BASE,
@@ -240,3 +241,45 @@ def test_a_sheet_may_say_how_good_its_instruments_are() -> None:
     assert instruments_of(pool_sheet(**{"heading.bias": 3.0})).heading_bias == 3.0
     with pytest.raises(ValueError, match=r"heading\.bias is -1"):
         instruments_of(pool_sheet(**{"heading.bias": -1.0}))
+
+
+def test_who_goes_by_the_bus_ends_when_nobody_tells_the_time_any_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(hosting, "CLOCK_SILENT", 0.3)
+    node = Talker("node", ())
+    wire = Wire([clock_frame(0.0), clock_frame(0.1)])
+    with pytest.raises(hosting.ClockSilentError, match=r"nobody has told the time for 0\.3 s"):
+        serve(node, wire, "bus")
+    assert node.ticks == [0.0, 0.1]
+
+
+def test_a_node_speaks_in_time_however_much_others_say() -> None:
+    class Flood(Wire):
+        def receive(self, timeout: float) -> Frame | None:
+            return Frame(0x123, b"")
+
+    node, wire, stop = Talker("node", (7,), 0.02), Flood(), threading.Event()
+    host = threading.Thread(target=serve, args=(node, wire, "real", stop), daemon=True)
+    host.start()
+    stop.wait(0.5)
+    stop.set()
+    host.join(5.0)
+    assert not host.is_alive()
+    assert len(wire.sent) > 10
+
+
+def test_a_host_says_which_message_has_two_senders() -> None:
+    told: list[str] = []
+    node = Talker("Movement", (), 0.02)
+    wire, stop = Wire([Frame(0x080, bytes((number,))) for number in range(4)]), threading.Event()
+    host = threading.Thread(target=serve, args=(node, wire, "real", stop), kwargs={"say": told.append})
+    host.start()
+    stop.wait(0.3)
+    stop.set()
+    host.join(5.0)
+    assert told == [
+        "another node says WrenchForce (0x080), which only this one is to say: the dive is given up"
+    ]
+    assert len([each for each in wire.sent if each.id == 0x010]) in (2, 3, 4)
+    assert 0x010 in [id for _, id in node.heard]

@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from .hosting import Pace, serve
+from .hosting import ClockSilentError, Pace, serve
 from .node import Node
 from .sheet import Sheet, from_json
 from .wire.codec import Codec
@@ -53,7 +53,11 @@ def main(words: Sequence[str] | None = None) -> int:
                 stop,
                 speedup=given.speedup,
                 late=late.append if given.figures else None,
+                say=lambda text: print(f"{given.part}: {text}", file=sys.stderr, flush=True),
             )
+    except ClockSilentError as error:
+        print(f"{given.part}: {error}", file=sys.stderr)
+        return 3
     except PortError as error:
         print(f"{given.part}: the bus is gone: {error}", file=sys.stderr)
         return 3

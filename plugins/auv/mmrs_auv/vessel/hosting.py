@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import Literal, Protocol
 
+from .guard import Guard
 from .node import Node
 from .wire.catalogue import CLOCK_ID, NODES
 from .wire.check import check_of
@@ -30,7 +31,14 @@ LAG = 2
 PATIENCE = 2.0
 """Seconds of real time for which simulated time waits for a part; it then counts as gone till it is heard."""
 
+CLOCK_SILENT = 20.0
+"""Seconds of real time for which who goes by the bus waits to be told the time."""
+
 Pace = Literal["real", "bus", "lead"]
+
+
+class ClockSilentError(OSError):
+    """Who told the time is gone, and with it the simulated vehicle."""
 
 
 class Port(Protocol):
@@ -111,7 +119,7 @@ class Rehearsal:
         faults: Sequence[WireFault] = (),
         watch: Callable[[float, Frame], None] | None = None,
     ) -> None:
-        self._nodes = list(nodes)
+        self._nodes = [Guard(node) for node in nodes]
         self._disturbances = [_Disturbance(fault) for fault in faults]
         self._watch = watch
         self._time = 0
@@ -126,8 +134,8 @@ class Rehearsal:
 
     def add(self, node: Node) -> None:
         """Take another node; it ticks with the others from now on."""
-        self._nodes.append(node)
-        self._due[id(node)] = self._time
+        self._nodes.append(guard := Guard(node))
+        self._due[id(guard)] = self._time
 
     def kill(self, name: str) -> None:
         """Let a node hear and say nothing any more, as a process that was killed."""
@@ -155,30 +163,30 @@ class Rehearsal:
 
     def _step(self) -> None:
         now = self.now
-        said: list[tuple[int, str, Frame]] = [(frame.id, "", frame) for frame in self._posted]
+        said: list[tuple[Guard | None, Frame]] = [(None, frame) for frame in self._posted]
         self._posted.clear()
         for node in self._nodes:
             if self._due[id(node)] > self._time:
                 continue
             self._due[id(node)] += round(node.period * MICROSECONDS)
             if node.name not in self._dead:
-                said.extend((frame.id, node.name, frame) for frame in node.tick(now))
-        said.sort(key=lambda each: each[0])
-        for _, sender, frame in said:
+                said.extend((node, frame) for frame in node.tick(now))
+        said.sort(key=lambda each: each[1].id)
+        for sender, frame in said:
             if self._watch is not None:
                 self._watch(now, frame)
             self._deliver(frame, sender, now)
 
-    def _deliver(self, frame: Frame, sender: str, now: float) -> None:
+    def _deliver(self, frame: Frame, sender: Guard | None, now: float) -> None:
         arrived: Frame | None = frame
         for disturbance in self._disturbances:
             if arrived is None:
                 return
-            arrived = disturbance.through(arrived, sender, now)
+            arrived = disturbance.through(arrived, sender.name if sender else "", now)
         if arrived is None:
             return
         for node in self._nodes:
-            if node.name != sender and node.name not in self._dead:
+            if node is not sender and node.name not in self._dead:
                 node.hear(arrived, now)
 
 
@@ -214,6 +222,7 @@ def serve(
     *,
     speedup: float = 1.0,
     late: Callable[[float], None] | None = None,
+    say: Callable[[str], None] = lambda text: None,
 ) -> None:
     """Host one node on a bus until `stop` is set.
 
@@ -222,18 +231,20 @@ def serve(
             "lead": real time times `speedup`, told to all others in `Clock` frames before each tick, and
             it waits for hosts by "bus" that are more than `LAG` ticks behind.
         late: called with the seconds by which each tick came late (not with "bus").
+        say: told which message of the bus has two senders (see `guard`), if one has.
 
     Raises:
+        ClockSilentError: nobody tells the time by which the node is to go.
         Whatever the port raises when the bus is gone, and whatever the node raises: a process that fails is
         restarted from outside, and what depends on it meanwhile fails safe.
     """
-    ended = stop or threading.Event()
+    ended, guard = stop or threading.Event(), Guard(node, say)
     if clock == "bus":
-        _serve_by_bus(node, port, ended)
+        _serve_by_bus(guard, port, ended)
     elif clock == "lead":
-        _serve_leading(node, port, ended, speedup, late)
+        _serve_leading(guard, port, ended, speedup, late)
     else:
-        _serve_by_clock(node, port, ended, late)
+        _serve_by_clock(guard, port, ended, late)
 
 
 def _serve_by_clock(
@@ -255,7 +266,7 @@ def _serve_by_clock(
         for said in node.tick(now):
             port.send(said)
         ticks += 1
-        while (heard := port.receive(0.0)) is not None:
+        while time.monotonic() - begin < ticks * node.period and (heard := port.receive(0.0)) is not None:
             node.hear(heard, now)
 
 
@@ -292,18 +303,21 @@ def _serve_leading(
         ticks += 1
 
 
-def _serve_by_bus(node: Node, port: Port, stop: threading.Event) -> None:
+def _serve_by_bus(node: Guard, port: Port, stop: threading.Event) -> None:
     due: float | None = None
     now = 0.0
+    told_at = time.monotonic()
     while not stop.is_set():
         frame = port.receive(0.1)
-        if frame is None:
+        told = None if frame is None else clock_time(frame)
+        if frame is None or told is None:
+            if frame is not None:
+                node.hear(frame, now)
+            if time.monotonic() - told_at > CLOCK_SILENT:
+                raise ClockSilentError(f"nobody has told the time for {CLOCK_SILENT:g} s")
             continue
-        told = clock_time(frame)
-        if told is None:
-            node.hear(frame, now)
-            continue
-        now = told
+        node.notice(frame, now)
+        now, told_at = told, time.monotonic()
         if due is None or due - now > 10.0 * node.period:
             due = now
         if now + 1e-6 >= due:

@@ -182,3 +182,10 @@ def test_interfaces_that_there_are_not() -> None:
         open_port("nosuch", "can0")
     with pytest.raises(PortError, match="socketcan nosuch0"):
         open_port("socketcan", "nosuch0")
+
+
+def test_what_an_interface_gives_back_of_ones_own_is_not_heard() -> None:
+    with open_port("virtual", str(uuid4())[:8], receive_own_messages=True) as port:
+        port.send(FRAMES[0])
+        assert port.receive(0.3) is None
+        assert port.errors == {"echo": 1}

@@ -36,6 +36,7 @@ class Vehicle:
         drives: of the thrusters, in the order of their numbers.
         devices: what they did is in `devices.operations`.
         charge: joules that are left; without any, all is silent and the drop weight falls.
+        has_drives: whether it says what its thrusters' drives do.
     """
 
     name = VEHICLE
@@ -95,6 +96,7 @@ class Vehicle:
         }
         self._due = dict.fromkeys(self._periods, -inf)
         self._last: dict[str, Mapping[str, Value]] = {}
+        self.has_drives = not without_drives
         self._outside = Outside(sheet) if without_drives else None
         if without_drives:
             for number in range(len(self.drives)):

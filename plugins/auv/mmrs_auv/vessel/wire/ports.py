@@ -33,7 +33,8 @@ class Port:
     Attributes:
         errors: what did not go well, by sort: ``overrun``: frames that nobody took in time, ``refused``:
             frames that the interface did not take, ``remote``, ``error`` and ``long``: frames that are no
-            data frames of classic CAN, ``receiving``: readings that failed.
+            data frames of classic CAN, ``echo``: frames of its own that the interface gave back,
+            ``receiving``: readings that failed.
     """
 
     def __init__(self, bus: BusABC, most_waiting: int = MOST_WAITING) -> None:
@@ -254,6 +255,8 @@ def _oddity(message: Message) -> str | None:
     """Return what a message is if it is no data frame of classic CAN."""
     if message.is_error_frame:
         return "error"
+    if not message.is_rx:
+        return "echo"
     if message.is_remote_frame:
         return "remote"
     return "long" if message.is_fd or len(message.data) > 8 else None
