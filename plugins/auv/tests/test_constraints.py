@@ -273,7 +273,7 @@ def test_a_pipeline_is_as_deep_as_its_lowest_point_less_the_height_above_it(regi
 
 
 def test_a_misspelt_property_of_a_sensor_is_told_with_the_nearest_name(registry):
-    models = [sonar(registry, sonar_aparture="120"), sonar(registry, mavlink_camera="0")]
+    models = [sonar(registry, sonar_aparture="120"), sonar(registry, sensor_width="13.2", mavlink_camera="0")]
     (said,) = found("AUV021", *models)
     assert said == (
         "property 'sonar.aparture' of device 'sonar' is read by nobody; did you mean sonar.aperture?"

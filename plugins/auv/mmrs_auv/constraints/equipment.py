@@ -19,7 +19,7 @@ DEVICE = ("urn:mmrs:robot:1.0", "Device")
 KIND = "sensor.kind"
 KINDS = ("depth", "imu", "compass", "dvl", "sonar", "altimeter")
 FIGURES = (*SONAR_KEYS, "dvl.range.min", "dvl.range.max")
-OURS = ("sensor.", "sonar.", "dvl.")
+OURS = ("sonar.", "dvl.")
 """What names of properties begin with that are read here."""
 
 
