@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from math import inf
 
 from mmrs_core.behaviour.policies import LAST_RESORT, patience, policy_for, response_to
+from mmrs_core.contributions.abilities import Bearing
+from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.flight.faults import TAKEN_OVER
 from mmrs_core.flight.policies import NOTHING, UNDECLARED
@@ -44,3 +46,15 @@ class Answers:
             return inf
         seconds = patience(found.which, self.policies)
         return inf if seconds is None else seconds
+
+    def unborne(self, backend: Backend, now: float) -> Fault | None:
+        """Return what a backend says went wrong, unless the robot goes on as if nothing were.
+
+        Raises:
+            LinkLostError: the robot cannot be reached.
+        """
+        found = backend.fault(now)
+        if found is None or not self.bears(found):
+            return found
+        goes_on = not isinstance(backend, Bearing) or backend.bear(now)
+        return None if goes_on else found

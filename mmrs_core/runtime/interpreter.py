@@ -167,7 +167,7 @@ class _Run:
                 self._obey()  # what was to wait until it is ready goes before anything else
             step = robot.due(robot.looked, self._peers)
             if robot.suspended and not was_suspended:
-                self._break_off(robot, robot.fault or Fault("BATTERY_LOW"))
+                self._break_off(robot, robot.halt.fault or Fault("BATTERY_LOW"))
             if step is None or not self._order(robot, step):
                 return
             yield from self._make(robot, step)
@@ -249,7 +249,7 @@ class _Run:
         failed = robot.point.phase is Phase.FAILED
         self._dismiss(robot, failed=failed)
         if failed:
-            self._stopping.answer(robot, robot.fault or Fault("CRASHED"))
+            self._stopping.answer(robot, robot.halt.fault or Fault("CRASHED"))
 
     def _dismiss(self, robot: RunningRobot, *, failed: bool) -> None:
         """Note that a robot makes no further step, and have those look that may wait for it."""
@@ -319,7 +319,7 @@ class _Run:
 
     def _patience_ends(self, *, begin: bool = False) -> float:
         """Return when nobody waits any longer for robots to be resumed; the past if there are none."""
-        if not any(robot.suspended and not robot.released for robot in self._robots):
+        if not any(robot.suspended and not robot.halt.released for robot in self._robots):
             return -inf if begin else inf
         if begin and self._idle_since is None:
             self._idle_since = self._clock.now()
@@ -358,7 +358,7 @@ class _Run:
 
     def _ending(self) -> Ending:
         faults = {id: Fault(why) for id, why in self._over.items() if why}
-        faults |= {robot.id: robot.fault for robot in self._robots if robot.fault is not None}
+        faults |= {robot.id: robot.halt.fault for robot in self._robots if robot.halt.fault is not None}
         suspended = tuple(robot.id for robot in self._robots if robot.suspended)
         done = all(robot.point.phase is Phase.DONE for robot in self._robots)
         if suspended or (not self._is_quiet() and not all(robot.point.is_final for robot in self._robots)):
@@ -366,7 +366,7 @@ class _Run:
         else:
             outcome = Outcome.FAILED if faults else Outcome.SUCCESS if done else Outcome.STUCK
         unconfirmed = self._stopping.unconfirmed
-        responses = {robot.id: robot.response for robot in self._robots if robot.fault is not None}
+        responses = {robot.id: robot.halt.response for robot in self._robots if robot.halt.fault is not None}
         return Ending(
             outcome,
             self._deadlock,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Telling, Watched
+from mmrs_core.contributions.abilities import Doubting, Pausable, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
-from mmrs_core.flight.policies import COMES_DOWN, NOTHING
+from mmrs_core.flight.policies import NOTHING
+from mmrs_core.runtime.halting import Progress
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, RETURN, STOP, Order, Orders
 from mmrs_core.runtime.robot import RunningRobot
 
@@ -41,9 +42,6 @@ class Obedience:
 
     def stopped(self, id: str, stopping: bool, trouble: Fault | None) -> None:
         """Tell the orders that ended a robot's program what became of it."""
-        robot = self._robots[id]
-        robot.down = not stopping and trouble is None and robot.response in COMES_DOWN
-        robot.rested = robot.down and _rests(robot)
         for order in self._open:
             began = (order, id) not in self._waiting
             if id in order.responses and id in order.open and began and not stopping:
@@ -96,12 +94,12 @@ class Obedience:
         if robot is None:
             order.refuse(id, "no such robot here")
         elif robot.absent:
-            order.refuse(id, f"it did not get ready: {robot.fault}")
+            order.refuse(id, f"it did not get ready: {robot.halt.fault}")
         elif order.kind == ANSWER:
             self._answer(order, robot)
-        elif order.kind == HOLD and robot.response != NOTHING:
+        elif order.kind == HOLD and robot.halt.response != NOTHING:
             self._hold(order, robot)
-        elif robot.response == NOTHING:
+        elif robot.halt.response == NOTHING:
             order.refuse(id, "a pilot has taken over")
         elif order.kind == RESUME:
             self._resume(order, robot)
@@ -136,12 +134,12 @@ class Obedience:
             robot.hold(self._clock.now())
 
     def _resume(self, order: Order, robot: RunningRobot) -> None:
-        if robot.broken_off:
+        if robot.halt.before_hold:
             self._stop(order, robot)
         elif robot.point.is_final:
             order.refuse(robot.id, "its program has ended")
-        elif robot.suspended and robot.stopping:
-            order.refuse(robot.id, f"has still to do {robot.response}")
+        elif robot.suspended and robot.halt.stopping:
+            order.refuse(robot.id, f"has still to do {robot.halt.response}")
         elif robot.suspended:
             self._recover(order, robot)
         elif robot.held and isinstance(robot.backend, Pausable):
@@ -152,9 +150,9 @@ class Obedience:
 
     def _stands(self, robot: RunningRobot) -> bool:
         """Return whether it came down for its battery, and is there."""
-        if not robot.suspended or robot.stopping or robot.is_watched(self._clock.now()):
+        if not robot.suspended or robot.halt.stopping or robot.is_watched(self._clock.now()):
             return False
-        return robot.down or _rests(robot)
+        return robot.halt.is_down or robot.rests
 
     def _obey_on_the_ground(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot that waits for its battery do what it does anyway, or be waited for no longer."""
@@ -164,7 +162,7 @@ class Obedience:
         if why:
             order.refuse(robot.id, why)
             return
-        robot.released = robot.released or order.kind == STOP
+        robot.halt.released = robot.halt.released or order.kind == STOP
         order.confirm(robot.id)
 
     def _recover(self, order: Order, robot: RunningRobot) -> None:
@@ -180,8 +178,8 @@ class Obedience:
 
     def _stop_again(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot whose program has ended by a fault stop in another way, if it does anything still."""
-        busy = robot.fault is not None and (robot.stopping or robot.is_watched(self._clock.now()))
-        robot.released = robot.released or order.kind == STOP
+        busy = robot.halt.fault is not None and (robot.halt.stopping or robot.is_watched(self._clock.now()))
+        robot.halt.released = robot.halt.released or order.kind == STOP
         if not busy:
             order.refuse(robot.id, "its program has ended")
         elif isinstance(robot.backend, Watched) and not robot.backend.reachable(self._clock.now()):
@@ -191,21 +189,23 @@ class Obedience:
 
     def _stop(self, order: Order, robot: RunningRobot) -> None:
         """Have a robot do something else about what has ended its program; `resume` what it did before."""
-        held_anyway = order.kind == HOLD and robot.response == "HOLD"
+        halt = robot.halt
+        held_anyway = order.kind == HOLD and halt.response == "HOLD"
         if order.kind == HOLD:
-            robot.broken_off, robot.response = robot.broken_off or _unless_hold(robot.response), "HOLD"
+            halt.hold()
         elif order.kind == RESUME:
-            robot.broken_off, robot.response = "", robot.broken_off
+            halt.go_on()
         else:
-            robot.broken_off, robot.response = "", self._orders.response(order.kind)
-        order.responses[robot.id] = robot.response
+            halt.respond(self._orders.response(order.kind))
+        order.responses[robot.id] = halt.response
         try:
-            robot.backend.stop(self._clock.now(), robot.response)
+            robot.backend.stop(self._clock.now(), halt.response)
         except LinkLostError as error:
             order.refuse(robot.id, str(error))
             return
-        robot.released = order.kind == STOP or (robot.released and held_anyway)
-        robot.stopping = self._clock.passes_by_itself
+        halt.released = order.kind == STOP or (halt.released and held_anyway)
+        if self._clock.passes_by_itself:
+            halt.begin()
 
     def _look(self, order: Order) -> None:
         now = self._clock.now()
@@ -215,8 +215,8 @@ class Obedience:
                 continue
             if id in order.responses:
                 self._look_at_response(order, robot, now)
-            elif robot.fault is not None:
-                order.refuse(id, f"something has happened since: {robot.fault}")
+            elif robot.halt.fault is not None:
+                order.refuse(id, f"something has happened since: {robot.halt.fault}")
             elif order.kind == HOLD:
                 self._see_halt(order, robot, now)
             elif self._goes_on(robot, now):
@@ -230,7 +230,7 @@ class Obedience:
 
     def _confirm_rest(self, order: Order, robot: RunningRobot) -> bool:
         """Confirm to a robot that still gets ready, and is to stay where it is, that its motors are off."""
-        rests = robot.preparing and order.kind in (HOLD, *ENDINGS) and _rests(robot)
+        rests = robot.preparing and order.kind in (HOLD, *ENDINGS) and robot.rests
         if rests:
             order.confirm(robot.id)
         return rests
@@ -238,9 +238,9 @@ class Obedience:
     def _look_at_response(self, order: Order, robot: RunningRobot, now: float) -> None:
         if robot.ordered is not None:
             return
-        if robot.response != order.responses[robot.id]:
+        if robot.halt.response != order.responses[robot.id]:
             order.refuse(robot.id, _since(robot))
-        elif not robot.stopping:
+        elif not robot.halt.stopping:
             self._settle(order, robot)
         elif isinstance(robot.backend, Watched) and robot.backend.obeys(now):
             order.confirm(robot.id)
@@ -261,27 +261,19 @@ class Obedience:
     def _undone(self, order: Order, id: str) -> str:
         """Return why a robot that has stopped has not done what was ordered; empty where it has."""
         robot = self._robots[id]
-        if robot.response != order.responses[id]:
+        if robot.halt.response != order.responses[id]:
             return _since(robot)
         return robot.backend.undone(self._clock.now()) if isinstance(robot.backend, Watched) else ""
 
 
-def _rests(robot: RunningRobot) -> bool:
-    """Return whether its motors are seen to be off, those of whatever answers on its link."""
-    return isinstance(robot.backend, Telling) and robot.backend.told().get("armed") is False
-
-
 def _taken(robot: RunningRobot) -> str:
     """Return that the motors of a robot run that came down and had them off; empty: nobody started them."""
-    return "its motors run: somebody else has it" if robot.rested and not _rests(robot) else ""
+    rested = robot.halt.progress is Progress.AT_REST
+    return "its motors run: somebody else has it" if rested and not robot.rests else ""
 
 
 def _since(robot: RunningRobot) -> str:
     """Return in words what a robot does instead of what it was ordered."""
-    if robot.response == NOTHING:
+    if robot.halt.response == NOTHING:
         return "a pilot has taken over"
-    return f"something else has happened since: {robot.response or 'it goes on'}"
-
-
-def _unless_hold(response: str) -> str:
-    return "" if response == "HOLD" else response
+    return f"something else has happened since: {robot.halt.response or 'it goes on'}"

@@ -44,7 +44,7 @@ class Standing:
         if isinstance(backend, Telling):
             found |= backend.told()
         if running is not None and _responds(running, armed=found.get("armed") is True):
-            found |= answering(running.response)
+            found |= answering(running.halt.response)
         if running is not None and running.questions.asked:
             found["asks"] = running.questions.asked
         return found
@@ -55,13 +55,13 @@ class Standing:
         if running.preparing:
             return WAITS
         if running.point.is_final or running.absent:
-            lost = running.fault is not None and running.fault.which == LINK_LOST
-            return LOST if lost else ENDED
+            return LOST if running.halt.is_for(LINK_LOST) else ENDED
         return SUSPENDED if running.suspended else WORKS
 
 
 def _responds(robot: RunningRobot, *, armed: bool) -> bool:
     """Return whether a robot does, or is held by, what has broken its program off."""
-    lost = robot.fault is not None and robot.fault.which == LINK_LOST and not robot.stopping
-    answers = robot.fault is not None and not robot.absent and not lost
-    return answers and (robot.stopping or armed)
+    halt = robot.halt
+    lost = halt.is_for(LINK_LOST) and not halt.stopping
+    answers = halt.fault is not None and not robot.absent and not lost
+    return answers and (halt.stopping or armed)

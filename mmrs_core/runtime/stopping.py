@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from mmrs_core.contributions.abilities import Noting, Recovering, Watched
 from mmrs_core.contributions.execution import Clock, Fault
 from mmrs_core.errors import LinkLostError
-from mmrs_core.flight.faults import LINK_LOST
+from mmrs_core.flight.faults import BATTERY_LOW, LINK_LOST
 from mmrs_core.flight.policies import CAME_DOWN_AWAY, COMES_DOWN, NOTHING
 from mmrs_core.runtime.obedience import Obedience
 from mmrs_core.runtime.robot import RunningRobot
@@ -44,7 +44,7 @@ class Stopping:
     @property
     def busy(self) -> bool:
         """Return whether a robot has still to confirm."""
-        return any(robot.stopping for robot in self._robots)
+        return any(robot.halt.stopping for robot in self._robots)
 
     @property
     def watching(self) -> bool:
@@ -58,27 +58,28 @@ class Stopping:
 
     def answer(self, robot: RunningRobot, found: Fault) -> None:
         """Have a robot give the response that it decided on, and tell people why."""
-        self._say(f"'{robot.id}': {found}; response: {robot.response}")
-        _note(robot, found.which, found.reason, robot.response)
-        self.stop(robot, robot.response)
+        self._say(f"'{robot.id}': {found}; response: {robot.halt.response}")
+        _note(robot, found.which, found.reason, robot.halt.response)
+        self.stop(robot, robot.halt.response)
 
     def stop(self, robot: RunningRobot, response: str) -> None:
         """Have a robot stop in some way."""
-        robot.response = response
+        robot.halt.response = response
         self._came_down.pop(robot.id, None)
         try:
             robot.backend.stop(self._clock.now(), response)
         except LinkLostError:
             self._unconfirmed[robot.id] = None
         else:
-            robot.stopping = self._clock.passes_by_itself
+            if self._clock.passes_by_itself:
+                robot.halt.begin()
 
     def look_after(self) -> None:
         """Note which robots have confirmed that they stopped, or cannot, and what became of them since."""
         for robot in self._robots:
-            if robot.stopping:
+            if robot.halt.stopping:
                 self._look_after(robot, self._clock.now())
-            elif robot.fault is not None and robot.response != NOTHING and self._clock.passes_by_itself:
+            elif self._clock.passes_by_itself and robot.halt.fault and robot.halt.response != NOTHING:
                 self._look_again(robot, self._clock.now())
 
     def _look_again(self, robot: RunningRobot, now: float) -> None:
@@ -102,7 +103,7 @@ class Stopping:
             self._listened_for.add(robot.id)
             self._unheard.add(robot.id)
             self._lost[robot.id] = None
-            robot.released = False
+            robot.halt.released = False
 
     def _tell_link(self, robot: RunningRobot, *, heard: bool) -> None:
         if not heard:
@@ -114,42 +115,45 @@ class Stopping:
     def _look_after(self, robot: RunningRobot, now: float) -> None:
         try:
             trouble = robot.backend.fault(now)
-            robot.stopping = trouble is None and not robot.backend.finished(now)
+            stopping = trouble is None and not robot.backend.finished(now)
         except LinkLostError as error:
-            trouble, robot.stopping = Fault("LINK_LOST", str(error)), False
+            trouble, stopping = Fault(LINK_LOST, str(error)), False
+        if not stopping:
+            down = trouble is None and robot.halt.response in COMES_DOWN
+            robot.halt.settle(down=down, at_rest=down and robot.rests)
         if trouble is not None and robot.overtaken_by(trouble):
             self.answer(robot, trouble)
             return
         if trouble is not None:
-            self._say(f"'{robot.id}': not known to have stopped ({robot.response}): {trouble}")
+            self._say(f"'{robot.id}': not known to have stopped ({robot.halt.response}): {trouble}")
             self._unconfirmed[robot.id] = None
-            why = f"{robot.response} cannot be carried out: {trouble.reason or trouble.which}"
+            why = f"{robot.halt.response} cannot be carried out: {trouble.reason or trouble.which}"
             _note(robot, trouble.which, why, NOTHING)
             self._stay_if_lost(robot, trouble)
-        elif not robot.stopping:
+        elif not stopping:
             self._unconfirmed.pop(robot.id, None)
             self._say(f"'{robot.id}': {self._done(robot, now)}")
             self._tell_battery(robot, now)
-        self._obedience.stopped(robot.id, robot.stopping, trouble)
+        self._obedience.stopped(robot.id, stopping, trouble)
 
     def _done(self, robot: RunningRobot, now: float) -> str:
         """Return in words what a robot has done that has stopped."""
-        if robot.response == NOTHING:
+        if robot.halt.response == NOTHING:
             return "is left alone"
         if isinstance(robot.backend, Watched) and (why := robot.backend.undone(now)):
-            return f"has not done {robot.response}: {why}"
-        return f"has done {robot.response}"
+            return f"has not done {robot.halt.response}: {why}"
+        return f"has done {robot.halt.response}"
 
     def _tell_battery(self, robot: RunningRobot, now: float) -> None:
         """Tell what is to be done for a robot that came down for its battery."""
-        low = robot.fault is not None and robot.fault.which == "BATTERY_LOW"
-        if robot.suspended and low and robot.response in COMES_DOWN:
+        if robot.suspended and robot.halt.is_for(BATTERY_LOW) and robot.halt.response in COMES_DOWN:
             words = self._came_down[robot.id] = _came_down(robot, now)
             self._say(f"'{robot.id}': {words}; change it, then order resume, or start again with --resume")
 
     def _needs_company(self, robot: RunningRobot) -> bool:
         """Return whether this process must not end yet, since nobody has said that it may leave the robot."""
-        return robot.fault is not None and not robot.released and robot.is_watched(self._clock.now())
+        halt = robot.halt
+        return halt.fault is not None and not halt.released and robot.is_watched(self._clock.now())
 
 
 def _note(robot: RunningRobot, what: str, why: str, response: str) -> None:
