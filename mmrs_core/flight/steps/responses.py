@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..faults import POSITION_LOST, TAKEN_OVER
+from ..faults import OBJECT_NOT_FOUND, POSITION_LOST, TAKEN_OVER
 from ..policies import NOTHING, UNDECLARED
 from ..program import Policy, Robot
 
 CONTINUE = "CONTINUE"
 HOLD = "HOLD"
 LAND = "LAND"
+SURFACE = "SURFACE"
 ESCAPE = "EMERGENCY_AREA"
 RETURN = "RETURN"
 
@@ -31,6 +32,8 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
     for policy in (*first, *robot.policies):
         if policy.event == event:
             return policy
+    if event == OBJECT_NOT_FOUND and robot.vehicle == "sub":
+        return Policy(event, SURFACE)
     return Policy(event, UNDECLARED.get(event, HOLD))
 
 

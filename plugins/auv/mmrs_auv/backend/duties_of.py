@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from mmrs_auv.sayable import Bus
+from mmrs_auv.sayable import parameter_of as parameter_of
 from mmrs_auv.sheets import action_number
 from mmrs_auv.vessel.decision.duties import (
     NO_PROGRESS,
@@ -66,7 +68,8 @@ class Duties:
         """Know them; without a `sight`, objects are where they are expected.
 
         Raises:
-            UnsupportedError: moves or actions are of kinds that nobody knows; lists all of them.
+            UnsupportedError: moves or actions are of kinds that nobody knows, or more than the vehicle's bus
+                can say; lists all of them.
         """
         self._given, self._sheet, self._waters, self._sight = given, sheet, waters, sight
         self._kinds = move_kinds_of(given)
@@ -166,19 +169,11 @@ class Duties:
         return Look(north, east, heading.angle_degrees)
 
     def _strange(self) -> Iterator[str]:
+        bus = Bus(self._sheet, self._given.program.frame.surface)
         for move in self._given.robot.moves:
             kind = self._kinds[move.id]
             if kind.leaves in ("airborne", "grounded") or kind.needs == {"airborne"}:
                 yield f"move '{move.id}': {move.kind}"
             elif move.is_a(GO_TO) and (move.target is None or move.target.position is None):
                 yield f"move '{move.id}': nobody says where its object is expected"
-
-
-def parameter_of(action: Action) -> float:
-    """Return the number that goes with an action: that of its first parameter that is one, else 0."""
-    for _, text in action.parameters:
-        try:
-            return float(text)
-        except ValueError:
-            continue
-    return 0.0
+            yield from (f"move '{move.id}': {each}" for each in bus.refused(move))

@@ -8,8 +8,8 @@ from typing import Protocol
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.decision.duties import OBJECT_NOT_FOUND, Duty, FailureError, Ready, Stay, Surface
-from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
+from mmrs_auv.vessel.decision.duties import Duty, FailureError, Ready, Stay, Surface
+from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_core.behaviour.policies import AFTER, patience, response_to
@@ -265,7 +265,7 @@ class CanRobot:
         return self._state(self._now, self._craft.state()).position
 
     def _fault(self, found: FailureError) -> Fault:
-        if found.event in (CRASHED, OBJECT_NOT_FOUND):
+        if found.event in COMES_UP:
             return Fault(found.event, found.reason, "SURFACE")
         borne = response_to(found.event, self._policies) == "CONTINUE"
         if found.event == LINK_LOST and borne:

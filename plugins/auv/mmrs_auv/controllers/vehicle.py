@@ -20,7 +20,7 @@ from mmrs_auv.vessel.decision.duties import (
     Use,
 )
 from mmrs_auv.vessel.decision.duties import Look as Bearing
-from mmrs_auv.vessel.decision.helm import CRASHED, LINK_LOST, Helm, Watch
+from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, Helm, Watch
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
@@ -292,9 +292,9 @@ class CanVehicle:
             return
         if found.event in (CRASHED, LINK_LOST):
             self._told.add(found.event)
-            raise Fault(found.event, found.reason, "SURFACE" if found.event == CRASHED else "")
+            raise _fault(found)
         self._helm.bear(found.event)
-        raise Fault(found.event, found.reason)
+        raise _fault(found)
 
     def _is_borne(self, found: FailureError) -> bool:
         if found.event in (CRASHED, LINK_LOST):
@@ -325,3 +325,7 @@ class CanVehicle:
             return None
         north, east, _ = self._below(look.at)
         return Bearing(north, east, look.angle + look.mount)
+
+
+def _fault(found: FailureError) -> Fault:
+    return Fault(found.event, found.reason, "SURFACE" if found.event in COMES_UP else "")

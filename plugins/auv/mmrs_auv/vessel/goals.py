@@ -11,6 +11,9 @@ from .wire.frame import Frame
 GOAL_PERIOD = 0.2
 """Seconds from one repetition of a goal to the next."""
 
+SLOWEST = 0.02
+"""Metres per second, the least speed that a goal can say: less would mean as the vehicle likes."""
+
 GOALS = 16
 """Numbers that goals have, from 0 on, again and again."""
 

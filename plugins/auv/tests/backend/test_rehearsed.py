@@ -10,8 +10,9 @@ import pytest
 from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
+from mmrs_auv.vessel.movement import progress
 
-from mmrs_core.behaviour.program import Heading, Target, Transition
+from mmrs_core.behaviour.program import Action, Heading, Target, Transition
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
@@ -22,6 +23,10 @@ SAMPLE = use("ctd", "Sample")
 BUOY_NAME = "red buoy"
 AFLOAT = 0.4
 """Metres less deep than which the vehicle is at the surface; it floats at 0.2 m."""
+
+
+def with_parameter(text: str) -> Action:
+    return replace(SAMPLE, parameters=(("seconds", text),))
 
 
 def at(robot: RehearsedRobot) -> tuple[float, float, float]:
@@ -226,6 +231,35 @@ def test_the_same_seed_gives_the_same_run(tmp_path: Path) -> None:
     runs = [rehearse(behaviour, tmp_path / f"{n}", seed=seed) for n, seed in enumerate("778")]
     ends = [at(each.robots["naiad"]) for each in runs]
     assert ends[0] == ends[1] != ends[2]
+
+
+@pytest.mark.parametrize(
+    ("moves", "said"),
+    [
+        ((swim("a", 1.0, 0.0, 80.0),), "move 'a': leads 80 m deep, where its vehicle may go 49.6 m deep"),
+        ((swim("a", 1.0, 0.0, -3.0),), "move 'a': leads 3 m above the surface"),
+        ((swim("a", 9e6, 0.0, 1.0),), "move 'a': leads 9e+06 m to the east, farther than its bus can say"),
+        ((swim("a", 1.0, 0.0, 1.0, after=(with_parameter("1e5"),)),), "parameter 100000 of device 'ctd'"),
+        ((swim("a", 1.0, 0.0, 1.0, before=(with_parameter("nan"),)),), "parameter nan of device 'ctd'"),
+    ],
+    ids=["too deep", "in the air", "too far", "too much", "no number"],
+)
+def test_what_its_bus_cannot_say_is_refused_before_anything_moves(tmp_path, moves, said) -> None:
+    with pytest.raises(UnsupportedError) as refused:
+        rehearse(dive(*moves), tmp_path)
+    assert any(said in each for each in refused.value.elements)
+
+
+def test_a_speed_that_its_bus_cannot_say_is_not_taken_for_as_fast_as_it_likes(tmp_path: Path) -> None:
+    found = rehearse(dive(swim("a", 0.5, 0.0, 0.5, speed=0.004)), tmp_path)
+    assert found.run.ending.time > 5.0
+
+
+def test_a_vehicle_that_the_bottom_keeps_from_its_goal_comes_up(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
+    found = rehearse(dive(swim("out", 1.0, 0.0, 5.0)), tmp_path, bottom="2")
+    assert found.fault == "NO_PROGRESS"
+    assert at(found.robots["naiad"])[2] < AFLOAT
 
 
 def test_what_cannot_be_done_is_refused(tmp_path: Path) -> None:

@@ -10,14 +10,17 @@ from mmrs_auv.controllers import vehicle as module
 from mmrs_auv.controllers.vehicle import CanVehicle
 from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings
+from mmrs_auv.vessel.decision.duties import FailureError, Stay
+from mmrs_auv.vessel.decision.helm import Helm
 from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
 from vessel_rig import Rig
 
 from mmrs_core.flight.clock import Clock
-from mmrs_core.flight.faults import OBSTACLE, Fault
+from mmrs_core.flight.faults import NO_PROGRESS, OBJECT_NOT_FOUND, OBSTACLE, Fault
 from mmrs_core.flight.program import GoTo, Local, Object, Robot
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.services.uploads import Uploads
+from mmrs_core.flight.steps.responses import response_to
 from mmrs_core.flight.vehicles.vehicle import Seeking
 
 Making = Callable[..., tuple[CanVehicle, Rig]]
@@ -76,9 +79,10 @@ def test_it_is_found_where_it_is_seen_on_the_way(vehicle_of, eyes):
 
 def test_it_is_looked_for_from_as_far_as_the_movement_stops(vehicle_of, eyes):
     vehicle, rig = vehicle_of(eyes)
-    with pytest.raises(Fault, match=r"object 'red buoy' is not seen where it is expected"):
+    with pytest.raises(Fault, match=r"object 'red buoy' is not seen where it is expected") as missed:
         vehicle.seek(GoTo(BUOY, distance=1.5))
     assert rig.bus.now > 20.0
+    assert missed.value.instead == "SURFACE"
 
 
 def test_it_may_be_no_farther_from_where_it_is_expected_than_the_mission_allows(vehicle_of, eyes):
@@ -105,3 +109,32 @@ def test_what_sonar_sees_too_near_is_an_obstacle(vehicle_of):
     with pytest.raises(Fault, match=r"\d+\.\d m ahead") as seen:
         vehicle.go_to(Local(10.0, 0.0, -1.0), None, None, through=False)
     assert seen.value.event == OBSTACLE
+
+
+def test_a_place_that_its_bus_cannot_say_makes_it_come_up(vehicle_of):
+    vehicle, _ = vehicle_of(None)
+    vehicle.prepare(Uploads())
+    with pytest.raises(Fault, match=r"GoalPlace\.North") as missed:
+        vehicle.go_to(Local(9e6, 0.0, -1.0), None, None, through=False)
+    assert (missed.value.event, missed.value.instead) == (NO_PROGRESS, "SURFACE")
+
+
+@pytest.mark.parametrize(("vehicle", "response"), [("sub", "SURFACE"), ("copter", "HOLD")])
+def test_what_dives_comes_up_where_a_function_of_the_users_finds_nothing(vehicle, response):
+    robot = Robot("naiad", "naiad.ndjson", vehicle, HOME, "a", ())
+    assert response_to(OBJECT_NOT_FOUND, robot) == response
+
+
+def test_what_cannot_be_gone_on_with_after_a_halt_has_failed(vehicle_of):
+    class Gone(Stay):
+        def begin(self, craft, now):
+            if now > 1.0:
+                raise FailureError(OBJECT_NOT_FOUND, "gone")
+
+    _, rig = vehicle_of(None)
+    helm = Helm(rig.craft)
+    helm.begin(Gone(99.0), 0.0)
+    helm.pause(0.5)
+    helm.resume(2.0)
+    assert (found := helm.failure(2.0)) is not None
+    assert found.event == OBJECT_NOT_FOUND

@@ -177,6 +177,8 @@ def test_it_goes_no_deeper_than_it_may() -> None:
     rig.run(10.0)
     assert rig.vehicle.truth.depth < 2.6
     assert rig.emergencies == []
+    assert rig.state.progress == "ACTIVE"
+    assert rig.state.distance == pytest.approx(5.5, abs=0.2)
 
 
 def test_goals_whose_halves_do_not_belong_together_are_not_pursued() -> None:

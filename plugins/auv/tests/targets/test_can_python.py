@@ -162,11 +162,14 @@ def test_what_controllers_cannot_do_is_refused() -> None:
     flees = replace(dive().robots[0], policies=(Policy("BATTERY_LOW", "EMERGENCY_AREA"),))
     flies = robot_program("Kite", [move("stay", "HoldPosition", duration=1.0)])
     bakes = swim("a", 1.0, 0.0, 1.0, after=(use("ctd", "Bake"),))
+    much = replace(use("ctd", "Sample"), parameters=(("seconds", "1e5"),))
     for behaviour, said in (
         (replace(dive(), robots=(flees,)), "emergency area"),
         (program(flies, frame=POOL), "no underwater vehicle"),
         (dive(bakes), "Bake"),
         (dive(home=None), "home"),
+        (dive(swim("a", 1.0, 0.0, 80.0)), "leads 80 m deep, where its vehicle may go 49.6 m deep"),
+        (dive(swim("a", 1.0, 0.0, 1.0, after=(much,))), "parameter 100000 of device 'ctd'"),
     ):
         with pytest.raises(UnsupportedError) as refused:
             render(CAN_PYTHON, given(behaviour))

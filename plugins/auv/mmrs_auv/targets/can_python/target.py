@@ -12,6 +12,7 @@ from functools import cache
 from importlib.resources import files as files_of
 from pathlib import Path
 
+from mmrs_auv.sayable import Bus, parameter_of
 from mmrs_auv.sheets import is_vehicle, sheet_of
 from mmrs_auv.targets.can_python.capabilities import CAPABILITIES
 from mmrs_auv.targets.places import templates_of
@@ -77,9 +78,11 @@ def refusals(input: TargetInput) -> Iterator[str]:
         if robot.home is None:
             yield homeless(robot)
         try:
-            _sheet(robot, input)
+            sheet = _sheet(robot, input)
         except UnsupportedError as error:
             yield from (f"robot '{robot.id}': {each}" for each in error.elements or (str(error),))
+        else:
+            yield from _unsayable(robot, sheet, local)
         yield from _refused(robot, local)
 
 
@@ -98,6 +101,12 @@ def _refused(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
         transition = robot.transitions.get(index)
         for policy in transition.policies if transition is not None else ():
             yield from _impossible(policy, _label(context, index))
+
+
+def _unsayable(robot: RobotProgram, sheet: Sheet, input: TargetInput) -> Iterator[str]:
+    bus, context = Bus(sheet, input.program.frame.surface), context_of(robot, input, geographic=False)
+    for move in robot.moves:
+        yield from (f"{context.label(move)}: {each}" for each in bus.refused(move))
 
 
 def _label(context: RobotContext, index: int) -> str:
@@ -137,13 +146,7 @@ def _command(action: Action, device: Device) -> Wiring:
     if action.name not in device.actions:
         return Unwired(f"device {device.id!r} does not support {action.name!r}")
     number = list(device.actions).index(action.name)
-    return Wired(int(device.properties[WIRED]), (float(number), _parameter(action)), 0.0)
-
-
-def _parameter(action: Action) -> float:
-    from mmrs_auv.backend.duties_of import parameter_of
-
-    return parameter_of(action)
+    return Wired(int(device.properties[WIRED]), (float(number), parameter_of(action)), 0.0)
 
 
 def _sheet(robot: RobotProgram, input: TargetInput) -> Sheet:

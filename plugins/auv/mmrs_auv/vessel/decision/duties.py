@@ -8,6 +8,7 @@ from math import atan2, degrees, dist, hypot
 from typing import Protocol
 
 from ..api import Craft
+from ..goals import SLOWEST
 from ..sheet import Vector
 
 NO_PROGRESS, DEVICE_SILENT, OBJECT_NOT_FOUND = "NO_PROGRESS", "DEVICE_SILENT", "OBJECT_NOT_FOUND"
@@ -81,15 +82,23 @@ class Travel:
         self, points: Sequence[Vector], speed: float = 0.0, look: Look | None = None, *, through: bool = False
     ) -> None:
         """Go to each of the points: metres north, east and below the surface."""
-        self._points, self._speed, self._look, self._through = tuple(points), speed, look, through
+        self._points, self._look, self._through = tuple(points), look, through
+        self._speed = max(speed, SLOWEST) if speed > 0.0 else 0.0
         self._next = 0
 
     def begin(self, craft: Craft, now: float) -> None:
-        """Set out for the next place."""
+        """Set out for the next place.
+
+        Raises:
+            FailureError: it is beyond what can be said on the bus.
+        """
         if self._next < len(self._points):
             north, east, depth = self._points[self._next]
             heading = self._look.heading(north, east) if self._look is not None else None
-            craft.go_to(north, east, max(0.0, depth), speed=self._speed, heading=heading)
+            try:
+                craft.go_to(north, east, max(0.0, depth), speed=self._speed, heading=heading)
+            except ValueError as error:
+                raise FailureError(NO_PROGRESS, str(error)) from error
 
     def done(self, craft: Craft, now: float) -> bool:
         """Return whether the last place is reached."""

@@ -6,9 +6,12 @@ from collections.abc import Callable
 from math import inf
 
 from ..api import Craft, State
-from .duties import BATTERY_LOW, Duty, FailureError
+from .duties import BATTERY_LOW, NO_PROGRESS, OBJECT_NOT_FOUND, Duty, FailureError
 
 LINK_LOST, POSITION_LOST, OBSTACLE, CRASHED = "LINK_LOST", "POSITION_LOST", "OBSTACLE", "CRASHED"
+
+COMES_UP = frozenset({CRASHED, NO_PROGRESS, OBJECT_NOT_FOUND})
+"""What no policy is about: the vehicle comes up, since nobody would find it under water."""
 
 SILENT, STALE = 2.0, 1.0
 """Seconds of silence of the whole bus, and of the sensor controller, that count as loss."""
@@ -90,12 +93,8 @@ class Helm:
     def begin(self, duty: Duty, now: float) -> None:
         """Begin something else."""
         self._duty, self._failure, self._done = duty, None, False
-        if self._paused:
-            return
-        try:
-            duty.begin(self._craft, now)
-        except FailureError as failure:
-            self._failure = failure
+        if not self._paused:
+            self._set_out(duty, now)
 
     def done(self, now: float) -> bool:
         """Return whether it is done."""
@@ -126,7 +125,7 @@ class Helm:
         if self._paused:
             self._paused = False
             if self._duty is not None and not self._done:
-                self._duty.begin(self._craft, now)
+                self._set_out(self._duty, now)
 
     @property
     def halted(self) -> bool:
@@ -134,6 +133,12 @@ class Helm:
         state = self._craft.state()
         slow = max(abs(state.surge), abs(state.sway), abs(state.heave)) < AT_REST
         return self._paused and slow and state.age < inf
+
+    def _set_out(self, duty: Duty, now: float) -> None:
+        try:
+            duty.begin(self._craft, now)
+        except FailureError as failure:
+            self._failure = failure
 
     def _look(self, now: float) -> None:
         if self._done or self._paused or self._failure is not None or self._duty is None:

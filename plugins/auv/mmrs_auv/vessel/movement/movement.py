@@ -156,7 +156,8 @@ class Movement:
             return
         within = within_rating(goal, self._sheet)
         self._guidance = Guidance(within, self.motion, self._sheet, self._abilities)
-        self._progress = Progress(self._guidance, self.motion, self._abilities, now)
+        beyond = goal.depth - within.depth
+        self._progress = Progress(self._guidance, self.motion, self._abilities, now, beyond=beyond)
 
     def _tell(self, now: float) -> list[Frame]:
         said = []

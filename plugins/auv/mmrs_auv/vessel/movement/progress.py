@@ -29,9 +29,13 @@ class Progress:
         distance: metres left to go, in the plane and in depth.
     """
 
-    def __init__(self, guidance: Guidance, motion: Motion, abilities: Abilities, now: float) -> None:
+    def __init__(
+        self, guidance: Guidance, motion: Motion, abilities: Abilities, now: float, *, beyond: float = 0.0
+    ) -> None:
+        """Begin to judge; `beyond`: metres by which the goal is deeper than it may lead."""
         self._guidance = guidance
         self._abilities = abilities
+        self._beyond = beyond
         self._since: float | None = None
         self.state = "ACTIVE"
         self.distance = self._left(motion)
@@ -63,7 +67,7 @@ class Progress:
         goal = self._guidance.goal
         if goal.mode == "SURFACE":
             return motion.depth <= self._abilities.afloat
-        if not self._guidance.done:
+        if not self._guidance.done or self._beyond > DEPTH:
             return False
         deep = (
             abs(goal.depth - motion.depth) <= DEPTH or max(goal.depth, motion.depth) <= self._abilities.afloat
@@ -79,7 +83,7 @@ class Progress:
 
     def _left(self, motion: Motion) -> float:
         goal = self._guidance.goal
-        deep = abs(goal.depth - motion.depth)
+        deep = abs(goal.depth + self._beyond - motion.depth)
         if goal.mode == "SURFACE":
             return deep
         return hypot(self._guidance.distance(motion), deep)
