@@ -26,7 +26,7 @@ _HELP = (
 
 app = typer.Typer(rich_markup_mode=None, help=_HELP, no_args_is_help=True, add_completion=False)
 
-_COUNTED = ("frames", "lost", "corrupted", "overdue", "missed", "wrong", "refused")
+_COUNTED = ("frames", "lost", "corrupted", "overdue", "missed", "slowed", "wrong", "refused")
 
 Interface = Annotated[
     str,

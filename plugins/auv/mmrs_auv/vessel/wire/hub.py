@@ -23,6 +23,12 @@ MOST_CLIENTS, MOST_BEHIND, MOST_WRONG, MOST_DELAYED = 256, 262_144, 100, 100_000
 """Clients; bytes that wait for a client that does not read, after which it misses frames; words that a client
 may say wrongly before it is sent away; frames on their way at a time."""
 
+MOST_RATE, _BURST = 8_000, 80
+"""Words of a client that are heard in a second, about the frames that a CAN of 1 Mbit/s carries, and at once.
+
+Who says more is read no faster: it has to wait, and nobody else has.
+"""
+
 _SYSTEM_BUFFER = 65_536
 """Bytes that the system keeps for a client besides: what a slow one hears is not older than need be."""
 
@@ -60,8 +66,8 @@ class Hub:
     Attributes:
         troubles: may be changed at any time.
         counts: ``frames``, ``lost``, ``corrupted``, ``missed`` (by clients that read too slowly),
-            ``overdue`` (more were on their way than there is room for), ``wrong`` (words), ``refused``
-            (clients), ``clients``.
+            ``overdue`` (more were on their way than there is room for), ``slowed`` (times that a client had
+            to wait), ``wrong`` (words), ``refused`` (clients), ``clients``.
     """
 
     def __init__(
@@ -175,6 +181,9 @@ class _Client(asyncio.Protocol):
         self._hub = hub
         self._transport: asyncio.Transport | None = None
         self._buffer = bytearray()
+        self._words: deque[list[str]] = deque()
+        self._allowed, self._since = float(_BURST), 0.0
+        self._waits = False
         self._held: bytearray | None = None
         self._raw = False
         self._wrong = 0
@@ -197,15 +206,34 @@ class _Client(asyncio.Protocol):
     def data_received(self, data: bytes) -> None:
         self._buffer += data
         try:
-            words = words_of(self._buffer)
+            self._words += words_of(self._buffer)
         except ValueError as error:
             self._refuse(str(error))
             self.leave()
             return
-        for parts in words:
+        if not self._waits:
+            self._hear_some()
+
+    def _hear_some(self) -> None:
+        """Hear as many words as the client may say now; have it wait with the others, and say no more."""
+        loop = asyncio.get_running_loop()
+        self._allowed = min(float(_BURST), self._allowed + (loop.time() - self._since) * MOST_RATE)
+        self._since = loop.time()
+        self._waits = False
+        while self._words and self._allowed >= 1.0:
             if self._transport is None or self._transport.is_closing():
                 return
-            self._hear(parts)
+            self._allowed -= 1.0
+            self._hear(self._words.popleft())
+        if self._transport is None or self._transport.is_closing():
+            return
+        if self._words:
+            self._waits = True
+            self._hub.counts["slowed"] += 1
+            self._transport.pause_reading()
+            loop.call_later(_BURST / MOST_RATE, self._hear_some)
+        else:
+            self._transport.resume_reading()
 
     def tell(self, word: bytes) -> bool:
         """Say a frame to the client, if it listens; return False if it must miss it."""
