@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    help="Slots of robots on different machines: keys, a gateway for programs without Zenoh, their state.",
+    help="Slots of robots on different machines.",
     no_args_is_help=True,
     add_completion=False,
 )
@@ -55,7 +55,7 @@ _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 
 @app.callback()
 def bus() -> None:
-    """Slots of robots on different machines: keys, a gateway for programs without Zenoh, their state."""
+    """Slots of robots on different machines."""
 
 
 @app.command("keys")
@@ -74,11 +74,11 @@ def keys(
     days: Annotated[int, typer.Option("--days", min=1, max=36_500, help="How long they are valid.")] = 730,
     json: Json = False,
 ) -> int:
-    """Make certificates, and configurations by which each robot can speak only for itself.
+    """Make certificates for robots, and configurations with them.
 
-    DIR/NAME holds all that the machine of that robot needs: copy it there, and give its bus.json5 to the
-    controller as --bus-config. DIR/observer is for looking on. The authority's key stays with you. Call
-    it again with all robots to add one: what there is, is kept.
+    By them each robot can speak only for itself. DIR/NAME holds all that the machine of that robot needs:
+    copy it there, and give its bus.json5 to the controller as --bus-config. DIR/observer is for looking on.
+    The authority's key stays with you. Call it again with all robots to add one: what there is, is kept.
 
     Example: mmrs bus keys keys --robot Drone1 --robot Drone2 --host 10.0.0.1 --host 10.0.0.2
     """
@@ -118,11 +118,11 @@ def gateway(
         Path, typer.Option("--log", metavar="DIR", help="Where slots are kept, and gateway.json.")
     ] = Path("logs"),
 ) -> int:
-    """Let a program without Zenoh (Ada, C, Lua) take part as one robot, by lines of JSON over TCP.
+    """Let a program without Zenoh take part as one robot.
 
-    The program reads port and token from DIR/gateway.json; the page "bus" shows a session. When the
-    program goes without having ended, or this gateway does, the robot is lost to the others. It runs
-    until it is interrupted.
+    It may be in Ada, C, Lua or any other language: it speaks lines of JSON over TCP. The program reads port
+    and token from DIR/gateway.json; the page "bus" shows a session. When the program goes without having
+    ended, or this gateway does, the robot is lost to the others. It runs until it is interrupted.
 
     Example: mmrs bus gateway survey.bl.xmi --robot Auv1 --connect tcp/10.0.0.2:7447
     """

@@ -30,11 +30,12 @@ def control(
     ] = 10.0,
     json: Json = False,
 ) -> int:
-    """Give an order to robots that are running, and tell which of them have obeyed.
+    """Give an order to robots that are running.
 
-    hold: halt and stay until the next order. resume: go on after a hold, or after a change of batteries.
-    return: end the program and come home by the way it came. land: end the program and come down.
-    stop: end the program as the robots were started to do. answer: answer a question that a choice asks.
+    It tells which of them have obeyed. hold: halt and stay until the next order. resume: go on after a hold,
+    or after a change of batteries. return: end the program and come home by the way it came. land: end the
+    program and come down. stop: end the program as the robots were started to do. answer: answer a question
+    that a choice asks.
 
     Example: mmrs control hold Drone1 --log logs
     """

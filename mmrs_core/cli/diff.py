@@ -32,11 +32,12 @@ def diff(
     metamodel: Metamodels = None,
     json: Json = False,
 ) -> int:
-    """Say what differs between two models: what was added, removed, moved or changed.
+    """Say what differs between two models.
 
-    Formatting, comments and defaults are no differences, and neither is XMI or JSON.
-    Of two .ecore files, what 'mmrs metamodel diff' says: what changed, and whether old models still load.
-    Exit codes: 0 where the models say the same, 1 where they differ, 3 where one cannot be read wholly.
+    What was added, removed, moved or changed. Formatting, comments and defaults are no differences, and
+    neither is XMI or JSON. Of two .ecore files, what 'mmrs metamodel diff' says: what changed, and whether
+    old models still load. Exit codes: 0 where the models say the same, 1 where they differ, 3 where one
+    cannot be read wholly.
 
     Example: mmrs diff mission.xmi mission-of-yesterday.xmi
     """

@@ -29,7 +29,9 @@ def explain(
     task: Annotated[str, typer.Option("--task", metavar="NAME", help="Lines that serve this task.")] = "",
     json: Json = False,
 ) -> int:
-    """Say which move, task and rule a line of a generated file comes from, and the other way round.
+    """Say which move a line of a generated file comes from.
+
+    It tells the task and the rule, too. With --robot, --move or --task: the lines that serve these.
 
     Example: mmrs explain code/robot_d1.py:40, and mmrs explain code --task survey
     """

@@ -104,10 +104,11 @@ def run(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Carry out a behaviour with real robots, or with vehicles that are simulated elsewhere.
+    """Carry out a behaviour with real robots.
 
-    Every robot gets ready first; then all begin. Interrupt once to stop every robot, from any state: the
-    command ends when each has confirmed that it has stopped. 'mmrs control' gives other orders.
+    Vehicles that are simulated elsewhere, as by mmrs sitl, are driven in the same way. Every robot gets ready
+    first; then all begin. Interrupt once to stop every robot, from any state: the command ends when each has
+    confirmed that it has stopped. 'mmrs control' gives other orders.
 
     Example: mmrs run mission/behaviour.xmi --connect Drone1=udpin:127.0.0.1:14550 --log flight-1
     """

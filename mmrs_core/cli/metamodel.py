@@ -51,9 +51,10 @@ def diff(
     new: Annotated[str, typer.Argument(metavar="NEW", help="Another version of it.")],
     json: Json = False,
 ) -> int:
-    """Say what changed between two versions of a metamodel, and whether old models still load.
+    """Say what changed between two versions of a metamodel.
 
-    Files that an .ecore file refers to are compared as well; which ones, is told.
+    It also says whether old models still load. Files that an .ecore file refers to are compared as well;
+    which ones, is told.
 
     Exit codes: 0 where they do, 1 where some do not.
 
@@ -124,9 +125,10 @@ def stubs(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Write typed stubs (.pyi) of a metamodel, for completion in editors and for type checkers.
+    """Write typed stubs (.pyi) of a metamodel.
 
-    Needs pyecoregen, which pip install "mmrs-core[extend]" brings.
+    They are for completion in editors and for type checkers. Needs pyecoregen, which pip install
+    "mmrs-core[extend]" brings.
 
     Example: mmrs metamodel stubs mmrs_solar/metamodels/solar.ecore -o mmrs_solar
     """

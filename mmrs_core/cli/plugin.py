@@ -29,7 +29,7 @@ def plugin() -> None:
 
 @app.command("list")
 def list_plugins(call: typer.Context, json: Json = False) -> int:
-    """List the plug-ins with everything that they contribute, broken ones too."""
+    """List the plug-ins and what they contribute, broken ones too."""
     from mmrs_core.errors import PluginError
 
     settings = settings_of(call)
@@ -71,9 +71,10 @@ def new_plugin(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Write a plug-in with a task of its own: metamodel, rule, constraint, symbol, example and tests.
+    """Write a plug-in with a task of its own.
 
-    Needs pyecoregen, which pip install "mmrs-core[extend]" brings.
+    It has metamodel, rule, constraint, symbol, example and tests. Needs pyecoregen, which pip install
+    "mmrs-core[extend]" brings.
 
     Example: mmrs plugin new roof-wash --task polygon
     """

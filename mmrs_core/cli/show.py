@@ -33,7 +33,9 @@ def show(
     depth: Annotated[int, typer.Option("--depth", min=0, help="How deep to go; 0 goes all the way.")] = 0,
     json: Json = False,
 ) -> int:
-    """Print a model as a tree of its elements, or what a path leads to; of an .ecore file, its classes.
+    """Print a model as a tree, or what a path leads to.
+
+    Of an .ecore file, its classes.
 
     Examples of paths: 'tasks[2].shell', 'team.robots[name=Hawk].home', '//GoTo[speed>3]', '//@tasks.0'.
     Where a file has several roots, '/1' is the second. What belongs to a plug-in that is not installed is

@@ -108,11 +108,12 @@ def sitl(
     ] = 0.0,
     json: Json = False,
 ) -> int:
-    """Start simulated vehicles that speak MAVLink, for rehearsing controllers and mmrs run.
+    """Start simulated vehicles that speak MAVLink.
 
-    It prints the --connect arguments to copy. On a terminal it tells now and then how each vehicle is. A line
-    such as 'Drone1 gps-lost', 'Drone1 mend gps-lost' or 'all battery 0.2' makes a fault at once, 'quit' ends.
-    They are ours: what flies here may still be refused by a real autopilot.
+    They are for rehearsing controllers and mmrs run. It prints the --connect arguments to copy. On a terminal
+    it tells now and then how each vehicle is. A line such as 'Drone1 gps-lost', 'Drone1 mend gps-lost' or
+    'all battery 0.2' makes a fault at once, 'quit' ends. They are ours: what flies here may still be refused
+    by a real autopilot.
 
     Example: mmrs sitl examples/carbon-dioxide --speedup 5 --fault 'Alba:gps-lost@60+20'
     """

@@ -37,11 +37,12 @@ def validate(
     sarif: Sarif = None,
     json: Json = False,
 ) -> int:
-    """List everything that is wrong with a mission's models, and mend what can only be meant in one way.
+    """List everything that is wrong with a mission's models.
 
-    Robot types and context are checked with the mission. A behaviour is checked by itself, and so is a model
-    of any other language whose .ecore file is given, pointed to or beside it: by its metamodel only. An
-    .ecore file is checked for whether models can be read by it.
+    With --fix, what can only be meant in one way is mended. Robot types and context are checked with the
+    mission. A behaviour is checked by itself, and so is a model of any other language whose .ecore file is
+    given, pointed to or beside it: by its metamodel only. An .ecore file is checked for whether models can be
+    read by it.
 
     Example: mmrs validate field --fix
     """
@@ -54,6 +55,8 @@ def validate(
         return validate_metamodel(call, project, json)
     if (yes or dry_run) and not fix:
         raise typer.BadParameter("--yes and --dry-run go with --fix")
+    if metamodel and project.is_dir():
+        raise typer.BadParameter(f"--metamodel is for one model: name its file in {project}")
     refuse_two_outputs(sarif, json or fix)
     workshop = Workshop(settings_of(call))
     subject = Subject(workshop, project, context, robot_files(robots), tuple(metamodel or ()))

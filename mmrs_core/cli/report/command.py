@@ -38,10 +38,11 @@ def report(
     assume: Assume = None,
     json: Json = False,
 ) -> int:
-    """Tell people how a flight went: what was asked, what was achieved, what happened.
+    """Tell people how a flight went.
 
-    Planned against flown, times, energy, photos, faults, orders and links, on one page that needs no
-    network. What is planned is the behaviour as simulated, choosing as the flight did.
+    What was asked, what was achieved, what happened: planned against flown, times, energy, photos, faults,
+    orders and links, on one page that needs no network. What is planned is the behaviour as simulated,
+    choosing as the flight did.
 
     Example: mmrs report mission/ mission/logs -o report.html
     """

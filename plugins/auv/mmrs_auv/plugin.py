@@ -104,8 +104,8 @@ def mmrs_backends() -> tuple[BackendFactory, ...]:
 @hookimpl
 def mmrs_commands() -> tuple[Command, ...]:
     """Contribute what concerns the CAN buses of vehicles, and vehicles that are simulated on them."""
-    said = "CAN buses of vehicles: database (DBC), a hub for one machine, what is said, how busy."
-    rehearse = "Simulated underwater vehicles to rehearse on, each on a CAN bus of its own."
+    said = "CAN buses of vehicles: database, hub, what is said, how busy."
+    rehearse = "Simulated underwater vehicles to rehearse on."
     return (
         Command("can", said, "mmrs_auv.commands.can:main"),
         Command("auv", rehearse, "mmrs_auv.commands.auv:main"),

@@ -55,6 +55,15 @@ def test_every_command_has_help(name, capsys):
     assert capsys.readouterr().out.startswith(f"Usage: mmrs {name}")
 
 
+@pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv"])
+def test_the_list_of_commands_cuts_no_sentence(group, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    run([*group.split(), "--help"])
+    listed = capsys.readouterr().out.partition("Commands:\n")[2]
+    assert listed
+    assert "..." not in listed
+
+
 @pytest.mark.parametrize("line", [[], ["plugin"], ["metamodel"]])
 def test_no_arguments_show_the_help(line, capsys):
     assert run(line) == 2
@@ -84,6 +93,11 @@ def test_wrong_usage_ends_with_2_and_says_what_is_wrong(line, words, capsys):
 def test_version_is_told(capsys):
     assert run(["--version"]) == 0
     assert capsys.readouterr().out.startswith("mmrs 0.")
+
+
+def test_a_metamodel_is_for_a_model_not_for_a_project(tmp_path, capsys):
+    assert run(["validate", str(tmp_path), "--metamodel", "lab.ecore"]) == 2
+    assert "--metamodel is for one model: name its file" in capsys.readouterr().err
 
 
 def test_a_missing_project_ends_with_3_and_names_it(tmp_path, capsys):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,7 @@ from mmrs_core.languages.missing import DISTRIBUTIONS, hint_for, stem_of
 from mmrs_core.languages.reading import read_text
 from mmrs_core.languages.writing import to_json, to_xmi
 
+ROOT = Path(__file__).parents[3]
 XMI = b"""<?xml version="1.0" encoding="UTF-8"?>
 <zoo:Zoo xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"\
  xmlns:solar="urn:test:solar:1.0" xmlns:zoo="urn:test:zoo" name="z" star="//@animals.1">
@@ -149,3 +152,10 @@ def test_kept_xml_that_is_none_is_refused_with_its_line(zoo, xml):
     text = f'{{"$type": "urn:far#Thing",\n "$xml": "{xml}"}}'
     with pytest.raises(UnreadableError, match=r"^a\.json:1: "):
         read_text(text.encode(), "a.json", zoo)
+
+
+def test_a_language_of_flyaq_leads_to_what_migrates_its_models(zoo):
+    mapping = tomllib.loads((ROOT / "migrations" / "flyaq-2015.toml").read_text(encoding="utf-8"))
+    known = [uri for package in mapping["packages"].values() for uri in package["uris"]]
+    assert len(known) == 12
+    assert [uri for uri in known if "'mmrs migrate'" not in hint_for(uri, zoo)] == []

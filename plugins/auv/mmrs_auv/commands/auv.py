@@ -57,11 +57,12 @@ def sitl(
         float, typer.Option("--for", min=0.0, metavar="SECONDS", help="End by itself; 0: when interrupted.")
     ] = 0.0,
 ) -> int:
-    """Start a simulated body and a control layer for each vehicle of a mission, each on a bus of its own.
+    """Start a body and a control layer for each vehicle of a mission.
 
-    It prints the arguments with which mmrs run reaches them. Lines that are typed make faults at once, such
-    as 'Thetis leak', 'Thetis mend leak', 'all thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery
-    0.2', 'Thetis cut' (its bus) and 'Thetis mend bus'; 'status' tells how they are, 'quit' ends.
+    Bodies are simulated, and each vehicle has a bus of its own. It prints the arguments with which mmrs run
+    reaches them. Lines that are typed make faults at once, such as 'Thetis leak', 'Thetis mend leak', 'all
+    thruster-dead T1', 'Thetis frozen Pressure', 'Thetis battery 0.2', 'Thetis cut' (its bus) and 'Thetis mend
+    bus'; 'status' tells how they are, 'quit' ends.
 
     Example: mmrs auv sitl examples/pool-course --speedup 2
     """
@@ -116,7 +117,9 @@ def sheet(
         Path, typer.Option("-o", "--output", metavar="DIR", help="Where to write a file for each vehicle.")
     ] = Path("sheets"),
 ) -> int:
-    """Write what each vehicle is made of, as its control layer and its eyes take it with --sheet.
+    """Write what each vehicle is made of.
+
+    Its control layer and its eyes take that with --sheet.
 
     Example: mmrs auv sheet examples/pool-course -o sheets
     """
