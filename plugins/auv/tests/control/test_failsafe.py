@@ -323,3 +323,21 @@ def test_an_instrument_that_never_moved_is_found_out_by_the_others(name: str) ->
     rig.until(lambda: rig.state.emergency is not None, 12.0)
     assert rig.emergencies[0][1] == "SENSORS_SILENT"
     rig.until(lambda: rig.afloat, 60.0, 0.5)
+
+
+@pytest.mark.parametrize("sheet", [FLOATS, SINKS], ids=["floats", "sinks"])
+def test_a_vehicle_without_any_thruster_that_lifts_it_gives_up_and_comes_up(sheet: Sheet) -> None:
+    rig = diving(sheet)
+    upright = {number for number, each in enumerate(sheet.thrusters) if abs(each.direction[2]) > 0.5}
+    rig.vehicle.faults.dead |= upright
+    rig.run(failsafe.UNSERVED + 0.2 + failsafe.MARGIN)
+    assert rig.state.emergency == "THRUSTER_FAULT"
+    assert rig.commands == [0.0] * len(sheet.thrusters)
+    rig.until(lambda: rig.afloat, 60.0)
+
+
+def test_a_vehicle_with_one_thruster_left_that_lifts_it_goes_on() -> None:
+    rig = diving(FLOATS)
+    rig.vehicle.faults.dead.add(4)
+    rig.run(5.0)
+    assert rig.state.emergency is None

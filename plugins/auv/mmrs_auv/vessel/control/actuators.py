@@ -18,6 +18,9 @@ from .drives import CatalogueDrives, Status, Watch
 from .thrust_limits import ThrustLimits
 
 GRAVITY = 9.80665
+UPRIGHT = 0.1
+"""Part of its thrust that a thruster gives up or down, at least, to be one that does."""
+
 LIMITED = 0.05
 """Part of what thrusters can give of a degree that may be missing before a wrench counts as beyond them."""
 
@@ -40,8 +43,9 @@ class Actuators:
     It gives none before a state was trusted. From the first wrench obeyed on it gives zero thrust, and says
     so to every drive, when no wrench that is complete and valid came in `failsafe.COMMANDS_SILENT`; and for
     good, having sent an emergency that releases the drop weight, when movement or the sensor controller are
-    gone, when the state is not to be trusted, when water is inside or nobody tells any more whether it is, or
-    when it is too deep. An emergency of any other node counts as its own.
+    gone, when the state is not to be trusted, when water is inside or nobody tells any more whether it is,
+    when no thruster is left that pushes up or down, or when it is too deep. An emergency of any other node
+    counts as its own.
 
     Args:
         driver: of thrusters; by default the messages of the vehicle's own bus.
@@ -72,6 +76,8 @@ class Actuators:
         self.emergency: str | None = None
         self.thrusts: Array = np.zeros(len(sheet.thrusters))
         self.served = self._allocation.served(self._watch.working)
+        self._upright = [abs(each.direction[2]) >= UPRIGHT for each in sheet.thrusters]
+        self._upright_at = 0.0
         self._limited = False
         self._force: Received | None = None
         self._wrench: Array = np.zeros(6)
@@ -107,6 +113,8 @@ class Actuators:
         working = self._watch.judge(self.thrusts, now)
         if working is not None:
             self.served = self._allocation.served(working)
+        if any(upright and works for upright, works in zip(self._upright, self._watch.working, strict=True)):
+            self._upright_at = now
         enable = self._obeys(now)
         self.thrusts = self._shared() if enable else np.zeros(len(self.thrusts))
         self._limits.used(self.thrusts, self.period)
@@ -161,6 +169,8 @@ class Actuators:
             return "COMMANDS_SILENT"
         if self._health_at is not None and now - self._health_at > failsafe.HEALTH_SILENT:
             return "SENSORS_SILENT"
+        if any(self._upright) and now - self._upright_at > failsafe.UNSERVED:
+            return "THRUSTER_FAULT"
         if now - self._wrench_at > failsafe.COMMANDS_GONE:
             return "COMMANDS_SILENT"
         if now - self._state_at > failsafe.STATE_SILENT or now - self._trusted_at > failsafe.STATE_UNTRUSTED:

@@ -30,6 +30,9 @@ LEAK_SAID = 2
 HEALTH_SILENT = 5.0
 """Seconds without a word of leaks and battery, where there was one, after which the dive is given up."""
 
+UNSERVED = 1.0
+"""Seconds without a thruster that works and pushes up or down, where there was one, after which it is."""
+
 DEEP_FOR = 0.5
 """Seconds of pressure beyond the rated depth, and a margin, after which the dive is given up."""
 
