@@ -22,7 +22,8 @@ def disparities(
 ) -> list[tuple[float, float]]:
     """Return by how many columns a part of the left picture may be further left in the right one.
 
-    There is more than one where several things look the same; none where nothing is alike.
+    There is more than one where several things look the same; none where nothing is alike. Up to half of the
+    part may lie outside the right picture, which goes on there as it is at its rim.
 
     Args:
         left: shares of colours, as of `segments.View`; right: of the other eye.
@@ -37,8 +38,10 @@ def disparities(
     if last - first < 3 or bottom - top < 3:
         return []
     farthest = int(camera.focal * camera.baseline / NEAREST)
-    begin = max(0, first - farthest)
-    strip = right[top - _ROWS : bottom + _ROWS, begin:last]
+    begin = max(first - farthest, -((last - first) // 2))
+    outside = max(0, -begin)
+    strip = right[top - _ROWS : bottom + _ROWS, begin + outside : last]
+    strip = cv2.copyMakeBorder(strip, 0, 0, outside, 0, cv2.BORDER_REPLICATE)
     table = cv2.matchTemplate(strip, left[top:bottom, first:last], cv2.TM_CCOEFF_NORMED)
     alike = np.nan_to_num(np.max(table, axis=0), nan=-1.0, posinf=-1.0, neginf=-1.0)
     whole = alike.copy()

@@ -110,6 +110,18 @@ def test_a_thing_that_the_edge_of_the_picture_cuts_is_left_out() -> None:
     assert detect(*pair, FRONT_CAMERA, sought_in(around)) == []
 
 
+@pytest.mark.parametrize("metres", [1.1, 1.25, 1.5])
+def test_a_thing_that_the_edge_touches_in_the_other_eye_only_is_ranged_rightly(metres: float) -> None:
+    ahead = metres - FRONT_CAMERA.position[0]
+    columns = -0.45 * ahead
+    thing = Thing(BUOY, "buoy", metres, columns, 1.5, 0.0, "green", 0.3)
+    around = Surroundings(bottom=4.5, things=(thing,))
+    pose = Pose(0.0, 0.0, 1.5)
+    (found,) = detect(*Renderer(around, 2).pair(FRONT_CAMERA, pose, 1.0), FRONT_CAMERA, sought_in(around))
+    assert FRONT_CAMERA.world(found.point, pose) == pytest.approx((metres, columns, 1.5), abs=0.06)
+    assert found.confidence > 0.9
+
+
 @pytest.mark.parametrize("light", [0.35, 0.7, 1.3])
 @pytest.mark.parametrize("haze", [0.5, 1.0, 1.5])
 def test_dim_light_and_haze_are_borne(light: float, haze: float) -> None:
