@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,8 @@ from mmrs_auv.vessel.wire.database import database_of
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.grounding.scenes import robot_type_of
+from mmrs_core.languages.reading import read_text
+from mmrs_core.languages.registry import Registry
 from mmrs_core.scene import Part, RobotType
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -34,6 +37,13 @@ def test_vehicles_of_the_examples_have_a_bus(types: Mapping[str, RobotType]) -> 
         assert surge
         assert heave
         assert yaw
+
+
+def test_the_vehicle_in_the_readme_has_a_bus(registry: Registry) -> None:
+    page = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (model,) = re.findall(r"```xml\n(.*?)```", page, re.DOTALL)
+    (diver,) = read_text(model.encode(), "README.md", registry).roots
+    assert database_of(sheet_of(robot_type_of(diver), "Diver")).messages
 
 
 def test_data_are_those_of_the_type(types: Mapping[str, RobotType]) -> None:
