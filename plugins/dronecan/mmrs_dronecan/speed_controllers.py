@@ -11,6 +11,7 @@ import dronecan
 
 from mmrs_core.contributions.codecs import CanFrame, ThrusterData
 from mmrs_core.errors import UnsupportedError
+from mmrs_dronecan.company import Company
 from mmrs_dronecan.options import Options, options_of
 from mmrs_dronecan.transfers import Frame, Incoming, Outgoing
 
@@ -30,7 +31,8 @@ class Status:
     Attributes:
         number: of the thruster, from 0.
         thrust: newtons, by its speed of rotation; None: that cannot be told.
-        fault: DroneCAN has no word for a drive that cannot work.
+        fault: whether its node says that it cannot work, another one says the same thruster's status, or
+            somebody else commands the drives.
         runs: it has no word for one that does not obey, either.
     """
 
@@ -55,6 +57,8 @@ class SpeedControllers:
         self._options = options
         self._outgoing = Outgoing(options.node)
         self._statuses = Incoming(STATUS_ID)
+        self._company = Company(options.node)
+        self._condemned = 0
         self._ticks = 0
         self._armed: bool | None = None
 
@@ -64,7 +68,11 @@ class SpeedControllers:
         return self._statuses.faults
 
     def commands(self, thrusts: Sequence[float], enable: bool) -> list[Frame]:
-        """Return the frames that ask for those newtons; not enabled: that no propeller turns."""
+        """Return the frames that ask for those newtons; not enabled: that no propeller turns.
+
+        None turns any more, either, once somebody else was found to command them.
+        """
+        enable = enable and not self._company.rival
         raw = [self._raw(number, thrust) if enable else 0 for number, thrust in enumerate(thrusts)]
         said = [self._outgoing.frames(dronecan.uavcan.equipment.esc.RawCommand(cmd=raw))]
         said += [self._outgoing.frames(message) for message in self._now_and_then(enable)]
@@ -73,10 +81,16 @@ class SpeedControllers:
 
     def hear(self, frame: CanFrame) -> Status | None:
         """Return what a frame tells of a thruster, or None."""
+        self._company.notice(frame)
+        if self._company.rival and self._most:
+            self._condemned = (self._condemned + 1) % len(self._most)
+            return Status(self._condemned, None, fault=True, runs=False)
         said = self._statuses.message(frame)
         if said is None or said.esc_index >= len(self._most):
             return None
-        return Status(int(said.esc_index), self._thrust(int(said.esc_index), int(said.rpm)))
+        number, node = int(said.esc_index), frame.id & 0x7F
+        fault = self._company.shares(number, node) or node in self._company.ill
+        return Status(number, self._thrust(number, int(said.rpm)), fault)
 
     def _now_and_then(self, enable: bool) -> Iterator[Any]:
         due = self._ticks % COMMANDS_A_SECOND == 0

@@ -245,3 +245,65 @@ def test_messages_of_others_are_let_by() -> None:
     assert [driver.hear(frame) for frame in other] == [None]
     assert driver.hear(Any29(0x140, b"\1\2", extended=False)) is None
     assert driver.faults == 0
+
+
+def told(driver: SpeedControllers, frames: list[Frame]) -> list[tuple[int, bool]]:
+    return [(each.number, each.fault) for frame in frames if (each := driver.hear(frame)) is not None]
+
+
+def commands_of(node: int, count: int) -> list[Frame]:
+    other = Outgoing(node)
+    return [frame for _ in range(count) for frame in other.frames(Esc.RawCommand(cmd=[0, 0, 0, 0]))]
+
+
+@pytest.mark.parametrize("health", ["critical", "offline"])
+def test_a_drive_whose_node_says_that_it_cannot_work_is_faulty_till_it_can(health: str) -> None:
+    driver, node = opened_fast(6), Outgoing(42)
+    said = {"critical": {"health": 3}, "offline": {"mode": 7}}[health]
+    assert told(driver, status(2, 100)) == [(2, False)]
+    assert told(driver, node.frames(dronecan.uavcan.protocol.NodeStatus(**said))) == []
+    assert told(driver, status(2, 100, number=1)) == [(2, True)]
+    assert told(driver, status(3, 100, node=43)) == [(3, False)]
+    assert told(driver, node.frames(dronecan.uavcan.protocol.NodeStatus(health=1))) == []
+    assert told(driver, status(2, 100, number=2)) == [(2, False)]
+
+
+def test_a_drive_that_two_nodes_are_is_not_used(caplog: pytest.LogCaptureFixture) -> None:
+    driver = opened_fast(6)
+    found = [told(driver, status(2, 100, node=41 + turn % 2, number=turn)) for turn in range(5)]
+    assert found == [[(2, False)]] * 3 + [[(2, True)]] * 2
+    assert told(driver, status(3, 100, node=41, number=9)) == [(3, False)]
+    assert [each.message for each in caplog.records] == ["drive 2 is said by nodes [41, 42]: it is not used"]
+
+
+def test_a_drive_that_was_exchanged_is_used() -> None:
+    driver = opened_fast(6)
+    nodes = [41] * 4 + [42] * 4
+    found = [told(driver, status(2, 100, node=node, number=turn)) for turn, node in enumerate(nodes)]
+    assert found == [[(2, False)]] * 8
+
+
+@pytest.mark.parametrize(
+    ("strange", "said"),
+    [
+        (lambda: commands_of(11, 3), "node 11 commands the drives, too: no thrust any more"),
+        (
+            lambda: Outgoing(10).frames(dronecan.uavcan.protocol.NodeStatus()) * 3,
+            "another node has the identifier 10 of this one: no thrust any more",
+        ),
+    ],
+)
+def test_when_somebody_else_commands_there_is_no_thrust_any_more(
+    strange: Any, said: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    driver = opened_fast(4)
+    driver.commands([30.0] * 4, True)
+    assert command(driver.commands([30.0] * 4, True)) != [0] * 4
+    found = told(driver, strange())
+    assert [each.message for each in caplog.records] == [said]
+    frames = driver.commands([30.0] * 4, True)
+    assert command(frames) == [0] * 4
+    assert [each.payload.status for each in heard(frames) if each.data_type_id == 1100] == [0]
+    found += told(driver, status(0, 100) + status(1, 100, number=1))
+    assert {number for number, _ in found} == {0, 1, 2, 3}
+    assert all(fault for _, fault in found)

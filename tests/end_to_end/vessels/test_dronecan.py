@@ -25,6 +25,7 @@ from mmrs_auv.vessel.movement.movement import Movement
 from mmrs_auv.vessel.sheet import Sheet, to_json
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
+from mmrs_dronecan.transfers import Outgoing
 
 HIGHEST = 3000.0
 DRIVES = f"mmrs_dronecan.speed_controllers:opened,node=7,max-rpm={HIGHEST:g}"
@@ -39,6 +40,7 @@ class DroneCanVehicle:
     def __init__(self, sheet: Sheet) -> None:
         self.vehicle = Vehicle(sheet, Codec(sheet), Surroundings(current=(0.1, 0.0), bottom=20.0), 1)
         self.armed = False
+        self.silent: set[int] = set()
         self._sheet = sheet
         self._said = Codec(sheet)
         self._heard = Codec(sheet)
@@ -71,6 +73,8 @@ class DroneCanVehicle:
                 frames.append(frame)
                 continue
             number = frame.id - 0x140
+            if number in self.silent:
+                continue
             part = float(said.values["Thrust"]) / self._sheet.thrusters[number].max_thrust
             frames += self._status(number, round(copysign(sqrt(abs(part)), part) * HIGHEST))
         return frames
@@ -145,6 +149,58 @@ def test_a_thruster_that_does_not_turn_is_found_out() -> None:
     craft.go_to(3.0, 1.0, 2.0)
     run.run(10.0)
     assert actuators._watch.working == [number != 2 for number in range(6)]
+
+
+def test_a_drive_that_falls_silent_is_done_without() -> None:
+    run, body, craft, actuators, _ = rig()
+    run.run(2.0)
+    craft.go_to(2.0, 0.5, 1.0)
+    run.run(1.0)
+    body.silent = {1}
+    run.run(12.0)
+    assert actuators._watch.working == [number != 1 for number in range(6)]
+    assert actuators.thrusts[1] == 0.0
+    assert craft.state().progress == "REACHED"
+
+
+def test_when_all_drives_fall_silent_the_dive_is_given_up() -> None:
+    run, body, craft, actuators, _ = rig()
+    run.run(2.0)
+    craft.go_to(20.0, 0.0, 2.0)
+    run.run(5.0)
+    body.silent = set(range(6))
+    run.run(2.0)
+    assert actuators.emergency == "THRUSTER_FAULT"
+    assert all(drive.thrust == 0.0 for drive in body.vehicle.drives)
+
+
+class Commander:
+    """Another node that commands drives."""
+
+    name, period = "Commander", 0.1
+
+    def __init__(self, node: int) -> None:
+        self._says = Outgoing(node)
+
+    def hear(self, frame: Frame, now: float) -> None:
+        """Hear nothing."""
+
+    def tick(self, now: float) -> list[Frame]:
+        said = self._says.frames(dronecan.uavcan.equipment.esc.RawCommand(cmd=[4000] * 6))
+        return [Frame(each.id, each.data, True) for each in said]
+
+
+@pytest.mark.parametrize("node", [7, 99], ids=["of the same number", "of another"])
+def test_a_second_commander_ends_the_dive(node: int) -> None:
+    run, body, craft, actuators, _ = rig()
+    run.run(2.0)
+    craft.go_to(20.0, 0.0, 2.0)
+    run.run(5.0)
+    run.add(Commander(node))
+    run.run(2.5)
+    assert actuators.emergency is not None
+    assert not body.armed
+    assert all(drive.thrust == 0.0 for drive in body.vehicle.drives)
 
 
 def test_the_process_of_the_actuator_controller_takes_drives_by_name(tmp_path: Path) -> None:
