@@ -40,8 +40,8 @@ def disparities(
     farthest = int(camera.focal * camera.baseline / NEAREST)
     begin = max(first - farthest, -((last - first) // 2))
     outside = max(0, -begin)
-    strip = right[top - _ROWS : bottom + _ROWS, begin + outside : last]
-    strip = cv2.copyMakeBorder(strip, 0, 0, outside, 0, cv2.BORDER_REPLICATE)
+    there = right[top - _ROWS : bottom + _ROWS, begin + outside : last]
+    strip = cv2.copyMakeBorder(there, 0, 0, outside, 0, cv2.BORDER_REPLICATE)
     table = cv2.matchTemplate(strip, left[top:bottom, first:last], cv2.TM_CCOEFF_NORMED)
     alike = np.nan_to_num(np.max(table, axis=0), nan=-1.0, posinf=-1.0, neginf=-1.0)
     whole = alike.copy()
