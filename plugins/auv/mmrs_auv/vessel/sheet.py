@@ -87,21 +87,13 @@ def from_json(text: str) -> Sheet:
     Raises:
         ValueError: the text is no sheet, or has names that no sheet has; lists these.
     """
-    try:
-        found = json.loads(text, object_pairs_hook=_once)
-        rows = found.pop("thrusters")
-        wrong = [*_misnamed(found, Sheet, ("thrusters",)), *_misnamed_thrusters(rows)]
-        if wrong:
-            raise ValueError("; ".join(wrong))
-        thrusters = tuple(
-            Thruster(**{**each, "position": tuple(each["position"]), "direction": tuple(each["direction"])})
-            for each in rows
-        )
-        home, devices = tuple(found.pop("home")), tuple(found.pop("devices", ()))
-        extra = dict(found.pop("extra", {}).items())
-        return Sheet(**found, thrusters=thrusters, home=home, devices=devices, extra=extra)
-    except (KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"no sheet of a vehicle: {error}") from error
+    found = json.loads(text, object_pairs_hook=_once)
+    if wrong := [*_misshapen(found)] or [*_misnamed(found, Sheet)] or [*_misnamed_thrusters(found)]:
+        raise ValueError(f"no sheet of a vehicle: {'; '.join(wrong)}")
+    thrusters = tuple(
+        Thruster(**{name: _tuple(value) for name, value in each.items()}) for each in found["thrusters"]
+    )
+    return Sheet(**{name: _tuple(value) for name, value in found.items()} | {"thrusters": thrusters})
 
 
 def unknown(name: object, known: Collection[str]) -> str:
@@ -119,15 +111,37 @@ def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _misnamed(found: Mapping[str, Any], kind: type, taken: Collection[str] = ()) -> Iterator[str]:
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _misshapen(found: Any) -> Iterator[str]:
+    """Yield what is no object or list where one is needed."""
+    if not isinstance(found, dict):
+        yield f"{found!r:.40} is no object"
+        return
+    for name, kind, word in (
+        ("thrusters", list, "list"),
+        ("devices", list, "list"),
+        ("extra", dict, "object"),
+    ):
+        if name in found and not isinstance(found[name], kind):
+            yield f"{name}: {found[name]!r:.40} is no {word}"
+    rows = found.get("thrusters")
+    for number, row in enumerate(rows if isinstance(rows, list) else ()):
+        if not isinstance(row, dict):
+            yield f"thruster {number}: {row!r:.40} is no object"
+
+
+def _misnamed(found: Mapping[str, Any], kind: type) -> Iterator[str]:
     """Yield a line for each name that is not of a kind, and for each of its names that is missing."""
-    known = {each.name: each for each in fields(kind) if each.name not in taken}
+    known = {each.name: each for each in fields(kind)}
     yield from (f"{name!r}: {unknown(name, known)}" for name in found if name not in known)
     for name, each in known.items():
         if name not in found and each.default is MISSING and each.default_factory is MISSING:
             yield f"{name!r} is missing"
 
 
-def _misnamed_thrusters(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    for number, row in enumerate(rows):
+def _misnamed_thrusters(found: Mapping[str, Any]) -> Iterator[str]:
+    for number, row in enumerate(found["thrusters"]):
         yield from (f"thruster {number}: {wrong}" for wrong in _misnamed(row, Thruster))

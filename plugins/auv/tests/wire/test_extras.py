@@ -97,6 +97,28 @@ def test_a_node_does_not_begin_with_a_misspelt_sheet(
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("devices", "torpedo", "devices: 'torpedo' is no list"),
+        ("extra", [1.0], "extra: [1.0] is no object"),
+        ("thrusters", {}, "thrusters: {} is no list"),
+        ("thrusters", [7], "thruster 0: 7 is no object"),
+    ],
+)
+def test_what_has_another_shape_is_told_with_its_place(key: str, value: object, said: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(f"no sheet of a vehicle: {said}")):
+        from_json(json.dumps(json.loads(to_json(pool_sheet())) | {key: value}))
+
+
+@pytest.mark.parametrize("place", ["position", "direction"])
+def test_a_vector_that_is_none_is_told_with_its_place(place: str) -> None:
+    found = json.loads(to_json(pool_sheet()))
+    found["thrusters"][1][place] = 7
+    with pytest.raises(SheetError, match=re.escape(f"thruster 1 ('T2'): {place}: 7 is not three numbers")):
+        Codec(from_json(json.dumps(found)))
+
+
 def test_a_node_does_not_begin_with_a_misspelt_extra(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
