@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -45,12 +46,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have the many processes that tests start compile each module once, where no bytecode may be kept."""
+    """Have tests, and the many processes that they start, compile each module once."""
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in os.environ:
-        bytecode = tempfile.TemporaryDirectory(prefix="bytecode-", ignore_cleanup_errors=True)
-        os.environ["PYTHONPYCACHEPREFIX"] = bytecode.name
-        config.add_cleanup(bytecode.cleanup)
+        keep_bytecode_elsewhere(config)
     draw_the_same_examples_everywhere()
+
+
+def keep_bytecode_elsewhere(config: pytest.Config) -> None:
+    """Keep bytecode, also for later runs, in the user's cache, where none may be kept beside modules.
+
+    That of modules which tests write for themselves goes at the end.
+    """
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    bytecode, scratch = cache / "mmrs-tests" / "bytecode", Path(tempfile.gettempdir()).resolve()
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(bytecode)
+    sys.dont_write_bytecode = False
+    written = bytecode / scratch.relative_to(scratch.anchor)
+    config.add_cleanup(lambda: shutil.rmtree(written, ignore_errors=True))
 
 
 def draw_the_same_examples_everywhere() -> None:

@@ -339,7 +339,7 @@ def fleet(request, tmp_path):
 def pytest_collection_modifyitems(items):
     """Leave to the thorough profile what takes seconds and differs least from what the fast one runs."""
     for item in items:
-        if Path(item.fspath).parent == Path(__file__).parent and _differs_little(item.name):
+        if _differs_little(item.name) and item.path.parent == Path(__file__).parent:
             item.add_marker(pytest.mark.thorough)
 
 
