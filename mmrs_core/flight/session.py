@@ -295,7 +295,7 @@ def _crew(robot: Robot, shared: Shared, log: Log, box: BlackBox, stack: ExitStac
         abandon=shared.abandon,
         dry=options.dry,
     )
-    box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), link))
+    box.write("start", **(start_of(robot, options.reach.urls.get(robot.id, ""), link) | dict(vehicle.about)))
     if linked is not None:
         watch.begin(linked.link, linked.vehicle)
         linked.record(box, robot, options.clock)

@@ -64,7 +64,7 @@ def shots_of(
             taken.remove(near)
             shots.append(Shot(near.time, near.at, TAKEN, near.index, move.id, move.task))
         else:
-            state = SIMULATED if flown.simulated else UNCONFIRMED
+            state = SIMULATED if flown.simulated else TAKEN if _devices_confirm(flown) else UNCONFIRMED
             shots.append(Shot(time, flown.track.at(time), state, None, move.id, move.task))
     return tuple(sorted([*shots, *taken], key=lambda shot: shot.time))
 
@@ -77,6 +77,11 @@ def takes_photo(action: Action, robot_type: RobotType | None) -> bool:
     if isinstance(wiring, Wired):
         return wiring.command in (IMAGE_START_CAPTURE, DIGICAM_CONTROL)
     return isinstance(wiring, Unwired) and bool(_LIKE_PHOTO.search(action.name))
+
+
+def _devices_confirm(flown: Flown) -> bool:
+    """Return whether an action counts as done only once its device has said so, as on a CAN bus."""
+    return any(entry.content.get("confirms") is True for entry in flown.of_kind("start"))
 
 
 def _taken(flown: Flown, zero: Zero) -> Iterator[Shot]:

@@ -8,7 +8,7 @@ from mmrs_core.behaviour.blackbox import number_of
 from mmrs_core.cli.flights.values import Flown
 from mmrs_core.cli.report.values import LinkReport
 
-_SORT = re.compile(r"(udp|tcp|serial|simulation)", re.IGNORECASE)
+_SORT = re.compile(r"(udp|tcp|serial|simulation|can)", re.IGNORECASE)
 _ACCEPTED = frozenset({"ACCEPTED", "IN_PROGRESS"})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..clock import Clock
@@ -25,11 +25,13 @@ class DryVehicle:
 
     Attributes:
         start: where it is to stand before it takes off.
+        about: nothing: it is not reached.
     """
 
     def __init__(self, clock: Clock, home: Place, guard: Callable[[], None]) -> None:
         """Stand at home."""
         self.start = home
+        self.about: Mapping[str, object] = {}
         self._clock = clock
         self._here = home
         self._home = home

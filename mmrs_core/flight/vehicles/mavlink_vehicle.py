@@ -6,7 +6,7 @@ between them is in ``habits.py`` and ``px4.py``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from math import inf
@@ -43,6 +43,7 @@ class MavlinkVehicle:
 
     Attributes:
         start: where it is to stand before it takes off: home, or where its program has landed it.
+        about: nothing: the black box tells of its link.
     """
 
     def __init__(
@@ -68,6 +69,7 @@ class MavlinkVehicle:
             tell: is given what people should know, as what the vehicle does by itself.
         """
         self.start = home
+        self.about: Mapping[str, object] = {}
         self._tell = tell
         self._link = link
         self._telemetry = Telemetry(link, home)

@@ -69,9 +69,11 @@ class Vehicle(Protocol):
 
     Attributes:
         start: where it is to stand before it takes off: home, or where its program has landed it.
+        about: what its black box says first of how it is reached, where that is not by MAVLink.
     """
 
     start: Place
+    about: Mapping[str, object]
 
     def answer_lost_link(self, response: str, after: float | None = None) -> None:
         """Have the vehicle respond so by itself when it has not heard the ground for some seconds."""

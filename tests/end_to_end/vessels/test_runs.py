@@ -57,10 +57,16 @@ def berth(tmp_path: Path):
         yield found
 
 
-def fixes_in(folder: Path) -> int:
-    """Return how many places the black box of the vehicle has."""
+def entries_in(folder: Path, kind: str) -> list[dict[str, object]]:
+    """Return the entries of a kind in the black box of the vehicle."""
     lines = (folder / "naiad.blackbox.ndjson").read_text(encoding="utf-8").splitlines()
-    return sum(json.loads(line)["kind"] == "fix" for line in lines)
+    return [entry for line in lines if (entry := json.loads(line))["kind"] == kind]
+
+
+def devices_confirm(folder: Path) -> bool:
+    """Return whether the black box says that devices on a bus tell when they are done."""
+    (start,) = entries_in(folder, "start")
+    return start["link"] == "can" and start["confirms"] is True
 
 
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
@@ -78,7 +84,8 @@ def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
         ending = written(run_live(venture, contributions.backends["can"]), writer)
     assert ending.outcome is Outcome.SUCCESS, ending
     assert replay(behaviour, read_logs([tmp_path / "logs"])).accepted
-    assert fixes_in(tmp_path / "logs") > 10
+    assert len(entries_in(tmp_path / "logs", "fix")) > 10
+    assert devices_confirm(tmp_path / "logs")
     assert not berth.ended()
 
 
@@ -108,8 +115,9 @@ def test_generated_code_does_the_same(berth, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     judged = replay(short_dive(), read_logs([tmp_path / "logs"]))
     assert judged.accepted
+    assert devices_confirm(tmp_path / "logs")
     assert judged.outcome is Outcome.SUCCESS
-    assert fixes_in(tmp_path / "logs") > 10
+    assert len(entries_in(tmp_path / "logs", "fix")) > 10
 
 
 def test_a_part_that_ends_is_told(berth):

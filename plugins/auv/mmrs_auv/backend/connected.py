@@ -93,7 +93,8 @@ class ConnectedRobot(CanRobot):
         """Begin to wait until the vehicle is heard and knows where it is."""
         self._until = now + self._options.patience * self._clock.speedup
         plan = self._given.program.fingerprint
-        self._kept.note("start", {"plan": plan, "process": PROCESS, "link": "can", "vehicle": "sub"})
+        about = {"link": "can", "vehicle": "sub", "confirms": True}
+        self._kept.note("start", {"plan": plan, "process": PROCESS, **about})
         self._prepared(now)
 
     def fault(self, now: float) -> Fault | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import hypot, inf
 
 from mmrs_auv.vessel.api import Craft
@@ -52,6 +52,7 @@ class CanVehicle:
 
     Attributes:
         start: where its program began: home.
+        about: what its black box says first: devices tell when they have done what they were told.
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class CanVehicle:
         self._robot, self._sheet, self._craft, self._clock = robot, sheet, craft, clock
         self._guard, self._patience = guard, patience
         self.start = robot.home
+        self.about: Mapping[str, object] = {"link": "can", "confirms": True}
         self._helm = Helm(craft)
         self._watch = Watch(craft, robot.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)

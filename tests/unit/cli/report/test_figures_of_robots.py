@@ -70,6 +70,11 @@ def test_a_serial_link_is_told_without_its_path(make, link):
     assert found.by == "serial"
 
 
+def test_a_bus_is_no_serial_link(make):
+    found = link_of(make.flown("alpha", (), make.track([]), (make.entry(0.0, "start", link="can"),)))
+    assert found.by == "can"
+
+
 def test_commands_that_were_repeated_or_refused_are_counted(make):
     commands = (
         make.entry(1.0, "command", result="ACCEPTED", tries=1, seconds=0.05),
@@ -124,6 +129,11 @@ def test_a_photo_that_was_confirmed_is_where_the_camera_says(shots, make, ordere
     place = {"north": 1.0, "east": 29.0, "height": 20.0}
     (shot,) = shots(make.entry(ordered_at + 0.4, "photo", index=7, place=place))
     assert (shot.state, shot.index, shot.at, shot.task) == ("taken", 7, (29.0, 1.0, 20.0), "photos")
+
+
+def test_a_photo_whose_device_says_when_it_is_done_is_taken(shots, make, ordered_at):
+    (shot,) = shots(make.entry(0.0, "start", link="can", confirms=True))
+    assert (shot.state, shot.time) == ("taken", ordered_at)
 
 
 def test_a_photo_that_nobody_confirmed_is_where_the_robot_was(shots, ordered_at):
