@@ -1,7 +1,8 @@
 """Dives `examples/pool-course` from random starts, in random currents and noise, in simulated time.
 
 Each dive is judged as in the tests: every robot comes to its end, the logs replay, the gate was passed below
-its bar and between its posts, and the vehicle is at the surface in the end.
+its bar and between its posts, the vehicle truly held over the target for as long as asked for, and is at the
+surface beside it in the end.
 
     python benchmarks/auv_course.py > benchmarks/results/auv_course.txt
 """
@@ -13,6 +14,7 @@ import tempfile
 from collections.abc import Sequence
 from datetime import date
 from itertools import pairwise
+from math import dist
 from pathlib import Path
 
 from mmrs_auv.testing import random_start
@@ -29,6 +31,13 @@ from mmrs_core.resources import shipped
 
 GATE_EAST, POSTS, BAR = 7.0, (6.5, 9.5), (-2.7, -1.2)
 """Metres east and north, and heights, of the gate."""
+
+TARGET, UP, ERROR = (23.0, 8.0), (25.0, 8.0), 1.5
+"""Where it holds and comes up, metres east and north; how far it may be from there. It goes by dead reckoning,
+and its place is known to 0.5 m along each axis in the end."""
+
+HELD_AT, HELD, AFLOAT = -3.0, 15, -0.3
+"""Metres up; seconds, as many as samples of a track; height of a vehicle afloat, at least."""
 
 
 def main() -> None:
@@ -83,7 +92,12 @@ def faults_of(track: Sequence[Sample]) -> list[str]:
     crossed = [b for a, b in pairwise(track) if a.east < GATE_EAST <= b.east]
     through = [each for each in crossed[:1] if POSTS[0] < each.north < POSTS[1] and BAR[0] < each.up < BAR[1]]
     found = [] if through else ["the gate was not passed"]
-    return found + ([] if track[-1].up > -0.6 else ["not at the surface"])
+    beside = [dist((each.east, each.north), TARGET) for each in track if abs(each.up - HELD_AT) < 0.2]
+    over = [each for each in beside if each < ERROR]
+    found += [] if len(over) >= HELD else [f"held over the target for {len(over)} s"]
+    end = track[-1]
+    up = end.up > AFLOAT and dist((end.east, end.north), UP) < ERROR
+    return found + ([] if up else ["not at the surface where it is to come up"])
 
 
 if __name__ == "__main__":

@@ -76,8 +76,8 @@ def test_the_simulated_run_succeeds_and_its_log_replays(example, run_of):
 
 
 def test_the_simulated_run_lasts_about_as_long_as_planned(example, run_of):
-    # Accelerations and turns are not planned for.
-    assert 0.8 * example.plan.makespan <= run_of(example).ending.time <= 1.5 * example.plan.makespan
+    # Accelerations and turns are not planned for; objects are planned for wherever they may be.
+    assert 0.75 * example.plan.makespan <= run_of(example).ending.time <= 1.5 * example.plan.makespan
 
 
 def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
@@ -94,8 +94,10 @@ def test_no_simulated_track_comes_into_a_forbidden_area(example, run_of):
                 assert hypot(level, above) >= kept - 0.3, (name, area.name, sample)
 
 
-def test_every_robot_is_home_at_the_end(example, run_of):
+def test_every_robot_that_is_to_return_is_home_at_the_end(example, run_of):
     for robot in example.program.robots:
+        if not example.scene.robot(robot.id).return_home:
+            continue
         end = run_of(example).tracks[robot.id][-1].position
         assert dist(end, robot.home) < 0.5
 
