@@ -33,8 +33,8 @@ GATE_EAST, POSTS, BAR = 7.0, (6.5, 9.5), (-2.7, -1.2)
 """Metres east and north, and heights, of the gate."""
 
 TARGET, UP, ERROR = (23.0, 8.0), (25.0, 8.0), 1.5
-"""Where it holds and comes up, metres east and north; how far it may be from there. It goes by dead reckoning,
-and its place is known to 0.5 m along each axis in the end."""
+"""Where it holds and comes up, metres east and north; how far it may be from there. By dead reckoning
+its place is known to 0.5 m along each axis in the end."""
 
 HELD_AT, HELD, AFLOAT = -3.0, 15, -0.3
 """Metres up; seconds, as many as samples of a track; height of a vehicle afloat, at least."""
