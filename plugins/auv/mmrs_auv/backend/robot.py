@@ -8,7 +8,7 @@ from typing import Protocol
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.vessel.api import Craft, State
-from mmrs_auv.vessel.decision.duties import Duty, FailureError, Ready, Stay, Surface
+from mmrs_auv.vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Ready, Stay, Surface
 from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.sheet import Sheet, Vector
@@ -23,6 +23,7 @@ from mmrs_core.runtime.known import DEVICE_ACTION, kinematics_of
 from mmrs_core.scene import Position
 
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
+HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
 NO_WAY = "no way is known back to where its program was broken off"
 EMPTY = 0.001
 """Part of the battery with which nothing works any more."""
@@ -63,6 +64,7 @@ class CanRobot:
         self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""
+        self._given_up = False
         self._silent_device: Fault | None = None
         self._now = 0.0
         self._told: dict[str, Position] = {}
@@ -95,7 +97,7 @@ class CanRobot:
         """Return what went wrong up to now."""
         self._look(now)
         found = self._helm.failure(now)
-        if found is None or (self._response and found.event != CRASHED and not self._hinders(found)):
+        if found is None or (self._response and not self._overtakes(found)):
             return self._silent_device
         return self._fault(found)
 
@@ -134,6 +136,7 @@ class CanRobot:
         self._look(now)
         state = self._craft.state()
         self._response, self._instead = response, ""
+        self._given_up = state.emergency is not None
         lost = state.position_lost and response in FINDS
         if (state.emergency is not None or lost) and response not in RESTS:
             why = "without its place" if lost else f"after {state.emergency}"
@@ -278,9 +281,11 @@ class CanRobot:
             return AFTER[LINK_LOST]
         return patience(event, self._policies) or 0.0
 
-    def _hinders(self, found: FailureError) -> bool:
-        """Return whether something keeps the vehicle from the response that it was told."""
-        return found.event in (LINK_LOST, POSITION_LOST) and self._response in FINDS
+    def _overtakes(self, found: FailureError) -> bool:
+        """Return whether something keeps the vehicle from the response that it was told; told once."""
+        if found.event == CRASHED:
+            return not self._given_up
+        return found.event in HINDRANCES and self._response in FINDS
 
     def _at_rest(self) -> bool:
         return self._helm.done(self._now)

@@ -101,6 +101,26 @@ def test_whatever_goes_wrong_the_vehicle_comes_up(tmp_path: Path, meddle: Meddle
     assert list(found.run.ending.responses.values()) == ["SURFACE"]
 
 
+def test_that_the_dive_was_given_up_is_told_once(tmp_path: Path) -> None:
+    found = rehearse(dive(swim("out", 12.0, 0.0, 2.0)), tmp_path, leak)
+    robot, now = found.robots["naiad"], found.run.ending.time
+    assert found.fault == "CRASHED"
+    assert robot.fault(now) is None
+    assert robot.finished(now)
+
+
+def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
+    found = rehearse(dive(swim("out", 0.0, 2.0, 1.0)), tmp_path / "out", noise="no")
+    robot, now = found.robots["naiad"], found.run.ending.time
+    robot.stage.vehicle.faults.dead |= {0, 1, 2, 3}
+    super(type(robot), robot).stop(now, "RETURN")
+    while (fault := robot.fault(now)) is None:
+        now += 1.0
+        assert now < 120.0
+    assert (fault.which, fault.instead) == ("NO_PROGRESS", "SURFACE")
+
+
 def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
     def deafen(robot: RehearsedRobot) -> None:
         hear = robot.stage.craft.hear
