@@ -272,7 +272,9 @@ def test_a_node_speaks_in_time_however_much_others_say() -> None:
 def test_a_host_says_which_message_has_two_senders() -> None:
     told: list[str] = []
     node = Talker("Movement", (), 0.02)
-    wire, stop = Wire([Frame(0x080, bytes((number,))) for number in range(4)]), threading.Event()
+    codec = Codec(pool_sheet())
+    said = [codec.encode("WrenchForce", Surge=0.0, Sway=0.0, Heave=0.0, Enable=False) for _ in range(4)]
+    wire, stop = Wire(said), threading.Event()
     host = threading.Thread(target=serve, args=(node, wire, "real", stop), kwargs={"say": told.append})
     host.start()
     stop.wait(0.3)

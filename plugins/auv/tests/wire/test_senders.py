@@ -105,11 +105,20 @@ def test_a_sender_of_whom_more_is_lost_than_its_counter_tells_is_one() -> None:
     assert heard([*frames[:50], *frames[50 + AHEAD + 90 : 400], *frames[520:]]) == ""
 
 
-def test_what_only_oneself_says_is_noticed_whatever_it_says() -> None:
-    said = [Frame(0x080, bytes((number,))) for number in range(3)]
+def test_what_only_oneself_says_is_noticed() -> None:
+    codec = Codec(SHEET)
+    said = [codec.encode("WrenchForce", Surge=1.0, Sway=0.0, Heave=0.0, Enable=True) for _ in range(3)]
     assert heard(said[:2]) == ""
     assert heard(said) == "another node says WrenchForce (0x080), which only this one is to say"
     assert heard(said, period=5.0) == ""
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32))
+def test_a_frame_whose_damaged_identifier_is_ones_own_is_none_of_ones_own(seed: int) -> None:
+    random = Random(seed)
+    damaged = [Frame(each.id ^ 1 << random.randrange(11), each.data) for each in depths(300)]
+    assert heard(damaged) == ""
 
 
 def test_emergencies_and_messages_of_others_are_of_no_concern() -> None:

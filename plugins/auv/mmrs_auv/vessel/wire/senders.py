@@ -45,16 +45,16 @@ class Senders:
         self._counters: dict[int, _Counter] = {}
 
     def hear(self, frame: Frame, now: float) -> None:
-        """Take a frame that another node said."""
+        """Take a frame that another node said; one whose check is wrong may be any, damaged."""
         if self.fault or frame.extended or frame.id == EMERGENCY_ID:
+            return
+        data = frame.data
+        if len(data) < 2 or check_of(frame.id, data[:-1]) != data[-1]:
             return
         if frame.id in self._own:
             self._mine.append(now)
             if len(self._mine) == STRAYS and now - self._mine[0] <= FORGOTTEN:
                 self.fault = f"another node says {name_of(frame.id)}, which only this one is to say"
-            return
-        data = frame.data
-        if len(data) < 2 or check_of(frame.id, data[:-1]) != data[-1]:
             return
         counter = self._counters.get(frame.id)
         if counter is None:
