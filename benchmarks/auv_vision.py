@@ -3,7 +3,8 @@
 Gates, buoys and paths at 1 m to 10 m before and below a vehicle that heels and pitches, with up to three
 other buoys of any colour, at four levels of noise: the part of what is wholly in sight that is found at its
 place (within 0.3 m or a tenth of the distance), how far off it is said to be, how often detections of a
-confidence are right, and seconds of processor time for a pair of pictures.
+confidence are right, what haze does to that, where detection knows it and where it does not, and seconds of
+processor time for a pair of pictures.
 
     python benchmarks/auv_vision.py > benchmarks/results/auv_vision.txt
 """
@@ -28,6 +29,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 from vision_trials import FRONT_CAMERA, Told, distance_of, is_visible, scene, trials
 
 BAND = 2.0
+HAZES = ((0.5, 0.5), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (0.5, 1.0), (1.5, 1.0), (2.0, 1.0), (3.0, 1.0))
+"""Times the haze of a clear pool: as it is, and as detection takes it to be."""
+
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.98, 1.0)
 
 
@@ -51,6 +55,7 @@ def main() -> int:
     _print_hits(hits)
     _print_errors(found)
     _print_confidence(found)
+    _print_haze(given.scenes // 4, given.seed)
     _print_time()
     return 0
 
@@ -88,6 +93,22 @@ def _print_confidence(found: Sequence[Told]) -> None:
                 sum(x) / len(part) for x in zip(*((e.confidence, e.right) for e in part), strict=True)
             )
             print(f"  {low:4.2f} to {high:4.2f}  {told:5.3f}  {right:5.3f}  of {len(part)}")
+
+
+def _print_haze(scenes: int, seed: int) -> None:
+    print(
+        f"\nhaze, times that of a clear pool, {scenes} scenes each: found of what is wholly in sight; wrong of"
+    )
+    print("what is told with a confidence of 0.5 or more")
+    for haze, believed in HAZES:
+        hits, rights = [], []
+        for one, told in trials(scenes, seed, haze, believed):
+            rights += [each.right for each in told if each.confidence >= 0.5]
+            if is_visible(one):
+                hits.append(any(each.name == one.thing.name and each.right for each in told))
+        found, wrong = sum(hits) / len(hits), 1.0 - sum(rights) / len(rights)
+        counts = f"{found:6.1%} of {len(hits)}  {wrong:5.1%} of {len(rights)}"
+        print(f"  is {haze:3.1f}, taken for {believed:3.1f}  {counts}")
 
 
 def _print_time() -> None:

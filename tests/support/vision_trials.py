@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, radians, sin
 from random import Random
 
@@ -14,7 +14,7 @@ from mmrs_auv.vision.cameras import LEFT, RIGHT, Camera, Pose, cameras_of
 from mmrs_auv.vision.detecting import detect, sought_in
 from mmrs_auv.vision.placing import detections_of
 from mmrs_auv.vision.renderer import Conditions, Renderer, directions, gate_ends, middle_of
-from mmrs_auv.vision.water import TOLD_APART
+from mmrs_auv.vision.water import POOL, TOLD_APART, hazier
 
 NOISES = (2.0, 4.0, 8.0, 16.0)
 EDGE = 4.0
@@ -120,12 +120,17 @@ def _corners(thing: Thing) -> np.ndarray:
     return np.array([each for end in gate_ends(thing) for each in (end, end + down)])
 
 
-def look(given: Scene, seed: int) -> list[Told]:
-    """Return what is detected in a scene, beside the truth."""
-    around = given.surroundings
+def look(given: Scene, seed: int, haze: float = 1.0, believed: float | None = None) -> list[Told]:
+    """Return what is detected in a scene, beside the truth.
+
+    Args:
+        haze: times that of a clear pool. believed: what detection takes it to be; None: the same.
+    """
+    around = replace(given.surroundings, haze=haze)
     renderer = Renderer(around, seed, Conditions(noise=given.noise))
     pair = renderer.pair(given.camera, given.pose, 0.3 * seed)
-    sightings = detect(*pair, given.camera, sought_in(around))
+    water = hazier(POOL, haze if believed is None else believed)
+    sightings = detect(*pair, given.camera, sought_in(around), water)
     things = {thing.name: thing for thing in around.things}
     found = []
     for told in detections_of(sightings, given.camera, given.pose, 0.0):
@@ -142,9 +147,11 @@ def distance_of(thing: Thing, pose: Pose) -> float:
     return float(np.linalg.norm(middle_of(thing) - pose.place))
 
 
-def trials(count: int, seed: int) -> Iterator[tuple[Scene, list[Told]]]:
-    """Yield scenes with what was detected in them."""
+def trials(
+    count: int, seed: int, haze: float = 1.0, believed: float | None = None
+) -> Iterator[tuple[Scene, list[Told]]]:
+    """Yield scenes with what was detected in them, in water as `look` has it."""
     random = Random(seed)
     for number in range(count):
         given = scene(random)
-        yield given, look(given, number)
+        yield given, look(given, number, haze, believed)
