@@ -96,18 +96,16 @@ def _print_confidence(found: Sequence[Told]) -> None:
 
 
 def _print_haze(scenes: int, seed: int) -> None:
-    print(
-        f"\nhaze, times that of a clear pool, {scenes} scenes each: found of what is wholly in sight; wrong of"
-    )
+    print(f"\nhaze, times that of a clear pool, {scenes} scenes: found of what is wholly in sight; wrong of")
     print("what is told with a confidence of 0.5 or more")
     for haze, believed in HAZES:
-        hits, rights = [], []
+        hits, wrongs = [], []
         for one, told in trials(scenes, seed, haze, believed):
-            rights += [each.right for each in told if each.confidence >= 0.5]
+            wrongs += [not each.right for each in told if each.confidence >= 0.5]
             if is_visible(one):
                 hits.append(any(each.name == one.thing.name and each.right for each in told))
-        found, wrong = sum(hits) / len(hits), 1.0 - sum(rights) / len(rights)
-        counts = f"{found:6.1%} of {len(hits)}  {wrong:5.1%} of {len(rights)}"
+        found, wrong = (sum(each) / max(1, len(each)) for each in (hits, wrongs))
+        counts = f"{found:6.1%} of {len(hits)}  {wrong:5.1%} of {len(wrongs)}"
         print(f"  is {haze:3.1f}, taken for {believed:3.1f}  {counts}")
 
 
