@@ -7,13 +7,15 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any, TypeAlias
 
 from bus_traces import Trace
 from can_hub import RunningHub, running
@@ -24,6 +26,7 @@ from mmrs_auv.vessel.body.surroundings import Surroundings
 from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.control.actuators import Actuators
 from mmrs_auv.vessel.control.sensors import Sensors
+from mmrs_auv.vessel.eyes import Detection, to_datagram
 from mmrs_auv.vessel.hosting import Rehearsal
 from mmrs_auv.vessel.movement.movement import Movement
 from mmrs_auv.vessel.sheet import Sheet
@@ -38,8 +41,13 @@ from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.scene import RobotType
 
+Meddle: TypeAlias = "Callable[[World, subprocess.Popen[str]], None]"
+
 SHARED = tempfile.TemporaryDirectory(prefix="ada-")
 """What was compiled of the sources that decision centres share."""
+
+STILL = Surroundings(noise=False)
+"""Water in which instruments do not err."""
 
 FLAGS = ("-gnat2012", "-gnatwa", "-gnatwe")
 
@@ -98,6 +106,10 @@ class Bridge:
         return found
 
 
+def leave_alone(world: World, process: subprocess.Popen[str]) -> None:
+    """Meddle with nothing."""
+
+
 class World:
     """A simulated vehicle with its whole control layer in this process, on a hub, in real time at most."""
 
@@ -106,7 +118,8 @@ class World:
         self.heard: list[Received] = []
         self._codec = Codec(sheet)
         self.vehicle = Vehicle(sheet, Codec(sheet), surroundings)
-        parts = [Sensors(sheet, Codec(sheet)), Actuators(sheet, Codec(sheet)), Movement(sheet, Codec(sheet))]
+        self.actuators = Actuators(sheet, Codec(sheet))
+        parts = [Sensors(sheet, Codec(sheet)), self.actuators, Movement(sheet, Codec(sheet))]
         self._port = open_port("socketcand", f"can0@127.0.0.1:{hub.port}")
         self.trace = Trace(sheet)
         self._emergency = self._codec.encode("Emergency", Reason="ORDERED", Release=False)
@@ -125,8 +138,10 @@ class World:
                 found.append(each)
         return found
 
-    def run(self, until: subprocess.Popen[str], seconds: float, **orders: float) -> None:
-        """Let time go by until a process ends.
+    def run(
+        self, until: subprocess.Popen[str], seconds: float, meddle: Meddle = leave_alone, **orders: float
+    ) -> None:
+        """Let time go by until a process ends; `meddle` may do something at every moment.
 
         An order counts from so many seconds on: ``cut`` ends the bus, ``strange`` has what looks like
         emergencies on it but for their extended identifiers.
@@ -140,6 +155,7 @@ class World:
                 return
             if self.rehearsal.now >= orders.get("strange", seconds):
                 self._port.send(replace(self._emergency, extended=True))
+            meddle(self, until)
             self.rehearsal.run(0.05)
             time.sleep(max(0.0, self.rehearsal.now + behind - time.monotonic()))
 
@@ -164,17 +180,17 @@ def run(
     robot: int = 0,
     gateway: Path | None = None,
     detections: int = 0,
-    extra: Mapping[str, float] = MappingProxyType({}),
-    **orders: float,
+    options: Sequence[str] = (),
+    **how: Any,
 ) -> Dive:
     """Have the decision centre of a robot command its vehicle until it ends."""
 
     def words(port: int) -> Sequence[str]:
         given = ["--gateway", str(gateway)] if gateway is not None else []
         given += ["--detections", str(detections)] if detections else []
-        return [str(program), "--bus", f"127.0.0.1:{port}", "--logs", str(folder / "logs"), *given]
+        return [str(program), "--bus", f"127.0.0.1:{port}", "--logs", str(folder / "logs"), *given, *options]
 
-    return commanded(words, behaviour, folder, seconds, robot=robot, extra=extra, **orders)
+    return commanded(words, behaviour, folder, seconds, robot=robot, **how)
 
 
 def commanded(
@@ -185,6 +201,8 @@ def commanded(
     *,
     robot: int = 0,
     extra: Mapping[str, float] = MappingProxyType({}),
+    surroundings: Surroundings = STILL,
+    meddle: Meddle = leave_alone,
     **orders: float,
 ) -> Dive:
     """Have a program, whose words depend on the port of the bus, command a robot's vehicle until it ends.
@@ -196,12 +214,12 @@ def commanded(
     sheet = replace(sheet, extra={**sheet.extra, **extra})
     logs = folder / "logs"
     with running() as hub:
-        world = World(hub, sheet, Surroundings(noise=False))
+        world = World(hub, sheet, surroundings)
         process = subprocess.Popen(
             words(hub.port), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         )
         try:
-            world.run(process, seconds, **orders)
+            world.run(process, seconds, meddle, **orders)
         finally:
             process.kill()
             _, errors = process.communicate()
@@ -231,3 +249,31 @@ def gateways(behaviour: Path, folder: Path, robots: Sequence[str]) -> Iterator[M
         for process in processes:
             process.kill()
             process.wait()
+
+
+def unused_port() -> int:
+    """Return a port for datagrams that nobody uses now."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
+        camera.bind(("127.0.0.1", 0))
+        port: int = camera.getsockname()[1]
+        return port
+
+
+@contextmanager
+def telling(port: int, detection: Detection) -> Iterator[None]:
+    """Send a detection again and again, and rubbish between."""
+    over = threading.Event()
+
+    def tell() -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as camera:
+            while not over.wait(0.2):
+                now = replace(detection, time=time.monotonic())
+                for data in (b"\xff{", b'{"name": "', to_datagram(now)):
+                    with suppress(OSError):
+                        camera.sendto(data, ("127.0.0.1", port))
+
+    teller = threading.Thread(target=tell)
+    teller.start()
+    yield
+    over.set()
+    teller.join()

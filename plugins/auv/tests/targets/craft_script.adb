@@ -5,6 +5,7 @@ with Interfaces;  use Interfaces;
 with Listed;
 with Plans;
 with Sight;
+with Tracks;
 with Wire;
 
 --  A decision centre's side of the bus that does what a script on standard input says, a line of answer for each.
@@ -20,6 +21,10 @@ with Wire;
 --    t TIME                        frames that are said then
 --    s                             what is known
 --    n TIME DATAGRAM               take what a camera tells
+--    m KIND TO PLACE AWAY          add a move to the plan, which leads to one of that number; 0: to none
+--    a NUMBER PLACE                come to a place by the move of that number
+--    k PLACE                       the way back from there
+--    f                             forget plan and places
 --    w TIME NAME                   where an object is seen then, its name in JSON; "none" where it is not
 procedure Craft_Script is
 
@@ -29,6 +34,7 @@ procedure Craft_Script is
    Line : String (1 .. 2000);
    Last : Natural;
    Next : Positive;
+   Plan : Plans.Plan;
 
    function Word return String;
    function Whole return Natural is (Natural'Value (Word));
@@ -43,6 +49,10 @@ procedure Craft_Script is
    procedure Say (Now : Long_Float);
    procedure Tell_State;
    procedure Look_For;
+   function Place return Plans.Place;
+   procedure Add_Move;
+   procedure Pass;
+   procedure Go_Back;
    procedure Obey;
 
    function Word return String is
@@ -184,6 +194,41 @@ procedure Craft_Script is
       end if;
    end Look_For;
 
+   function Place return Plans.Place is
+      Found : Plans.Place;
+   begin
+      Found.North := Real;
+      Found.East := Real;
+      Found.Depth := Real;
+      return Found;
+   end Place;
+
+   procedure Add_Move is
+      Made : Plans.Move;
+   begin
+      Made.Kind := Plans.Move_Kind'Val (Whole);
+      Made.To := Whole;
+      Made.Way := (if Made.To = 0 then Plans.Ends else Plans.Takes);
+      Made.Target := Place;
+      Made.Away := Real;
+      Plan.Moves.Append (Made);
+   end Add_Move;
+
+   procedure Pass is
+      Number : constant Positive := Whole;
+   begin
+      Tracks.Pass (Number, Place);
+   end Pass;
+
+   procedure Go_Back is
+   begin
+      for Each of Tracks.Way_Back (Plan, Place) loop
+         Tell (Each.North);
+         Tell (Each.East);
+         Tell (Each.Depth);
+      end loop;
+   end Go_Back;
+
    procedure Obey is
       Order : constant String := Word;
    begin
@@ -203,6 +248,12 @@ procedure Craft_Script is
                Sight.Take (Line (Next .. Last), Now);
             end;
          when 'w' => Look_For;
+         when 'm' => Add_Move;
+         when 'a' => Pass;
+         when 'k' => Go_Back;
+         when 'f' =>
+            Tracks.Forget;
+            Plan.Moves.Clear;
          when 'h' =>
             declare
                Now : constant Long_Float := Real;

@@ -17,16 +17,16 @@ from mmrs_auv.targets.ada.bus import catalogue
 from mmrs_auv.targets.ada.refusals import refusals
 from mmrs_auv.targets.ada.target import ADA
 
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Transition
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Target, Transition
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.generation.render import render
 from mmrs_core.scene import Policy
 from mmrs_core.testing.conformance.missions import run_command
-from mmrs_core.testing.programs import feedback
+from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 
-NASTY = ('"; end Build; --', "é\n🦑\x7f\t", "'" * 300)
+NASTY = ('"; end Build; --', "é\n🦑\x7f\t", "'" * 70_000)
 names = st.text(st.characters(exclude_categories=("Cs",)), min_size=1, max_size=60)
 
 
@@ -72,7 +72,11 @@ def test_a_text_is_written_so_that_it_can_be_read_back_and_lines_stay_short(text
     assert max(map(len, made.splitlines())) < 250
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_that_compilers_warn_of_is_zero():
+    assert literals.value(5e-324) == literals.value(-2e-308) == "0.0"
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False, allow_subnormal=False))
 def test_a_number_keeps_its_value(number):
     made = literals.value(number)
     assert re.fullmatch(r"\(?-?\d+\.\d+(E-?\d+)?\)?", made)
@@ -94,6 +98,17 @@ def named(words):
     ]
     ways = {1: Transition(1, 2, waits=(third,), condition=words[0], otherwise=3)}
     return dive(*moves, slots=(third,), transitions=ways)
+
+
+RESERVED = ("abort", "begin", "end", "is", "null", "package", "Move", "Plan", "a", "A")
+
+
+def test_names_that_mean_something_to_ada_are_names_like_others(tmp_path, compiler):
+    moves = [swim(word, 1.0, 2.0, 1.0, after=(notify(("naiad", word)),), task=word) for word in RESERVED]
+    many = [swim(str(number), 1.0, 2.0, 1.0) for number in range(200)]
+    waits = {len(RESERVED): Transition(len(RESERVED), len(RESERVED) + 1, waits=RESERVED)}
+    behaviour = dive(*moves, *many, slots=RESERVED, transitions=waits)
+    assert judge(write(behaviour, tmp_path)) == ""
 
 
 @pytest.mark.parametrize("order", range(3))
@@ -183,6 +198,37 @@ def test_places_and_parameters_that_no_message_holds_are_refused():
     found = " ".join(refusals(input_of(dive(far, swim("a", 0.0, 0.0, 1.0, after=(huge,))))))
     assert "9000 m to the east" in found
     assert "parameter 10000 of device 'ctd'" in found
+
+
+@pytest.mark.parametrize(
+    ("moved", "wrong"),
+    [
+        (swim("a", 1.0, 2.0, 1.0, speed=float("nan")), "speed is nan"),
+        (swim("a", 1.0, float("inf"), 1.0), "target is inf"),
+        (
+            swim("a", 1.0, 2.0, 1.0, heading=Heading(Target((1.0, 2.0, 3.0)), "", float("nan"))),
+            "angle is nan",
+        ),
+        (move("a", "HoldPosition", duration=float("inf")), "duration is inf"),
+    ],
+)
+def test_what_is_no_number_is_refused_and_its_move_left_out_where_that_is_allowed(moved, wrong):
+    assert any(f"move 'a': its {wrong}" in each for each in refusals(input_of(dive(moved))))
+    assert "Made := (Kind => Holds, Way => Takes" in mission_of(dive(moved), allow_lossy=True)
+
+
+def test_batteries_are_charged_at_the_surface():
+    behaviour = dive(move("r", "Recharge", duration=9.0))
+    assert list(refusals(input_of(behaviour))) == []
+    assert re.search(r"Kind => Charges.*\n.*\n.*\n\s+Made.Seconds := 9.0;", mission_of(behaviour))
+
+
+def test_a_device_that_looks_aside_is_pointed_by_turning_the_vehicle():
+    type = diver()
+    camera = replace(type.devices["front-camera"], properties={"mount.yaw": "90"})
+    type = replace(type, devices={**type.devices, "front-camera": camera})
+    aside = swim("a", 1.0, 2.0, 1.0, heading=Heading(Target((1.0, 9.0, -1.0)), "front-camera", 10.0))
+    assert "Made.Angle := 100.0;" in mission_of(dive(aside), type)
 
 
 def test_a_wait_takes_as_long_as_its_own_policy_says():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+from math import dist
 from random import Random
 
 import pytest
@@ -15,6 +16,7 @@ from ada_crafts import (
     compiled,
     happenings,
     meant,
+    real,
     said,
     some_datagram,
     some_frame,
@@ -22,6 +24,7 @@ from ada_crafts import (
     told,
     words_of,
 )
+from ada_ways import lines_of, places_of, some_place, some_robot, some_track
 from c_drives import Script
 from c_drives import compiled as drives
 from c_drives import told as done_by
@@ -31,6 +34,9 @@ from mmrs_auv.vessel.wire.catalogue import REASONS
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vessel.wire.frame import Frame
 from vessel_sheets import sheet
+
+from mmrs_core.flight.program import Local
+from mmrs_core.flight.steps.ways import way_back
 
 COUNTS = [300, pytest.param(5000, marks=pytest.mark.thorough)]
 SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(1, 12))]
@@ -108,6 +114,28 @@ def test_objects_are_seen_at_the_same_places(program, count):
                 expected.append("none" if found is None else " ".join(map(bits, found)))
     assert differing(program, lines, expected) == []
     assert 0.2 < expected.count("none") / len(expected) < 0.6
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_way_back_is_that_of_controllers_in_python(program, count):
+    random = Random(count)
+    lines, wanted = [], []
+    for _ in range(count):
+        start = some_place(random)
+        robot = some_robot(random, start)
+        track = some_track(random, robot, start)
+        here = random.choice([some_place(random), track[-1][1]])
+        lines += lines_of(robot, track, here)
+        found = way_back(robot, "RETURN", track, here)
+        wanted.append([places_of(each) for each in found if isinstance(each, Local)])
+    answers = [answer for line, answer in zip(lines, told(program, lines), strict=True) if line[0] == "k"]
+    assert len(answers) == count
+    assert sum(len(each) > 1 for each in wanted) > count / 5
+    for answer, places in zip(answers, wanted, strict=True):
+        numbers = list(map(real, answer.split()))
+        found = [numbers[index : index + 3] for index in range(0, len(numbers), 3)]
+        assert len(found) == len(places)
+        assert all(dist(a, b) < 1e-6 for a, b in zip(found, places, strict=True))
 
 
 @pytest.mark.parametrize("release", [True, False])

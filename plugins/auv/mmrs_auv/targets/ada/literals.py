@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import isfinite
+from sys import float_info
 
 PIECE = 80
 """Bytes of a text in one line; lines of Ada end at 255 characters."""
@@ -67,8 +68,10 @@ def value(value: object) -> str:
 
 
 def _real(value: float) -> str:
+    """Return a literal; of a number so small that Ada warns of it, that of zero."""
     if not isfinite(value):
         raise ValueError(f"{value} is not finite and has no literal")
+    value = value if abs(value) >= float_info.min else 0.0
     mantissa, _, exponent = repr(abs(value)).partition("e")
     text = mantissa if "." in mantissa else f"{mantissa}.0"
     text += f"E{int(exponent)}" if exponent else ""

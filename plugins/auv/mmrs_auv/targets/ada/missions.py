@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite
 
 from mmrs_auv.backend.duties_of import ANSWER, parameter_of
 from mmrs_auv.names import IN_WATER_SIZE
@@ -233,9 +234,10 @@ def _standard(condition: str) -> Mapping[str, object]:
 
 
 def _duration(move: Move) -> float:
+    """Return how long a move holds or charges; 0 for others, and where that is no number."""
     found = move.attributes.get("duration")
-    known = SORTS.get(move.metaclasses[0]) in ("hold", "charge") and isinstance(found, (int, float))
-    return float(found) if known and isinstance(found, (int, float)) else 0.0
+    known = SORTS.get(move.metaclasses[0]) in ("hold", "charge")
+    return float(found) if known and isinstance(found, (int, float)) and isfinite(found) else 0.0
 
 
 def _kind_of_way(transition: Transition | None) -> str:

@@ -60,6 +60,9 @@ def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterato
     sort = SORTS.get(move.metaclasses[0])
     if sort is None:
         yield f"{move.kind} is not known to this target"
+    for name, number in _numbers(move):
+        if not isfinite(number):
+            yield f"its {name} is {number:g}, which is no number"
     if sort == "turn" and (move.heading is None or move.heading.target.position is None):
         yield "nobody says where what it turns to is"
     if sort != "go":
@@ -74,6 +77,22 @@ def of_movement(move: Move, context: RobotContext, step: float = 0.0) -> Iterato
     depth = context.frame.surface - up
     if step > 0.0 and depth > STEPS * step:
         yield f"leads {depth:g} m down, deeper than its bus can say"
+
+
+def _numbers(move: Move) -> Iterator[tuple[str, float]]:
+    """Yield what a move tells its vehicle, with its name."""
+    duration = move.attributes.get("duration")
+    if isinstance(duration, (int, float)):
+        yield "duration", duration
+    if move.speed is not None:
+        yield "speed", move.speed
+    yield "distance", move.distance
+    if move.heading is not None:
+        yield "angle", move.heading.angle_degrees
+        yield from (("heading", number) for number in move.heading.target.position or ())
+    if move.target is not None:
+        yield from (("target", number) for number in move.target.position or ())
+        yield "tolerance", move.target.tolerance or 0.0
 
 
 def of_action(action: Action, context: RobotContext) -> Iterator[str]:

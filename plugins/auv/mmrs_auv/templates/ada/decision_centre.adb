@@ -1,7 +1,5 @@
-with Ada.Command_Line;      use Ada.Command_Line;
 with Ada.Directories;
 with Ada.Exceptions;
-with Ada.Strings.Fixed;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Ada.Text_IO;           use Ada.Text_IO;
 with Alarms;
@@ -14,6 +12,7 @@ with Gateway;
 with Guards;
 with Machine;
 with Mission;
+with Options;
 with Plans;                 use Plans;
 with Sight;
 with Slots;
@@ -23,22 +22,11 @@ with Undecided;
 --  The decision centre of one vehicle. Exit status: 0 at its end, 1 after a fault, 2 where it cannot begin.
 procedure Decision_Centre is
 
-   Wrong : exception;
+   Most : constant Long_Float := 1.0E6;
 
-   function Option (Name, Otherwise : String) return String;
    procedure Make_Sure_Of_Choices (Plan : Plans.Plan);
 
-   function Option (Name, Otherwise : String) return String is
-   begin
-      for Index in 1 .. Argument_Count / 2 loop
-         if Argument (Index * 2 - 1) = Name then
-            return Argument (Index * 2);
-         end if;
-      end loop;
-      return Otherwise;
-   end Option;
-
-   --  Raise Wrong where a choice of the plan is decided by nobody. Each condition is asked for, once.
+   --  Raise Options.Wrong where a choice of the plan is decided by nobody. Each condition is asked for, once.
    procedure Make_Sure_Of_Choices (Plan : Plans.Plan) is
       Nothing_Known : Craft.State;
       Holds         : Boolean;
@@ -50,7 +38,7 @@ procedure Decision_Centre is
                Holds := Conditions.Holds (To_String (Each.Condition), Nothing_Known);
             exception
                when Error : Undecided.Not_Decided =>
-                  raise Wrong with Ada.Exceptions.Exception_Message (Error);
+                  raise Options.Wrong with Ada.Exceptions.Exception_Message (Error);
                when others =>
                   null;  --  what decides it needs to know more of the vehicle
             end;
@@ -58,44 +46,34 @@ procedure Decision_Centre is
       end loop;
    end Make_Sure_Of_Choices;
 
-   Usage : constant String :=
-     "decision_centre --bus HOST:PORT [--channel can0] [--logs FOLDER] [--run ID] [--patience SECONDS] "
-     & "[--depth-step METRES] [--gateway FILE] [--detections PORT] [--clearance METRES]";
-
-   Server : constant String := Option ("--bus", "");
-   Colon  : constant Natural := Ada.Strings.Fixed.Index (Server, ":", Ada.Strings.Backward);
-   Logs   : constant String := Option ("--logs", "logs");
-   Plan   : Plans.Plan;
-   Step   : Long_Float;
-   Late   : Long_Float := 0.0;
-   Done   : Boolean;
+   Plan : Plans.Plan;
+   Step : Long_Float;
+   Late : Long_Float := 0.0;
+   Done : Boolean;
 begin
-   if Colon = 0 or else Argument_Count mod 2 /= 0 then
-      raise Wrong with Usage;
-   end if;
+   Options.Refuse_Others;
    Mission.Build (Plan);
-   Step := Long_Float'Value (Option ("--depth-step", Plan.Step'Image));
-   if Step <= 0.0 then
-      raise Wrong with "nobody has said how the bus writes depths: --depth-step METRES, as its database says";
+   Step := Options.Number ("--depth-step", Plan.Step, Most);
+   if Step = 0.0 then
+      raise Options.Wrong
+        with "nobody has said how the bus writes depths: --depth-step METRES, as its database says";
    end if;
    Craft.Set_Step (Step);
+   Alarms.Keep_Clear (Options.Number ("--clearance", 0.0, Most));
    Slots.Prepare (Plan);
-   Ada.Directories.Create_Path (Logs);
-   Step_Log.Open
-     (Logs & "/" & To_String (Plan.Log), Step_Log.Json (Option ("--run", "run-0")), To_String (Plan.Robot));
-   Bus.Open
-     (Server (Server'First .. Colon - 1),
-      Natural'Value (Server (Colon + 1 .. Server'Last)),
-      Option ("--channel", "can0"),
-      Long_Float'Value (Option ("--patience", "5.0")));
-   if not Plan.Alone then
-      Gateway.Open (Option ("--gateway", ""), To_String (Plan.Robots), Late);
+   if Options.Text ("--detections", "") /= "" then
+      Sight.Open (Natural (Options.Number ("--detections", 0.0, 65_535.0)));
    end if;
-   Alarms.Keep_Clear (Long_Float'Value (Option ("--clearance", "0.0")));
-   if Option ("--detections", "") /= "" then
-      Sight.Open (Natural'Value (Option ("--detections", "")));
+   Bus.Open
+     (Options.Host, Options.Port, Options.Text ("--channel", "can0"), Options.Number ("--patience", 5.0, Most));
+   if not Plan.Alone then
+      Gateway.Open (Options.Text ("--gateway", ""), To_String (Plan.Robots), Late);
    end if;
    Make_Sure_Of_Choices (Plan);
+   Ada.Directories.Create_Path (Options.Text ("--logs", "logs"));
+   Step_Log.Open
+     (Options.Text ("--logs", "logs") & "/" & To_String (Plan.Log), Step_Log.Json (Options.Text ("--run", "run-0")),
+      To_String (Plan.Robot));
    Step_Log.Shift (Late - Clocks.Now);
    Guards.Begin_Work;
    Done := Machine.Runs (Plan);

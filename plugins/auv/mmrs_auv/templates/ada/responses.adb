@@ -17,6 +17,10 @@ package body Responses is
    Silent    : constant Long_Float := 60.0;
    Farewell  : constant Duration := 0.5;
 
+   --  Metres of depth from which on the vehicle is up: pushed by thrust, and without any.
+   Up           : constant Long_Float := 0.2;
+   Up_By_Itself : constant Long_Float := 0.5;
+
    procedure Come_Up;
    procedure Hold (Plan : Plans.Plan);
    procedure Do_It (Plan : Plans.Plan; By : Response);
@@ -26,13 +30,14 @@ package body Responses is
    --  Come up, by thrust unless the dive was given up, as long as the bus is there.
    procedure Come_Up is
       Until_Then : constant Long_Float := Now + Coming_Up;
+      Afloat     : constant Long_Float := (if Vehicle.Told.Emergency = 0 then Up else Up_By_Itself);
    begin
       Vehicle.Begin_Goal ((Mode => MODE_SURFACE, others => <>));
       loop
          Guards.Kick;
          exit when Bus.Is_Gone or else Now > Until_Then or else Now - Vehicle.Told.Heard_At > Silent;
          exit when Vehicle.Told.Progress = PROGRESS_REACHED;
-         exit when Now - Vehicle.Told.Known_At < Stale and then Vehicle.Told.Here.Depth < 0.5;
+         exit when Now - Vehicle.Told.Known_At < Stale and then Vehicle.Told.Here.Depth < Afloat;
          delay 0.05;
       end loop;
    end Come_Up;
