@@ -274,7 +274,7 @@ CODES: Mapping[str, Code] = MappingProxyType(
         "PRJ002": Code(
             "a file of a project that does not hold what belongs there",
             "one mission in mission.xmi, one context in context.xmi, robot types in robots",
-            "move it to a file of its own",
+            "name the mission's file or its folder, or move what does not belong there to a file of its own",
         ),
     }
 )

@@ -114,16 +114,18 @@ class Berth:
                 self._tell("vehicle", " ".join(words))
 
     def close(self) -> None:
-        """End all of it; the hub last."""
-        for part in (*PARTS, "hub"):
-            if (process := self._processes.get(part)) is not None:
+        """End all of it; the hub once nobody speaks on it any more."""
+        hub = self._processes.get("hub")
+        parts = [process for process in self._processes.values() if process is not hub]
+        for group in (parts, [] if hub is None else [hub]):
+            for process in group:
                 process.terminate()
-        for process in self._processes.values():
-            try:
-                process.communicate(timeout=END_SECONDS)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.communicate()
+            for process in group:
+                try:
+                    process.communicate(timeout=END_SECONDS)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    process.communicate()
 
     def _tell(self, part: str, line: str) -> None:
         stdin = self._processes[part].stdin

@@ -29,6 +29,7 @@ class Sitl:
             [*words, "--speedup", "5"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             text=True, bufsize=1,
         )  # fmt: skip
+        self.lines: list[str] = []
         self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -36,13 +37,16 @@ class Sitl:
     def _read(self) -> None:
         assert self.process.stderr is not None
         for line in self.process.stderr:
+            self.lines.append(line)
             self._told.put(line)
 
     def quit(self) -> int:
         """End it as people do; return its exit code."""
         assert self.process.stdin is not None
         self.process.stdin.write("quit\n")
-        return self.process.wait(30)
+        code = self.process.wait(30)
+        self._reader.join(30)
+        return code
 
     def close(self) -> None:
         self.process.terminate()
@@ -92,6 +96,7 @@ def test_what_is_typed_happens(free_port):
             sitl.type("Naiad mend bus", "Naiad: mend bus\n")
             assert until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
         assert sitl.quit() == 0
+        assert [line for line in sitl.lines if "incomplete message" in line or "bus is gone" in line] == []
 
 
 def drives(ear: Ear) -> set[object]:

@@ -55,7 +55,7 @@ def test_every_command_has_help(name, capsys):
     assert capsys.readouterr().out.startswith(f"Usage: mmrs {name}")
 
 
-@pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv"])
+@pytest.mark.parametrize("group", ["", "plugin", "metamodel", "bus", "auv", "can"])
 def test_the_list_of_commands_cuts_no_sentence(group, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     run([*group.split(), "--help"])

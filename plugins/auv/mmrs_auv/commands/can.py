@@ -103,11 +103,12 @@ def hub(
     ] = False,
     seconds: Seconds = 0.0,
 ) -> int:
-    """Be a bus for several processes of this machine, by the socketcand protocol.
+    """Be a bus for several processes of this machine.
 
-    It passes on what one says to all others on the same channel, in the order in which it comes. It is no
-    CAN: it has no arbitration, no bit rate, no acknowledgement, no error frames and no bus-off. Lines such as
-    'loss 0.2', 'delay 0.05', 'corruption 0.1', 'cut', 'mend' and 'quit' count at once.
+    It speaks the protocol of socketcand, and passes on what one says to all others on the same channel, in
+    the order in which it comes. It is no CAN: it has no arbitration, no bit rate, no acknowledgement, no
+    error frames and no bus-off. Lines such as 'loss 0.2', 'delay 0.05', 'corruption 0.1', 'cut', 'mend' and
+    'quit' count at once.
 
     Example: mmrs can hub --loss 0.05 --log bus.log
     """
@@ -140,7 +141,9 @@ def monitor(
     ] = None,
     seconds: Seconds = 0.0,
 ) -> int:
-    """Tell what is said on a vehicle's bus, and at the end what was missed or not believed.
+    """Tell what is said on a vehicle's bus.
+
+    At the end it tells what was missed, and what was not believed.
 
     Example: mmrs can monitor examples/pool --robot Naiad --only Depth --only Emergency
     """

@@ -6,6 +6,7 @@ python -m mmrs_auv.vessel vehicle --sheet auv.json --interface socketcand --chan
 from __future__ import annotations
 
 import argparse
+import logging
 import signal
 import sys
 import threading
@@ -31,6 +32,7 @@ PARTS = ("sensors", "actuators", "movement", "vehicle")
 
 def main(words: Sequence[str] | None = None) -> int:
     """Serve the part that is asked for until SIGTERM or SIGINT; return the exit status."""
+    logging.getLogger("can").setLevel(logging.ERROR)
     given = _parser().parse_args(words)
     try:
         sheet = from_json(given.sheet.read_text(encoding="utf-8"))
