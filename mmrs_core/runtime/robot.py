@@ -21,11 +21,11 @@ from mmrs_core.runtime.halting import Halt
 from mmrs_core.runtime.outgoing import Outgoing
 from mmrs_core.runtime.pausing import Pause
 from mmrs_core.runtime.peers import Peers
+from mmrs_core.runtime.recovery import Recovery
 from mmrs_core.runtime.resuming import step_of
 from mmrs_core.runtime.rules import Rules
 from mmrs_core.runtime.stages import Stage
 from mmrs_core.runtime.waiting import Wait
-from mmrs_core.runtime.way_back import WayBack
 
 
 class RunningRobot:
@@ -54,7 +54,7 @@ class RunningRobot:
         self.ordered: tuple[Fault, str] | None = None
         self.halt = Halt()
         self._pause = Pause(backend)
-        self._way_back = WayBack(backend)
+        self._recovery = Recovery(backend)
         self._doing = Doing(program, backend, bus, rules)
         self.questions = self._doing.questions
         self._program, self._bus, self._rules = program, bus, rules
@@ -126,7 +126,7 @@ class RunningRobot:
     def follow(self, step: Step, now: float) -> None:
         """Go where a step leads."""
         if step.label == "end":
-            self._way_back.passed(step.move)
+            self._recovery.passed(step.move)
         if self.wait.since is not None and isinstance(self.backend, Noting):
             waited = {"slots": [name for _, name in self.awaited()], "seconds": now - self.wait.since}
             self.backend.note("wait", waited)
@@ -183,7 +183,7 @@ class RunningRobot:
         """Begin to go back to where the program was broken off."""
         self.halt, self.stage = Halt(), Stage.RECOVERING
         self._doing.forget()
-        if not self._way_back.begin(self._underway, now):
+        if not self._recovery.begin(self._underway, now):
             self.stage = Stage.WORKING
 
     def hindrance(self, now: float) -> str:
@@ -192,11 +192,11 @@ class RunningRobot:
 
     def astray(self, now: float) -> str:
         """Return that it is where its program cannot be gone on with, or out of reach; empty: it is not."""
-        return self._way_back.astray(self._underway, now)
+        return self._recovery.astray(self._underway, now)
 
     def away(self, now: float) -> str:
         """Return why it does not stand at home, as far as anybody knows; empty where it may."""
-        return self._way_back.from_home(now)
+        return self._recovery.from_home(now)
 
     def _still_low(self, now: float) -> str:
         if not self.halt.is_for(BATTERY_LOW):
@@ -205,7 +205,7 @@ class RunningRobot:
 
     def may_move(self, now: float) -> bool:
         """Return whether it is at work and its motors are seen to run, so that nobody may leave it alone."""
-        return not (self.point.is_final or self.suspended) and self._way_back.moves(now)
+        return not (self.point.is_final or self.suspended) and self._recovery.moves(now)
 
     def is_watched(self, now: float) -> bool:
         """Return whether it has stopped, or is out of reach, so that somebody must stay with it."""

@@ -6,7 +6,7 @@ from mmrs_core.contributions.abilities import Recovering
 from mmrs_core.contributions.backends import Backend
 
 
-class WayBack:
+class Recovery:
     """What a robot has passed, and what its backend says of getting back to where it was.
 
     `underway` is the move that the robot is to begin once more; empty where it has ended its last one.
