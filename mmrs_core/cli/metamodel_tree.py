@@ -10,7 +10,6 @@ import typer
 
 from mmrs_core.cli.output import say, say_json
 from mmrs_core.cli.settings import settings_of
-from mmrs_core.cli.tree_words import value_words
 
 if TYPE_CHECKING:
     from mmrs_core.languages.metaclass import Enumeration, Feature, Metaclass, Package
@@ -81,6 +80,8 @@ def _enum(enumeration: Enumeration) -> _Branch:
 
 
 def _feature(feature: Feature) -> str:
+    from mmrs_core.cli.tree_words import value_words
+
     most = "*" if feature.most < 0 else str(feature.most)
     default = "" if feature.default is None else f" = {value_words(feature.default)}"
     how = "contains " if feature.containment else "→ " if feature.is_reference else ""

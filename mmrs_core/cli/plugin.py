@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import StrEnum
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mmrs_core.cli.output import counted, say, say_json, tell
 from mmrs_core.cli.settings import Json, Settings, settings_of
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -166,6 +168,8 @@ def _follows(before: str, name: str) -> bool:
 
 def _list_broken(reason: str, json: bool) -> int:
     """List the installed plug-ins by their entry points, each with whether it loads by itself."""
+    from importlib.metadata import entry_points
+
     from mmrs_core.plugins import GROUP
 
     entries = sorted(entry_points(group=GROUP), key=lambda entry: entry.name)

@@ -49,7 +49,6 @@ def validate(
     from mmrs_core.cli.diagnosing import Subject
     from mmrs_core.cli.fixing import agreed, repairer_for, show, write
     from mmrs_core.cli.journey import Workshop
-    from mmrs_core.cli.sarif import subject_of, write_sarif
 
     if is_metamodel(project):
         return validate_metamodel(call, project, json)
@@ -73,6 +72,8 @@ def validate(
             found = repair.diagnosis
     proposals = tuple(repairer.proposals(found))
     if sarif is not None:
+        from mmrs_core.cli.sarif import subject_of, write_sarif
+
         named = subject_of("validate", project)
         write_sarif(sarif, found.faults, workshop.contributions, proposals, subject=named)
     if json:
