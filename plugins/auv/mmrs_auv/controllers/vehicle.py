@@ -38,6 +38,9 @@ from mmrs_core.flight.vehicles.vehicle import State
 LOOK_SECONDS = 0.05
 """Real seconds between two looks at the vehicle."""
 
+BATTERY_SECONDS = 1.0
+"""Seconds within which a vehicle that tells its battery has done so."""
+
 BUS_SECONDS = 10.0
 """Seconds of silence of the bus that end a program although a policy says that links may be lost."""
 
@@ -94,14 +97,15 @@ class CanVehicle:
         """Do nothing: there is no fence."""
 
     def prepare(self, uploads: Uploads) -> None:
-        """Wait until the vehicle knows where it is.
+        """Wait until the vehicle knows where it is, and has told its battery if it does so at all.
 
         Raises:
             Refused: it does not in time.
         """
         until = time.monotonic() + self._patience
-        self._helm.begin(Ready(), self._clock.now())
-        while not self._helm.done(self._clock.now()):
+        begun = self._clock.now()
+        self._helm.begin(Ready(), begun)
+        while not (self._helm.done(now := self._clock.now()) and self._has_told_battery(now - begun)):
             self._guard()
             if time.monotonic() > until:
                 heard = self._craft.state().age < inf
@@ -276,6 +280,9 @@ class CanVehicle:
         while not self._helm.done(self._clock.now()) and not leave():
             self._check()
             time.sleep(LOOK_SECONDS)
+
+    def _has_told_battery(self, waited: float) -> bool:
+        return self._craft.state().charge is not None or waited > BATTERY_SECONDS
 
     def _check(self) -> None:
         """Obey orders; raise what goes wrong, each event once."""

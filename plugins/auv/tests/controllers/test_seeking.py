@@ -13,6 +13,7 @@ from mmrs_auv.vessel.body.surroundings import Obstacle, Surroundings
 from mmrs_auv.vessel.decision.duties import FailureError, Stay
 from mmrs_auv.vessel.decision.helm import Helm
 from mmrs_auv.vessel.eyes import Detection, Detections, to_datagram
+from mmrs_auv.vessel.hosting import WireFault
 from vessel_rig import Rig
 
 from mmrs_core.flight.clock import Clock
@@ -52,9 +53,19 @@ def eyes() -> Iterator[Detections]:
 
 
 @pytest.fixture
-def vehicle_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Making]:
+def quiet() -> tuple[WireFault, ...]:
+    """Return faults of the bus from the beginning on."""
+    return ()
+
+
+@pytest.fixture
+def vehicle_of(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quiet: tuple[WireFault, ...]
+) -> Iterator[Making]:
     monkeypatch.setattr(module, "LOOK_SECONDS", 0.0)
     rig = Rig(SHEET, Surroundings(bottom=20.0, obstacles=(Obstacle(15.0, 0.0, 1.0),)))
+    for fault in quiet:
+        rig.bus.disturb(fault)
     rig.until(lambda: rig.state.trusted, 10.0)
     box = BlackBox(tmp_path / "box", "run", "naiad", lambda: rig.bus.now)
 
@@ -117,6 +128,14 @@ def test_a_place_that_its_bus_cannot_say_makes_it_come_up(vehicle_of):
     with pytest.raises(Fault, match=r"GoalPlace\.North") as missed:
         vehicle.go_to(Local(9e6, 0.0, -1.0), None, None, through=False)
     assert (missed.value.event, missed.value.instead) == (NO_PROGRESS, "SURFACE")
+
+
+@pytest.mark.parametrize("quiet", [(WireFault(end=1.0, loss=1.0, ids=frozenset({0x207})),)])
+def test_it_has_told_its_battery_when_it_begins(vehicle_of):
+    vehicle, rig = vehicle_of(None)
+    assert rig.state.charge is None
+    vehicle.prepare(Uploads())
+    assert vehicle.state().energy is not None
 
 
 @pytest.mark.parametrize(("vehicle", "response"), [("sub", "SURFACE"), ("copter", "HOLD")])
