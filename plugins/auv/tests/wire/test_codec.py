@@ -151,6 +151,20 @@ def test_halves_are_rounded_away_from_zero() -> None:
     assert frame.data[:6] == bytes((3, 1, 0xFF, 0xFF, 0xFF, 2))
 
 
+@pytest.mark.parametrize("length", range(3, 9))
+def test_of_three_wrong_bits_no_more_go_unnoticed_than_is_said(length: int) -> None:
+    """The check is linear: what a wrong bit changes of it depends on neither the others nor the data."""
+    none = check_of(0, bytes(length - 1))
+    of_data = [
+        check_of(0, (1 << bit).to_bytes(length - 1, "little")) ^ none for bit in range(8 * (length - 1))
+    ]
+    of_data += [1 << bit for bit in range(8)]
+    of_id = [check_of(1 << bit, bytes(length - 1)) ^ none for bit in range(11)]
+    for changes, least in ((of_data, 1 / 196), (of_data + of_id, 1 / 192)):
+        unnoticed = [a ^ b == c for a, b, c in combinations(changes, 3)]
+        assert 0.0 < sum(unnoticed) / len(unnoticed) < least
+
+
 def test_the_check_is_that_of_the_standard() -> None:
     """CRC-8 SAE J1850 of the digits 1 to 9 is 0x4B."""
     text = b"123456789"
