@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mmrs_core.generation.scaffolding.files import TASK_KINDS, plain, plugin_files
@@ -59,6 +59,7 @@ def test_every_name_makes_names_that_python_takes(name):
 
 
 @pytest.mark.parametrize("kind", TASK_KINDS)
+@settings(deadline=None)
 @given(NAMES)
 def test_every_name_fits_into_every_file(kind, name):
     try:
