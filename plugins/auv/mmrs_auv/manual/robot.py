@@ -35,6 +35,9 @@ TOLD = (mavlink.MAVLINK_MSG_ID_ATTITUDE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_
 TOLD_EVERY = 100_000
 """Microseconds."""
 
+NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
+"""What heading and depth are told by, and after how many seconds without they are not known any more."""
+
 LINK_PATIENCE, FIRST_SIGN = 5.0, 60.0
 INSISTING, PATIENCE = 12, 3.0
 """Times that something is asked for until it is done, and seconds between them."""
@@ -222,6 +225,11 @@ class ManualRobot:
             raise faults.Fault(faults.LINK_LOST, f"not heard for {LINK_PATIENCE:g} s")
         if not self._in_depth_hold():
             raise faults.Fault("TAKEN_OVER", "somebody has changed the mode")
+        if not self._armed():
+            raise faults.Fault(faults.MOTORS_OFF, "somebody, or the vehicle itself, has disarmed it")
+        age = max(map(self._link.since, NEEDED))
+        if age > STALE > self._link.silent_for():
+            raise faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
         with self._lock:
             before = self._helm.reached
             sticks = self._helm.step(now, self._heading() or 0.0, self._depth_heard() or 0.0)

@@ -10,11 +10,14 @@ from math import hypot
 
 import pytest
 from mmrs_auv.manual import ARDUSUB_MANUAL
+from mmrs_auv.manual.robot import TOLD
 from mmrs_auv.names import AUV_MOVEMENT
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.behaviour.program import Heading, Target
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UnsupportedError
+from mmrs_core.flight.services.commands import command
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.scene import Capability, Frame, Part, RobotType
 from mmrs_core.sitl import Settings, SimulatedVehicle
@@ -128,6 +131,26 @@ def test_where_the_robot_is_is_reckoned():
         east, north, up = driven.backend.state(driven.clock.now()).position
         assert (east, north) == pytest.approx((6.0, 0.0), abs=0.5)
         assert up == pytest.approx(-2.0, abs=0.4)
+
+
+@pytest.mark.parametrize("number", TOLD)
+def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), -1.0)
+        until(lambda: driven.fault)
+        assert driven.fault.which == "POSITION_LOST"
+        until(lambda: not driven.vehicle.autopilot.armed)
+
+
+def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        command(driven.backend._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+        until(lambda: driven.fault or driven.backend.finished(driven.clock.now()))
+        assert driven.fault.which == "MOTORS_OFF"
 
 
 def test_a_vehicle_that_hears_no_sticks_any_more_stops():
