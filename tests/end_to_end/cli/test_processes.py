@@ -28,22 +28,22 @@ def cpu_seconds(*arguments):
 
 
 def cost(*arguments):
-    """Return the least processor time of two runs, as a multiple of what it takes to import geometry.
+    """Return the least processor time of three runs, as a multiple of what it takes to import geometry.
 
     That takes a third of a second on the machine of the gate; busy neighbours make both slower.
     """
     imports = ("python", "-c", "import numpy, pyproj, shapely")
-    runs = [(cpu_seconds(*arguments), cpu_seconds(*imports)) for _ in range(2)]
+    runs = [(cpu_seconds(*arguments), cpu_seconds(*imports)) for _ in range(3)]
     return min(command for command, _ in runs) / min(unit for _, unit in runs)
 
 
 def test_help_costs_less_than_half_a_second():
-    assert cost("mmrs", "--help") < 1.4
+    assert cost("mmrs", "--help") < 1.5
 
 
 @pytest.mark.parametrize("example", ["carbon-dioxide", "mixed-team"])
 def test_validating_an_example_costs_less_than_a_second_and_a_half(example):
-    assert cost("mmrs", "validate", shipped("examples") / example) < 4.2
+    assert cost("mmrs", "validate", shipped("examples") / example) < 4.5
 
 
 def test_help_imports_nothing_heavy():
