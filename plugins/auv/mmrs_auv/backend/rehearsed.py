@@ -25,7 +25,7 @@ from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput
-from mmrs_core.contributions.execution import RobotState, Sample
+from mmrs_core.contributions.execution import Fault, RobotState, Sample
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.scene import Position
 
@@ -98,6 +98,17 @@ class Stage:
                     state.east + thing.east - truth.east,
                     state.depth + thing.depth - truth.depth,
                 )
+        return None
+
+    def struck(self) -> Fault | None:
+        """Return that the hull, taken for an upright cylinder of its width, touches an obstacle."""
+        truth, half = self.vehicle.truth, self.sheet.height / 2.0
+        for each in self.surroundings.obstacles:
+            beside = dist((truth.north, truth.east), (each.north, each.east))
+            level = each.top - half < truth.depth < each.bottom + half
+            if level and beside < each.radius + self.sheet.width / 2.0:
+                place = f"{each.north:.1f} m north, {each.east:.1f} m east"
+                return Fault("CRASHED", f"it has hit the obstacle {place} of the origin", "SURFACE")
         return None
 
     def in_sight(self) -> dict[str, Vector]:
@@ -173,6 +184,7 @@ class RehearsedRobot(CanRobot):
         self.stage = stage
         self.notes: list[str] = []
         self._samples: list[Sample] = []
+        self._struck: Fault | None = None
         sight = stage.sees if options.objects in ("seen", "cameras") else None
         duties = Duties(given, sheet, Waters(given.program.frame.surface), sight)
         duties.charged = self._charge
@@ -189,6 +201,11 @@ class RehearsedRobot(CanRobot):
         """Begin a device or feedback action."""
         self._look(now)
         super().act(action, now)
+
+    def fault(self, now: float) -> Fault | None:
+        """Return what went wrong up to now; a vehicle that has hit something has crashed."""
+        found = super().fault(now)
+        return found if found is not None or self._response else self._struck
 
     def next_event(self, now: float) -> float | None:
         """Return when to look again."""
@@ -213,6 +230,7 @@ class RehearsedRobot(CanRobot):
         while now - self.stage.rehearsal.now > TICK:
             self.stage.advance(min(now, self.stage.rehearsal.now + SAMPLE))
             self._sample()
+            self._struck = self._struck or self.stage.struck()
         super()._look(now)
 
     def _sample(self) -> None:
