@@ -8,10 +8,7 @@ import socket
 import struct
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import suppress
 from itertools import pairwise
 from random import Random
 
@@ -23,7 +20,7 @@ from hypothesis import strategies as st
 from mmrs_auv.vessel.hosting import tells_time
 from mmrs_auv.vessel.wire import hub as hubs
 from mmrs_auv.vessel.wire.frame import Frame
-from mmrs_auv.vessel.wire.hub import MOST_RATE, Hub, Troubles, corrupted, is_loopback, log_line
+from mmrs_auv.vessel.wire.hub import Hub, Troubles, corrupted, is_loopback, log_line
 from mmrs_auv.vessel.wire.socketcand import LONGEST, frame_of, frame_word, words_of
 
 FRAMES = st.one_of(
@@ -236,57 +233,6 @@ def test_a_client_that_does_not_read_misses_frames_and_holds_up_nobody() -> None
         while slow.word() != "< ok >":
             pass
         assert slow.word() == "< ok >"  # it hears what came first
-
-
-def test_a_client_that_says_too_much_waits_and_the_others_hear_each_other(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    block = b"< send 7ff 8 1 2 3 4 5 6 7 8 >" * 200
-    ended = threading.Event()
-
-    def flood(client: Raw) -> None:
-        with suppress(OSError):
-            while not ended.is_set():
-                client.socket.sendall(block)
-
-    def drain(client: Raw) -> None:
-        with suppress(OSError):
-            while client.socket.recv(65536):
-                pass
-
-    def frames(client: Raw) -> Iterator[str]:
-        while word := client.word():
-            if word.startswith("< frame 100 "):
-                yield word
-
-    with (
-        running() as hub,
-        Raw(hub.port) as loud,
-        Raw(hub.port) as said,
-        Raw(hub.port) as heard,
-        Raw(hub.port) as slow,
-    ):
-        slow.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-        threads = [threading.Thread(target=act, args=(loud,)) for act in (flood, drain)]
-        threads.append(threading.Thread(target=drain, args=(said,)))
-        for thread in threads:
-            thread.start()
-        arriving, late = frames(heard), []
-        for number in range(60):
-            begin = time.monotonic()
-            said.say(f"< send 100 1 {number:x} >")
-            assert next(arriving).endswith(f" {number:02X} >")
-            late.append(time.monotonic() - begin)
-            time.sleep(0.02)
-        ended.set()
-        assert sorted(late)[len(late) // 2] < 0.25
-        assert hub.hub.counts["slowed"] > 50
-        assert hub.hub.counts["frames"] < 60 + MOST_RATE * (sum(late) + 60 * 0.03 + 1.0)
-        assert hub.hub.counts["lost"] == 0
-        for client in (loud, said):
-            client.socket.shutdown(socket.SHUT_RDWR)
-        for thread in threads:
-            thread.join(10)
 
 
 def test_clients_that_are_killed_are_forgotten() -> None:
