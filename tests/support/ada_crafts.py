@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import struct
 import subprocess
@@ -35,6 +36,12 @@ SCRIPT = Path(__file__).parents[2] / "plugins" / "auv" / "tests" / "targets" / "
 KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 MESSAGES: Sequence[Message] = [KNOWN[name] for name in (*SPOKEN, *HEARD)]
 OBJECTS = ("a buoy", 'gate "1"', "é")
+NAMES = (
+    b'"a\\u0020\\u0062uoy"', b'"gate \\u00221\\""', b'"\\u00e9"', b'"\xc3\xa9"', b'"a buoy\\n"', b'"a\x01"',
+    b'"\\ud83e"', b'"\\ud83e\\udd91"', b'"\\x"', b'""', b'"' + 81 * b"a" + b'"', b"7",
+)  # fmt: skip
+"""Names as others write them: some are the same as those of objects, some are none."""
+
 GREATEST = struct.unpack(">d", bytes.fromhex("7fefffffffffffff"))[0]
 
 
@@ -311,7 +318,15 @@ def some_datagram(random: Random, time: float) -> bytes:
     confidence = random.choice([0.9] * 6 + [0.5, 0.49, 1.01])
     camera = random.choice(CAMERAS)
     data = to_datagram(Detection(time, OBJECTS[number], confidence, north, east, depth, camera))
-    match random.choice(["as it is"] * 8 + ["cut", "text", "less"]):
+    match random.choice(["as it is"] * 8 + ["cut", "text", "less", "other hand", "name", "camera"]):
+        case "other hand":
+            tight = random.choice([(",", ":"), (" ,\t", " : ")])
+            return json.dumps(json.loads(data), ensure_ascii=False, separators=tight).encode()
+        case "name":
+            named = json.dumps(json.loads(data)["name"]).encode()
+            return data.replace(named, random.choice(NAMES))
+        case "camera":
+            return data.replace(f'"{camera}"'.encode(), b'"side"')
         case "cut":
             return data[: random.randrange(1, len(data) - 1)]
         case "text":

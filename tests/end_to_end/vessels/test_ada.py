@@ -238,8 +238,9 @@ def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -
     behaviour = dive(hold, transitions={1: Transition(1, 2, condition="charged", otherwise=2)})
     robot = write(behaviour, tmp_path / "out")
     conditions = robot / "conditions.adb"
-    mine = conditions.read_text().replace("      if Condition", "      delay 6.0;\n      if Condition", 1)
-    conditions.write_text(mine)
+    asked = "return Undecided.Nobody_Says (Condition, Known);\n      end if;"
+    slow = "delay (if Known.Charge < 0.0 then 0.0 else 6.0);\n         return True;\n      end if;"
+    conditions.write_text(conditions.read_text().replace(asked, slow))
     found = run(build(robot), behaviour, tmp_path)
     assert found.status == 1
     reasons = [each.values["Reason"] for each in found.world.said("Emergency")]

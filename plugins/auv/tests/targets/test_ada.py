@@ -217,6 +217,11 @@ def test_what_is_no_number_is_refused_and_its_move_left_out_where_that_is_allowe
     assert "Made := (Kind => Holds, Way => Takes" in mission_of(dive(moved), allow_lossy=True)
 
 
+@pytest.mark.parametrize(("speed", "said"), [(0.001, "0.02"), (0.3, "0.3"), (9.0, "0.8"), (None, "0.6")])
+def test_speeds_are_those_that_the_vehicle_can_and_its_bus_can_say(speed, said):
+    assert f"Made.Speed := {said}" in mission_of(dive(swim("a", 1.0, 2.0, 1.0, speed=speed)))
+
+
 def test_batteries_are_charged_at_the_surface():
     behaviour = dive(move("r", "Recharge", duration=9.0))
     assert list(refusals(input_of(behaviour))) == []

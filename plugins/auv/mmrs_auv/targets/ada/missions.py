@@ -12,6 +12,7 @@ from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
 from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, mount_of, of_action, of_movement
 from mmrs_auv.targets.moves import seconds_of
+from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
 from mmrs_core.behaviour.log import log_name
 from mmrs_core.behaviour.policies import patience
@@ -140,7 +141,7 @@ class Mission:
     def _speed(self, move: Move) -> float:
         """Return metres per second, no more than the vehicle can, or its bus can say."""
         fastest = self._speeds[1] if self._speeds is not None else MOST_SPEED
-        return min(self._context.speed(move) or 0.0, fastest, MOST_SPEED)
+        return _sayable(min(self._context.speed(move) or 0.0, fastest))
 
     def _cruise(self) -> float:
         """Return metres per second at which the vehicle goes back; 0: as it likes."""
@@ -148,7 +149,7 @@ class Mission:
             return 0.0
         slowest, fastest = self._speeds
         factor = TRAVEL_FACTORS.get(self._context.robot.travel_mode, 0.75)
-        return min(max(slowest, factor * fastest), MOST_SPEED)
+        return _sayable(max(slowest, factor * fastest))
 
     @property
     def _speeds(self) -> tuple[float, float] | None:
@@ -231,6 +232,11 @@ def _standard(condition: str) -> Mapping[str, object]:
     if is_standard(condition) and word in UNITS:
         return {"word": word, "argument": _json(rest)}
     return {"word": ""}
+
+
+def _sayable(speed: float) -> float:
+    """Return a speed that can be said on the bus, where 0 stands for one that the vehicle likes."""
+    return min(max(speed, SLOWEST), MOST_SPEED) if speed > 0.0 else 0.0
 
 
 def _duration(move: Move) -> float:

@@ -14,6 +14,7 @@ with Step_Log;
 with Tracks;
 with Undecided;
 with Ways;
+with Wire;
 
 package body Machine is
 
@@ -30,6 +31,7 @@ package body Machine is
 
    Nothing : constant String := """""";
 
+   procedure Keep_Place;
    procedure Stay (Plan : Plans.Plan; Seconds : Long_Float);
    procedure Use_Device (Plan : Plans.Plan; Does : Action);
    procedure Act (Plan : Plans.Plan; At_Move : Move; Actions : Action_Lists.Vector);
@@ -45,9 +47,23 @@ package body Machine is
    procedure Carry_Out (Plan : Plans.Plan);
    procedure End_Early (Plan : Plans.Plan; What : Event);
 
+   --  Hold where the vehicle is unless it was given a goal before, which is in force then.
+   procedure Keep_Place is
+      Known : constant Craft.State := Vehicle.Told;
+      Here  : Place := Known.Here;
+   begin
+      if Vehicle.Wanted.Mode = MODE_IDLE and then Vehicle.Wanted.Number = 0 then
+         Here.Depth := Long_Float'Max (0.0, Here.Depth);
+         Vehicle.Begin_Goal ((Mode => MODE_HOLD, Where => Here, Heading => Known.Heading, others => <>));
+      end if;
+   end Keep_Place;
+
    procedure Stay (Plan : Plans.Plan; Seconds : Long_Float) is
       Until_Then : constant Long_Float := Now + Seconds;
    begin
+      if Seconds > 0.0 then
+         Keep_Place;
+      end if;
       while Now < Until_Then loop
          Pause (Plan);
       end loop;
@@ -179,6 +195,7 @@ package body Machine is
          else
             Alone_Since := Endless;
          end if;
+         Keep_Place;
          Pause_Within (Plan, Since);
       end loop;
    end Wait;
@@ -247,6 +264,7 @@ package body Machine is
             Along : Move renames Plan.Moves (Current).Element.all;
             Id    : constant String := To_String (Along.Id);
          begin
+            Look (Plan);
             Enter (Plan, Inside, Along.Task_Number);
             Put_Line ("begins " & To_String (Along.Name));
             Act (Plan, Along, Along.Before);
@@ -295,6 +313,10 @@ package body Machine is
       when Error : Step_Log.Unwritten =>
          Put_Line (Standard_Error, Exception_Message (Error));
          End_Early (Plan, LOG_FAILED);
+         return False;
+      when Wire.Out_Of_Range =>
+         Put_Line (Standard_Error, "leads where its bus can say nothing of");
+         End_Early (Plan, NO_PROGRESS);
          return False;
       when Error : others =>
          Put_Line (Standard_Error, Exception_Information (Error));

@@ -25,7 +25,6 @@ package body Responses is
    procedure Hold (Plan : Plans.Plan);
    procedure Do_It (Plan : Plans.Plan; By : Response);
    function First (What : Event; Answer : Response_To) return Response;
-   function Plainer (Than : Response; Is_Low : Boolean) return Response;
 
    --  Come up, by thrust unless the dive was given up, as long as the bus is there.
    procedure Come_Up is
@@ -86,13 +85,9 @@ package body Responses is
       elsif What in LINK_LOST | PEER_LOST then Comes_Up
       else Holds_Place);
 
-   function Plainer (Than : Response; Is_Low : Boolean) return Response is
-     (if Than = Holds_Place or else Is_Low then Comes_Up else Holds_Place);
-
    procedure Carry_Out (Plan : Plans.Plan; What : Event; Answer : Response_To) is
-      By     : Response := First (What, Answer);
-      Is_Low : Boolean := What = BATTERY_LOW;
-      Other  : Event;
+      By    : Response := First (What, Answer);
+      Other : Event;
    begin
       Answered (What);
       loop
@@ -104,8 +99,7 @@ package body Responses is
             when Error : Failed =>
                Other := Event'Value (Exception_Message (Error));
                Answered (Other);
-               Is_Low := Is_Low or else Other = BATTERY_LOW;
-               By := (if Other = NO_PROGRESS then Plainer (By, Is_Low) else First (Other, Answer));
+               By := First (Other, Answer);
          end;
       end loop;
       delay Farewell;

@@ -4,6 +4,7 @@ with Ada.Strings.Fixed;     use Ada.Strings.Fixed;
 with Ada.Strings.Maps;
 with Ada.Strings.Unbounded; use Ada.Strings.Unbounded;
 with Clocks;
+with Datagrams;
 with GNAT.Sockets;          use GNAT.Sockets;
 with Undecided;
 
@@ -62,9 +63,12 @@ package body Sight is
    Listening : Boolean := False;
    pragma Atomic (Listening);
 
-   function Number_After (Line, Key : String) return Long_Float;
-   function Within (Line, Key : String; Low, High : Long_Float) return Long_Float;
-   function Name_After (Line, Key : String) return Unbounded_String;
+   function Name_In (Line, Key : String) return Unbounded_String is
+     (To_Unbounded_String (Datagrams.Name_Of (Line, Key)));
+
+   function Camera_In (Line : String) return Unbounded_String is
+     (if Datagrams.Name_Of (Line, "camera") in """front""" | """bottom""" then Name_In (Line, "camera")
+      else raise Constraint_Error);
 
    function Median (Of_Numbers : Reals.Vector) return Long_Float is
       Sorted : Reals.Vector := Of_Numbers;
@@ -170,58 +174,20 @@ package body Sight is
       function Seen_So_Far return Thing_Lists.Vector is (Things);
    end Memory;
 
-   function Number_After (Line, Key : String) return Long_Float is
-      Mark  : constant String := """" & Key & """: ";
-      Place : constant Natural := Index (Line, Mark);
-      First : constant Natural := Place + Mark'Length;
-   begin
-      for Last in First .. Line'Last loop
-         if Place > 0 and then Line (Last) in ',' | '}' then
-            return Long_Float'Value (Line (First .. Last - 1));
-         end if;
-      end loop;
-      raise Constraint_Error with "no " & Key;
-   end Number_After;
-
-   function Within (Line, Key : String; Low, High : Long_Float) return Long_Float is
-      Found : constant Long_Float := Number_After (Line, Key);
-   begin
-      if not (Found >= Low and then Found <= High) then
-         raise Constraint_Error with Key;
-      end if;
-      return Found;
-   end Within;
-
-   --  A text, as it stands in JSON.
-   function Name_After (Line, Key : String) return Unbounded_String is
-      Mark  : constant String := """" & Key & """: """;
-      Place : constant Natural := Index (Line, Mark);
-      First : constant Natural := Place + Mark'Length;
-      Last  : Natural := First;
-   begin
-      while Place > 0 and then Last <= Line'Last loop
-         if Line (Last) = '"' then
-            return To_Unbounded_String (Line (First - 1 .. Last));
-         end if;
-         Last := Last + (if Line (Last) = '\' then 2 else 1);
-      end loop;
-      raise Constraint_Error with "no " & Key;
-   end Name_After;
-
    procedure Take (Line : String; Now : Long_Float) is
       Text : constant String := Trim (Line, Blank, Blank);
    begin
       if Text = "" or else Text (Text'Last) /= '}' then
          return;
-      elsif Within (Line, "confidence", 0.0, 1.0) >= Confidence then
+      elsif Datagrams.Number_Of (Line, "confidence", 0.0, 1.0) >= Confidence then
          Memory.Keep
-           ((Name   => Name_After (Line, "name"),
-             Camera => Name_After (Line, "camera"),
-             Time   => Within (Line, "time", 0.0, 1.0E12),
+           ((Name   => Name_In (Line, "name"),
+             Camera => Camera_In (Line),
+             Time   => Datagrams.Number_Of (Line, "time", 0.0, 1.0E12),
              Where  =>
-               (North => Within (Line, "north", -Farthest, Farthest),
-                East  => Within (Line, "east", -Farthest, Farthest),
-                Depth => Within (Line, "depth", -Farthest, Deepest)),
+               (North => Datagrams.Number_Of (Line, "north", -Farthest, Farthest),
+                East  => Datagrams.Number_Of (Line, "east", -Farthest, Farthest),
+                Depth => Datagrams.Number_Of (Line, "depth", -Farthest, Deepest)),
              Since  => Now));
       end if;
    exception
