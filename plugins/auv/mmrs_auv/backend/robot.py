@@ -125,6 +125,8 @@ class CanRobot:
     def wait(self, now: float) -> None:
         """Hold the pose: the last goal stays in force."""
         self._look(now)
+        if self._helm.watch is not None:
+            self._craft.stay()
 
     def state(self, now: float) -> RobotState:
         """Return what the vehicle has told last."""

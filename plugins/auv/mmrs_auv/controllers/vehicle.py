@@ -171,7 +171,10 @@ class CanVehicle:
         raise Refused("there is no mission on a CAN bus")
 
     def rest(self, seconds: float) -> None:
-        """Stay for so many seconds: the last goal stays in force."""
+        """Stay for so many seconds: the last goal stays in force, if there was one."""
+        if seconds > 0.0:
+            self._craft.stay()
+            self._armed = True
         until = self._clock.now() + seconds
         while (left := until - self._clock.now()) > 0.0:
             before = self._clock.now()

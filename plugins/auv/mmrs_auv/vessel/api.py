@@ -87,6 +87,7 @@ class Craft:
             "DeviceStatus": self._hear_device,
         })  # fmt: skip
         self._goal = Goal()
+        self._aimless = True
         self._state = State()
         self._devices: dict[int, str] = {}
         self._requests: dict[int, dict[str, float]] = {}
@@ -136,6 +137,11 @@ class Craft:
                 here.heading if heading is None else heading,
             )
         )
+
+    def stay(self) -> None:
+        """Hold where the vehicle is unless it was given a goal before, which is in force then."""
+        if self._aimless:
+            self.hold()
 
     def turn(self, heading: float) -> int:
         """Turn to a heading on the spot, degrees; return the goal's number."""
@@ -255,7 +261,7 @@ class Craft:
         with self._lock:
             goal = replace(goal, number=(self._goal.number + 1) % GOALS)
             check_goal(self._codec, goal)
-            self._goal = goal
+            self._goal, self._aimless = goal, False
             self._state = replace(self._state, goal=goal.number, progress="NONE", distance=0.0)
             return goal.number
 

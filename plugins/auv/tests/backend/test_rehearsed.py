@@ -12,7 +12,7 @@ from mmrs_auv.backend.rehearsed import RehearsedRobot
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 from mmrs_auv.vessel.movement import progress
 
-from mmrs_core.behaviour.program import Action, Heading, Target, Transition
+from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transition
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
@@ -27,6 +27,10 @@ AFLOAT = 0.4
 
 def with_parameter(text: str) -> Action:
     return replace(SAMPLE, parameters=(("seconds", text),))
+
+
+def feedback_move() -> Move:
+    return replace(move("tell", "HoldPosition", duration=0.0), after=(feedback("there"),))
 
 
 def at(robot: RehearsedRobot) -> tuple[float, float, float]:
@@ -251,6 +255,23 @@ def test_the_same_seed_gives_the_same_run(tmp_path: Path) -> None:
     runs = [rehearse(behaviour, tmp_path / f"{n}", seed=seed) for n, seed in enumerate("778")]
     ends = [at(each.robots["naiad"]) for each in runs]
     assert ends[0] == ends[1] != ends[2]
+
+
+@pytest.mark.parametrize("begins", ["holds", "waits"])
+def test_a_vehicle_that_is_to_stay_where_it_begins_is_not_swept_away(tmp_path: Path, begins: str) -> None:
+    held = move("stay", "HoldPosition", duration=20.0)
+    waits = {0: Transition(0, 1, waits=("go",))}
+    other = robot_program(
+        "two",
+        [replace(held, after=(notify(("naiad", "go")),))],
+        home=(0.0, 9.0, -0.5),
+        type_name="Pool AUV",
+    )
+    stays = dive(held) if begins == "holds" else dive(feedback_move(), slots=("go",), transitions=waits)
+    behaviour = stays if begins == "holds" else replace(stays, robots=(*stays.robots, other))
+    found = rehearse(behaviour, tmp_path, current="0.2,0", noise="no")
+    assert found.run.ending.outcome is Outcome.SUCCESS
+    assert abs(at(found.robots["naiad"])[1]) < 0.6
 
 
 @pytest.mark.parametrize(

@@ -152,6 +152,8 @@ class Stay:
         """Begin, or go on after a pause."""
         if self._hold:
             craft.hold()
+        elif self._left > 0.0:
+            craft.stay()
         self._since = None
 
     def done(self, craft: Craft, now: float) -> bool:
