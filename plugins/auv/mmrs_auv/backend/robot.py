@@ -25,6 +25,9 @@ from mmrs_core.scene import Position
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
 NO_WAY = "no way is known back to where its program was broken off"
+UNHEARD = 60.0
+"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told; it comes up."""
+
 EMPTY = 0.001
 """Part of the battery with which nothing works any more."""
 
@@ -64,7 +67,7 @@ class CanRobot:
         self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
         self._afloat = float(abilities_of(sheet).afloat)
         self._response, self._instead = "", ""
-        self._given_up = False
+        self._given_up = self._unheard = False
         self._silent_device: Fault | None = None
         self._now = 0.0
         self._told: dict[str, Position] = {}
@@ -97,6 +100,9 @@ class CanRobot:
         """Return what went wrong up to now."""
         self._look(now)
         found = self._helm.failure(now)
+        if found is not None and self._response and self._craft.state().silent > UNHEARD:
+            instead, self._unheard = "" if self._unheard else "SURFACE", True
+            return Fault(LINK_LOST, found.reason, instead)
         if found is None or (self._response and not self._overtakes(found)):
             return self._silent_device
         return self._fault(found)

@@ -131,9 +131,15 @@ def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
         robot.stage.craft.hear = lambda frame, now: hear(frame, now) if now < 5.0 else None  # type: ignore
 
     found = rehearse(dive(swim("out", 12.0, 0.0, 2.0)), tmp_path, deafen)
+    robot = found.robots["naiad"]
     assert found.fault == "LINK_LOST"
     assert list(found.run.ending.responses.values()) == ["SURFACE"]
-    assert at(found.robots["naiad"])[2] < AFLOAT
+    assert at(robot)[2] < AFLOAT
+    faults = [robot.fault(robot._now) for _ in range(3)]
+    assert [(each.which, each.instead) for each in faults if each] == [
+        ("LINK_LOST", "SURFACE"),
+        *[("LINK_LOST", "")] * 2,
+    ]
 
 
 def test_policies_of_the_program_count(tmp_path: Path) -> None:
