@@ -32,6 +32,7 @@ package body Machine is
    Nothing : constant String := """""";
 
    procedure Keep_Place;
+   procedure Stay_Put;
    procedure Stay (Plan : Plans.Plan; Seconds : Long_Float);
    procedure Use_Device (Plan : Plans.Plan; Does : Action);
    procedure Act (Plan : Plans.Plan; At_Move : Move; Actions : Action_Lists.Vector);
@@ -58,9 +59,20 @@ package body Machine is
       end if;
    end Keep_Place;
 
+   --  Hold where the vehicle is, unless a goal is in force.
+   procedure Stay_Put is
+   begin
+      if Vehicle.Wanted.Mode = MODE_IDLE then
+         Ways.Hold;
+      end if;
+   end Stay_Put;
+
    procedure Stay (Plan : Plans.Plan; Seconds : Long_Float) is
       Until_Then : constant Long_Float := Now + Seconds;
    begin
+      if Seconds > 0.0 then
+         Stay_Put;
+      end if;
       if Seconds > 0.0 then
          Keep_Place;
       end if;
@@ -187,6 +199,7 @@ package body Machine is
    begin
       loop
          exit when Slots.Pass (Along);
+         Stay_Put;
          if Slots.Is_Hopeless (Along) then
             Alone_Since := Long_Float'Min (Alone_Since, Now);
             if Now - Alone_Since >= Patience (PEER_LOST) then

@@ -43,11 +43,8 @@ package body Responses is
 
    --  Stay where the vehicle is, by thrust, until something else goes wrong or nobody is there any more.
    procedure Hold (Plan : Plans.Plan) is
-      Known : constant State := Vehicle.Told;
-      Here  : Place := Known.Here;
    begin
-      Here.Depth := Long_Float'Max (0.0, Here.Depth);
-      Vehicle.Begin_Goal ((Mode => MODE_HOLD, Where => Here, Heading => Known.Heading, others => <>));
+      Ways.Hold;
       while not Bus.Is_Gone loop
          Pause (Plan);
          if Vehicle.Told.Progress = PROGRESS_FAILED then

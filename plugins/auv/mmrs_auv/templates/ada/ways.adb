@@ -140,6 +140,14 @@ package body Ways is
       end if;
    end Turn;
 
+   procedure Hold is
+      Known : constant State := Vehicle.Told;
+      Here  : Place := Known.Here;
+   begin
+      Here.Depth := Long_Float'Max (0.0, Here.Depth);
+      Vehicle.Begin_Goal ((Mode => MODE_HOLD, Where => Here, Heading => Known.Heading, others => <>));
+   end Hold;
+
    procedure Back_Out (Plan : Plans.Plan) is
    begin
       for Each of Tracks.Way_Back (Plan, Vehicle.Told.Here) loop

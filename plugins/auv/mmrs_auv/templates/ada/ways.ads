@@ -10,6 +10,9 @@ package Ways is
    --  Turn on the spot. Raises Alarms.Failed.
    procedure Turn (Plan : Plans.Plan; To : Plans.Move);
 
+   --  Begin to stay where the vehicle is.
+   procedure Hold;
+
    --  Go back by the way that the vehicle came. Raises Alarms.Failed.
    procedure Back_Out (Plan : Plans.Plan);
 
