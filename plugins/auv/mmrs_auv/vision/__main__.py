@@ -16,6 +16,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from queue import SimpleQueue
 from urllib.parse import quote
 
 from ..vessel.body.surroundings import Surroundings
@@ -39,9 +40,7 @@ def main(words: Sequence[str] | None = None) -> int:
     """Serve until SIGTERM, SIGINT or the end of a file; return the exit status."""
     given = _parser().parse_args(words)
     logging.getLogger("can").setLevel(logging.ERROR)
-    stop = threading.Event()
-    for sign in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(sign, lambda _signal, _frame: stop.set())
+    stop = stopped_by_signals()
     try:
         import cv2
 
@@ -64,6 +63,25 @@ def main(words: Sequence[str] | None = None) -> int:
         if given.figures:
             given.figures.write_text(f"{time.process_time():.3f}\n", encoding="utf-8")
     return 0
+
+
+def stopped_by_signals() -> threading.Event:
+    """Return what SIGTERM and SIGINT set.
+
+    A thread sets it: who waits for an event holds its lock now and then, and a signal that comes just then
+    would wait for that lock for ever.
+    """
+    stop = threading.Event()
+    told: SimpleQueue[int] = SimpleQueue()
+
+    def heed() -> None:
+        told.get()
+        stop.set()
+
+    threading.Thread(target=heed, name="signals", daemon=True).start()
+    for sign in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(sign, lambda number, _frame: told.put(number))
+    return stop
 
 
 def _parser() -> argparse.ArgumentParser:
