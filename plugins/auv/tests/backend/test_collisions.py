@@ -20,3 +20,10 @@ def test_a_vehicle_does_not_go_through_obstacles(tmp_path: Path, north: float, o
     assert found.run.ending.outcome is outcome
     assert found.accepted
     assert found.fault == ("CRASHED" if outcome is Outcome.FAILED else "")
+
+
+def test_a_vehicle_that_pressed_on_the_bottom_comes_up(tmp_path: Path) -> None:
+    found = rehearse(dive(swim("out", 2.0, 0.0, 2.6)), tmp_path, bottom="2.5", noise="no")
+    vehicle = found.robots["naiad"].stage.vehicle
+    assert found.fault == "NO_PROGRESS"
+    assert vehicle.truth.depth < 0.5

@@ -89,7 +89,8 @@ class Loops:
 
     Gains are per unit of mass, so that they hold for every vehicle; drag at the wanted speed through the
     water and the weight in water are fed forward, and what is left is integrated. Integrals wait while
-    thrusters cannot give what is asked, unless that would make it less.
+    thrusters cannot give what is asked, and while errors are large, unless that would make them less: of a
+    vehicle that pressed against the ground nothing is left that keeps it there.
 
     Args:
         served: of surge, sway, heave, roll, pitch, yaw: whether thrusters can push along it.
@@ -129,9 +130,10 @@ class Loops:
     def _integrate(self, world: Array, error: Array, motion: Motion, period: float) -> None:
         """Integrate the error of speed along the body's axes, and keep it along those of the world."""
         can = self._abilities
-        near = np.abs(error) < ERROR
         rates = np.array((SPEED_INTEGRAL, SPEED_INTEGRAL, RISE_INTEGRAL))
-        more = world @ (can.mass[:3] * rates * error * near * np.array(self.served[:3])) * period
+        gained = can.mass[:3] * rates * error * np.array(self.served[:3]) * period
+        less = world @ gained
+        more = np.where(less * self._push < 0.0, less, world @ (gained * (np.abs(error) < ERROR)))
         if motion.depth < can.afloat:
             more[2] = max(0.0, more[2])
         if self.limited:
@@ -147,8 +149,9 @@ class Loops:
         rate = rate if left > 0.0 else -rate
         error = rate - radians(motion.yawing)
         drag = (can.linear[5] + can.quadratic[5] * abs(rate)) * rate
-        more = can.mass[5] * TURN_INTEGRAL * error * period if abs(error) < TURN_ERROR else 0.0
-        if not (self.limited and more * self._twist > 0.0):
+        more = can.mass[5] * TURN_INTEGRAL * error * period
+        less = more * self._twist < 0.0
+        if less or (abs(error) < TURN_ERROR and not self.limited):
             self._twist = min(max(self._twist + more, -can.most[5]), can.most[5])
         yaw = can.mass[5] * TURN_GAIN * error + drag + self._twist
         roll = -can.mass[3] * (TILT_GAIN * radians(motion.roll) + TILT_DAMPING * radians(motion.rolling))
