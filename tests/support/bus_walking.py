@@ -266,16 +266,19 @@ class GatewayBus:
                 time.sleep(0.3)
 
     def _read(self):
-        for line in self._lines:
-            content = json.loads(line)
-            with self._changed:
-                if content["is"] in ("granted", "waiting", "acknowledged", "refused"):
-                    self._deliveries[content["number"]].told(content)
-                elif content["is"] != "changed":
-                    self._answers.append(content)
-                self._changed.notify_all()
+        with suppress(ConnectionError):
+            for line in self._lines:
+                self._take(json.loads(line))
         with self._changed:
             self.over = True
+            self._changed.notify_all()
+
+    def _take(self, content):
+        with self._changed:
+            if content["is"] in ("granted", "waiting", "acknowledged", "refused"):
+                self._deliveries[content["number"]].told(content)
+            elif content["is"] != "changed":
+                self._answers.append(content)
             self._changed.notify_all()
 
 
