@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.catalogue import messages_of
 from mmrs_auv.vessel.wire.layout import layout_of
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move
-from mmrs_core.scene import Position
+from mmrs_core.scene import Position, RobotType
 
 DEVICE_ACTION = (BEHAVIOUR, "DeviceAction")
 ROUNDING = 1e-3
@@ -60,3 +61,26 @@ def parameter_of(action: Action) -> float:
         except ValueError:
             continue
     return 0.0
+
+
+def mount_of(device: str, type: RobotType | None) -> float:
+    """Return where a device points when the vehicle looks north, degrees clockwise; the front: 0."""
+    return _yaw(device, type) or 0.0
+
+
+def unturnable(device: str, type: RobotType | None) -> Iterator[str]:
+    """Yield why a vehicle cannot turn so that a device of it points somewhere."""
+    known = type.devices.get(device) if type is not None else None
+    if known is not None and "mavlink.gimbal" in known.properties:
+        yield f"device '{device}' turns by itself, where only the vehicle can be turned"
+    if _yaw(device, type) is None:
+        yield f"device '{device}': mount.yaw is no number"
+
+
+def _yaw(device: str, type: RobotType | None) -> float | None:
+    known = type.devices.get(device) if type is not None else None
+    try:
+        found = float(known.properties.get("mount.yaw", "0")) if known is not None else 0.0
+    except ValueError:
+        return None
+    return found if isfinite(found) else None

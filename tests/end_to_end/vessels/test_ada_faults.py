@@ -17,7 +17,7 @@ from mmrs_auv.vessel.eyes import Detection
 from waiting_pair import finding_pair, waiting_pair
 
 from mmrs_core.behaviour.log import read_logs
-from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, Program, Transition
 from mmrs_core.behaviour.reading import program_of
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.languages.reading import read_model
@@ -106,6 +106,22 @@ def test_what_goes_wrong_while_it_holds_is_answered_too(tmp_path):
         meddle=at(12.0, drained),
     )
     assert found.replayed.faults == {"naiad": "OBSTACLE"}
+    assert ways(found) == ["GO_TO", "HOLD", "SURFACE"]
+
+
+def test_a_condition_that_fails_has_the_vehicle_hold(tmp_path):
+    turn = {1: Transition(1, 2, condition="charged", otherwise=2)}
+    behaviour = dive(FAR, transitions=turn)
+    robot = write(behaviour, tmp_path / "out")
+    conditions = robot / "conditions.adb"
+    asked = "return Undecided.Nobody_Says (Condition, Known);\n      end if;"
+    fails = "return Known.Charge > Long_Float'Value (Condition);\n      end if;"
+    text = conditions.read_text()
+    assert asked in text
+    conditions.write_text(text.replace(asked, fails))
+    found = run(build(robot), behaviour, tmp_path, meddle=at(45.0, drained))
+    assert found.replayed.accepted, found.replayed.complaints
+    assert found.replayed.faults == {"naiad": "CONDITION_FAILED"}
     assert ways(found) == ["GO_TO", "HOLD", "SURFACE"]
 
 

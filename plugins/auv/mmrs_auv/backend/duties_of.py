@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from mmrs_auv.sayable import Bus
-from mmrs_auv.sayable import parameter_of as parameter_of
+from mmrs_auv.sayable import Bus, mount_of, parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_auv.vessel.decision.duties import (
     NO_PROGRESS,
@@ -166,7 +165,7 @@ class Duties:
             return None
         expected = self._waters.below(heading.target.position)
         north, east, _ = self._place(heading.target.description or "", expected)
-        return Look(north, east, heading.angle_degrees)
+        return Look(north, east, heading.angle_degrees + mount_of(heading.device, self._given.type))
 
     def _strange(self) -> Iterator[str]:
         bus = Bus(self._sheet, self._given.program.frame.surface)
@@ -176,4 +175,5 @@ class Duties:
                 yield f"move '{move.id}': {move.kind}"
             elif move.is_a(GO_TO) and (move.target is None or move.target.position is None):
                 yield f"move '{move.id}': nobody says where its object is expected"
-            yield from (f"move '{move.id}': {each}" for each in bus.refused(move))
+            facing = () if move.heading is None else unturnable(move.heading.device, self._given.type)
+            yield from (f"move '{move.id}': {each}" for each in (*bus.refused(move), *facing))

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import dist
 from pathlib import Path
 
+import dives
 import pytest
 from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
@@ -16,7 +17,7 @@ from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transitio
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import UnsupportedError
-from mmrs_core.scene import Area, AreaUse, Policy
+from mmrs_core.scene import Area, AreaUse, Device, Policy, RobotType
 from mmrs_core.testing.programs import feedback, move, notify, program, robot_program, take_off, use
 
 SAMPLE = use("ctd", "Sample")
@@ -61,6 +62,37 @@ def test_a_turn_points_where_it_is_to(tmp_path: Path) -> None:
     look = Heading(Target((10.0, 0.0, -0.5)))
     found = rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path, noise="no")
     assert found.robots["naiad"].stage.vehicle.truth.heading == pytest.approx(90.0, abs=6.0)
+
+
+def with_a_sonar(properties: dict[str, str]) -> RobotType:
+    kind = dives.diver()
+    return replace(kind, devices={**kind.devices, "sonar": Device("sonar", {}, properties)})
+
+
+def test_a_turn_points_a_device_that_looks_aside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = with_a_sonar({"mount.yaw": "-90"})
+    monkeypatch.setattr(dives, "diver", lambda: kind)
+    look = Heading(Target((10.0, 0.0, -0.5)), "sonar")
+    found = rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path, noise="no")
+    assert found.robots["naiad"].stage.vehicle.truth.heading == pytest.approx(180.0, abs=6.0)
+
+
+@pytest.mark.parametrize(
+    ("properties", "why"),
+    [
+        ({"mount.yaw": "aside"}, "device 'sonar': mount.yaw is no number"),
+        ({"mavlink.gimbal": "1"}, "device 'sonar' turns by itself, where only the vehicle can be turned"),
+    ],
+)
+def test_what_cannot_point_there_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, properties: dict[str, str], why: str
+) -> None:
+    kind = with_a_sonar(properties)
+    monkeypatch.setattr(dives, "diver", lambda: kind)
+    look = Heading(Target((10.0, 0.0, -0.5)), "sonar")
+    with pytest.raises(UnsupportedError) as error:
+        rehearse(dive(replace(move("turn", "HeadTo"), heading=look)), tmp_path)
+    assert f"move 'turn': {why}" in error.value.elements
 
 
 def test_moves_that_flow_do_not_stop(tmp_path: Path) -> None:

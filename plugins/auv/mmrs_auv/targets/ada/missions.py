@@ -6,11 +6,12 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 
-from mmrs_auv.backend.duties_of import ANSWER, parameter_of
+from mmrs_auv.backend.duties_of import ANSWER
 from mmrs_auv.names import IN_WATER_SIZE
+from mmrs_auv.sayable import mount_of, parameter_of
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
-from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, mount_of, of_action, of_movement
+from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, of_action, of_movement
 from mmrs_auv.targets.moves import seconds_of
 from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
@@ -124,7 +125,7 @@ class Mission:
         if sort in ("go", "turn") and move.heading is not None and move.heading.target.position is not None:
             yield "Looks", True
             yield "Seen", self._place(move.heading.target.position)
-            yield "Angle", move.heading.angle_degrees + mount_of(move.heading.device, self._context)
+            yield "Angle", move.heading.angle_degrees + mount_of(move.heading.device, self._context.type)
         if sort in ("hold", "charge"):
             yield "Seconds", _duration(move)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import isfinite
 
 from mmrs_auv.kinds import AUV_KIND
-from mmrs_core.behaviour.policies import AFTER, patience, response_to
+from mmrs_core.behaviour.policies import AFTER, LAST_RESORT, patience, response_to
 from mmrs_core.behaviour.program import RobotProgram
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.safety import policies_of
@@ -54,7 +54,10 @@ def view(policies: Sequence[Policy]) -> Mapping[str, object]:
     waits = ((event, _seconds(event, kept)) for event in LASTING)
     return {
         "bears": [(event, seconds) for event, seconds in waits if isfinite(seconds)],
-        "answer": [(event, RESPONSES[response_to(event, kept)]) for event in EVENTS],
+        "answer": [
+            *((event, RESPONSES[response_to(event, kept)]) for event in EVENTS),
+            ("CONDITION_FAILED", RESPONSES[LAST_RESORT]),
+        ],
     }
 
 

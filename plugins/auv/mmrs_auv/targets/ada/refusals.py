@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
-from mmrs_auv.backend.duties_of import parameter_of
+from mmrs_auv.sayable import parameter_of, unturnable
 from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada.bus import can_be_said, depth_step_of
 from mmrs_auv.targets.ada.policies import declared, obstacles_to
@@ -112,21 +112,6 @@ def of_action(action: Action, context: RobotContext) -> Iterator[str]:
             yield f"{field.lower()} {told:g} of device '{action.device}' is more than its bus can say"
 
 
-def mount_of(device: str, context: RobotContext) -> float:
-    """Return where a device points when the vehicle looks north, degrees clockwise; the front: 0."""
-    return _yaw(device, context) or 0.0
-
-
-def _yaw(device: str, context: RobotContext) -> float | None:
-    """Return the same; None where the property holds no number."""
-    known = context.type.devices.get(device) if context.type is not None else None
-    try:
-        found = float(known.properties.get("mount.yaw", "0")) if known is not None else 0.0
-    except ValueError:
-        return None
-    return found if isfinite(found) else None
-
-
 def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
     yield from of_movement(move, context, step)
     sort = SORTS.get(move.metaclasses[0])
@@ -138,20 +123,11 @@ def _of_move(move: Move, context: RobotContext, step: float) -> Iterator[str]:
         if move.heading is not None and move.heading.target.position is None:
             yield "nobody says where what it faces is"
     if move.heading is not None:
-        yield from _of_device(move.heading.device, context)
+        yield from unturnable(move.heading.device, context.type)
         if sort != "go" and sort != "turn":
             yield f"heading of a {move.kind}"
     for action in (*move.before, *move.after):
         yield from of_action(action, context)
-
-
-def _of_device(device: str, context: RobotContext) -> Iterator[str]:
-    """Yield why a device cannot point somewhere."""
-    known = context.type.devices.get(device) if context.type is not None else None
-    if known is not None and "mavlink.gimbal" in known.properties:
-        yield f"device '{device}' turns by itself, where only the vehicle can be turned"
-    if _yaw(device, context) is None:
-        yield f"device '{device}': mount.yaw is no number"
 
 
 def _described(policy: Policy) -> str:
