@@ -109,6 +109,10 @@ class ConnectedRobot(CanRobot):
             return self._unmet(now)
         return super().fault(now)
 
+    def watched(self, now: float) -> bool:
+        """Return whether somebody must stay with the vehicle; nobody can where the bus itself is gone."""
+        return self._connection.failure is None and super().watched(now)
+
     def next_event(self, now: float) -> float | None:
         """Return nothing: vehicles are looked at all the time."""
         return None
