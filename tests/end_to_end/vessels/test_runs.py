@@ -8,10 +8,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Generator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from dives import dive, diver, swim
+from mmrs_auv.backend.connected import ConnectedRobot
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
@@ -22,6 +24,7 @@ from mmrs_core.behaviour.log import LogWriter, read_logs
 from mmrs_core.behaviour.program import Program
 from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.contributions.registry import Contributions
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.generation.render import render
 from mmrs_core.generation.writing import write
@@ -69,24 +72,48 @@ def devices_confirm(folder: Path) -> bool:
     return start["link"] == "can" and start["confirms"] is True
 
 
-def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
+def venture_of(berth: Berth, contributions: Contributions, folder: Path) -> Venture:
+    """Return a dive of the vehicle by the interpreter."""
     behaviour, place = short_dive(), Place({diver().name: diver()}, (), {})
-    venture = Venture(
+    return Venture(
         behaviour,
         inputs_of(behaviour, place, contributions, options={"clock": "bus"}),
         InProcessBus(behaviour),
         {},
         clock=RealClock(SPEED),
-        folder=tmp_path / "logs",
+        folder=folder / "logs",
         links={"naiad": berth.channel},
     )
+
+
+def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
+    venture = venture_of(berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:
         ending = written(run_live(venture, contributions.backends["can"]), writer)
     assert ending.outcome is Outcome.SUCCESS, ending
-    assert replay(behaviour, read_logs([tmp_path / "logs"])).accepted
+    assert replay(venture.program, read_logs([tmp_path / "logs"])).accepted
     assert len(entries_in(tmp_path / "logs", "fix")) > 10
     assert devices_confirm(tmp_path / "logs")
     assert not berth.ended()
+
+
+@pytest.mark.timeout(120)
+def test_a_run_ends_whose_bus_goes_while_its_vehicle_stops(berth, contributions, tmp_path, monkeypatch):
+    stop = ConnectedRobot.stop
+
+    def stop_without_a_bus(robot: ConnectedRobot, now: float, response: str) -> None:
+        stop(robot, now, response)
+        berth.close()
+        while robot._connection.failure is None:
+            time.sleep(0.01)
+
+    monkeypatch.setattr(ConnectedRobot, "stop", stop_without_a_bus)
+    said: list[str] = []
+    venture = replace(venture_of(berth, contributions, tmp_path), say=said.append)
+    for step in run_live(venture, contributions.backends["can"]):
+        if (step.label, step.move) == ("begin", "out"):
+            venture.orders.give("stop", ["naiad"])
+    assert [line for line in said if line.startswith("'naiad': not known to have stopped (HOLD): LINK_LOST")]
 
 
 def test_generated_code_does_the_same(berth, tmp_path):
