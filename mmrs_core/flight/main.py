@@ -7,6 +7,7 @@ import signal
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
 from .bus import Recorded
@@ -157,12 +158,21 @@ def _open_control(parser: argparse.ArgumentParser, options: Options, crews: Crew
 
 
 def _stop_on_signals(stop: threading.Event, abandon: threading.Event) -> None:
-    def heed(number: int, frame: object) -> None:
-        (abandon if stop.is_set() else stop).set()
+    """Have the first signal set one event, the second the other.
+
+    A thread sets them: a signal that comes while the first is heeded would wait for an event's lock for ever.
+    """
+    told: SimpleQueue[int] = SimpleQueue()
+
+    def heed() -> None:
+        for event in (stop, abandon):
+            told.get()
+            event.set()
 
     if threading.current_thread() is threading.main_thread():
+        threading.Thread(target=heed, name="signals", daemon=True).start()
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, heed)
+            signal.signal(number, lambda number, _frame: told.put(number))
         if hasattr(signal, "SIGHUP"):
             # A terminal that closes gives no order: robots fly on.
             signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -8,6 +8,18 @@ from hypothesis import strategies as st
 from mmrs_auv.vessel.sheet import Sheet, Thruster
 
 
+class Asked(dict):
+    """Values of a sheet that remember which of them somebody asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.keys_asked: set[str] = set()
+
+    def get(self, key, default=None):
+        self.keys_asked.add(key)
+        return super().get(key, default)
+
+
 def thruster(number: int, **changes: object) -> Thruster:
     """Return a thruster of a row, each pushing in another direction."""
     figures = {

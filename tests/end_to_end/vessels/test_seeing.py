@@ -16,25 +16,16 @@ from pathlib import Path
 
 import pytest
 from dives import dive, diver, swim
-from mmrs_auv.kinds import AUV_KIND
+from dives_by_code import SPEED, dive_by_code, interpreted
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
-from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
 
 from mmrs_core.behaviour.log import LogWriter, read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
 from mmrs_core.behaviour.replay import Outcome, replay
-from mmrs_core.contributions.targets import TargetInput
-from mmrs_core.generation.render import render
-from mmrs_core.generation.writing import write
-from mmrs_core.pipeline import Place, inputs_of
-from mmrs_core.runtime.clock import RealClock
-from mmrs_core.runtime.conditions import asked_by, standard_conditions
-from mmrs_core.runtime.live import Venture, run_live
-from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.runtime.live import run_live
 from mmrs_core.testing.programs import feedback, move
-from mmrs_core.transformation.kinds import MOVE_KINDS
 
 pytestmark = [pytest.mark.xdist_group("vessels in real time"), pytest.mark.thorough]
 
@@ -46,9 +37,6 @@ AROUND = Surroundings(
     ),
 )
 STAND_OFF = 1.5
-
-SPEED = 0.5
-"""Slower than real time, so that a computer with other work does not make the vehicle give up its dive."""
 
 
 def looking() -> Program:
@@ -115,17 +103,7 @@ def judge(folder: Path) -> None:
 
 def test_the_interpreter_goes_and_chooses_by_what_three_processes_see(seen, contributions, tmp_path):
     berth, port = seen
-    behaviour, place = looking(), Place({diver().name: diver()}, (), {})
-    options = {"clock": "bus", "detections": str(port)}
-    venture = Venture(
-        behaviour,
-        inputs_of(behaviour, place, contributions, options=options),
-        InProcessBus(behaviour),
-        standard_conditions(asked_by(behaviour)),
-        clock=RealClock(SPEED),
-        folder=tmp_path / "logs",
-        links={"naiad": berth.channel},
-    )
+    venture = interpreted(looking(), berth, contributions, tmp_path, detections=str(port))
     with LogWriter(tmp_path / "logs") as writer:
         for step in run_live(venture, contributions.backends["can"]):
             writer.write(step)
@@ -134,18 +112,5 @@ def test_the_interpreter_goes_and_chooses_by_what_three_processes_see(seen, cont
 
 def test_generated_code_goes_and_chooses_by_what_three_processes_see(seen, tmp_path):
     berth, port = seen
-    kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
-    given = TargetInput(looking(), {diver().name: diver()}, {AUV_KIND.metaclass: AUV_KIND}, kinds)
-    write(render(CAN_PYTHON, given), tmp_path / "code")
-    words = ["--can", berth.channel, "--clock", "bus", "--speedup", str(SPEED)]
-    done = subprocess.run(
-        [sys.executable, "fleet.py", *words, "--detections", str(port), "--log", str(tmp_path / "logs")],
-        cwd=tmp_path / "code",
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    dive_by_code(looking(), berth, tmp_path, "--detections", str(port))
     judge(tmp_path / "logs")

@@ -7,19 +7,18 @@ from __future__ import annotations
 
 import argparse
 import logging
-import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from queue import SimpleQueue
-from types import FrameType
 from typing import TYPE_CHECKING
 
 from .hosting import ClockSilentError, Pace, serve
 from .node import Node
 from .sheet import Sheet, from_json
+from .signals import stopped_by_signals
 from .wire.codec import Codec
 from .wire.ports import CHANNEL, PortError, open_port
 
@@ -41,9 +40,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except (OSError, ValueError) as error:
         print(f"{given.part}: {error}", file=sys.stderr)
         return 2
-    stop = threading.Event()
-    for sign in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(sign, _setter(stop))
+    stop = stopped_by_signals()
     late: list[float] = []
     begin = time.process_time()
     try:
@@ -153,13 +150,6 @@ def _drives(text: str | None, sheet: Sheet) -> Drives | None:
     from .control.foreign import drives_of
 
     return drives_of(text, sheet)
-
-
-def _setter(stop: threading.Event) -> Callable[[int, FrameType | None], None]:
-    def set_stop(_signal: int, _frame: FrameType | None) -> None:
-        stop.set()
-
-    return set_stop
 
 
 def _write_figures(path: Path, late: Sequence[float], seconds: float) -> None:

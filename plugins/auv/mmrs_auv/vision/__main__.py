@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import argparse
 import logging
-import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from queue import SimpleQueue
 from urllib.parse import quote
 
 from ..vessel.body.surroundings import Surroundings
@@ -25,6 +23,7 @@ from ..vessel.eyes import CAMERAS
 from ..vessel.refusals import refuse
 from ..vessel.sheet import Sheet
 from ..vessel.sheet import from_json as sheet_from
+from ..vessel.signals import stopped_by_signals
 from .cameras import Camera, Pose, cameras_of
 from .ring import Reader, Writer
 
@@ -63,25 +62,6 @@ def main(words: Sequence[str] | None = None) -> int:
         if given.figures:
             given.figures.write_text(f"{time.process_time():.3f}\n", encoding="utf-8")
     return 0
-
-
-def stopped_by_signals() -> threading.Event:
-    """Return what SIGTERM and SIGINT set.
-
-    A thread sets it: who waits for an event holds its lock now and then, and a signal that comes just then
-    would wait for that lock for ever.
-    """
-    stop = threading.Event()
-    told: SimpleQueue[int] = SimpleQueue()
-
-    def heed() -> None:
-        told.get()
-        stop.set()
-
-    threading.Thread(target=heed, name="signals", daemon=True).start()
-    for sign in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(sign, lambda number, _frame: told.put(number))
-    return stop
 
 
 def _parser() -> argparse.ArgumentParser:

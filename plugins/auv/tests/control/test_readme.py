@@ -16,21 +16,10 @@ from mmrs_auv.vessel.instruments import Instruments
 from mmrs_auv.vessel.movement import guidance, loops, movement, progress
 from mmrs_auv.vessel.movement.abilities import abilities_of
 from mmrs_auv.vessel.wire.codec import Codec
+from vessel_sheets import Asked
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 PART = PAGE[PAGE.index("## The control layer") : PAGE.index("## The vehicle in simulation")]
-
-
-class Asked(dict):
-    """Values of a sheet that remember which of them somebody asked for."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.keys_asked: set[str] = set()
-
-    def get(self, key, default=None):
-        self.keys_asked.add(key)
-        return super().get(key, default)
 
 
 def test_the_page_names_all_that_a_sheet_may_say_of_the_control_layer() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 
 import cv2
@@ -12,7 +11,7 @@ from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.body.surroundings import BUOY, PATH, Surroundings, Thing, to_json
 from mmrs_auv.vessel.sheet import to_json as sheet_json
 from mmrs_auv.vision import processes
-from mmrs_auv.vision.__main__ import main, memory_of, stopped_by_signals
+from mmrs_auv.vision.__main__ import main, memory_of
 from mmrs_auv.vision.cameras import Pose, cameras_of
 from mmrs_auv.vision.detecting import sought_in, unseen
 from mmrs_auv.vision.processes import Notice
@@ -120,19 +119,6 @@ def test_each_vehicle_on_a_computer_has_memory_of_its_own() -> None:
     names = {memory_of(robot) for robot in ("Castor", "Pollux", "a/b", "a-b", "a%2Fb", "Ää")}
     assert len(names) == 6
     assert not any("/" in name for name in names)
-
-
-@pytest.mark.parametrize("sign", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_stops_who_just_then_holds_the_lock_of_what_it_waits_for(sign: signal.Signals) -> None:
-    before = {each: signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGINT)}
-    try:
-        stop = stopped_by_signals()
-        with stop._cond:
-            signal.raise_signal(sign)
-        assert stop.wait(10.0)
-    finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
 
 
 def test_what_a_camera_never_sees_is_said() -> None:

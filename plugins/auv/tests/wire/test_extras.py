@@ -24,21 +24,10 @@ from mmrs_auv.vessel.refusals import SheetError
 from mmrs_auv.vessel.sheet import Sheet, from_json, to_json
 from mmrs_auv.vessel.wire.codec import Codec
 from mmrs_auv.vision.cameras import cameras_of
+from vessel_sheets import Asked
 
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.languages.grounding.scenes import robot_type_of
-
-
-class Asked(dict):
-    """Values of a sheet that remember which of them somebody asked for."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.keys_asked: set[str] = set()
-
-    def get(self, key, default=None):
-        self.keys_asked.add(key)
-        return super().get(key, default)
 
 
 def test_known_are_just_the_names_that_somebody_reads() -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from mmrs_auv.targets.capabilities import OF_VEHICLES
+
 CAPABILITIES: Mapping[str, str] = {
-    "Behaviour.surfaceHeight": "depths count from it",
+    **OF_VEHICLES,
     "Behaviour.crs": "places are metres from the mission's origin",
     "Behaviour.origin": "places are metres from it",
     "Behaviour.altitudeReference": "depths count from the surface",
@@ -16,16 +18,11 @@ CAPABILITIES: Mapping[str, str] = {
     "Behaviour.name": "in comments",
     "Behaviour.reserve": "a battery with no more left is low",
     "Behaviour.robots": "a project each",
-    "Robot: a sub": "goals on its CAN bus",
     "Robot.id": "name of the folder, and in the log",
     "Robot.home": "places count from the mission's origin; it begins where the vehicle is",
-    "Robot.travelMode": "speed of its goals",
     "Robot.payload": "speed, by the capability for it",
     "Robot.slots": "kept by itself, or by the gateway of the bus between robots",
-    "GeoCoordinate": "metres north, east and below the surface",
-    "RelativeCoordinate": "metres north, east and below the surface",
     "ObjectTarget": "sought where cameras tell of it, else taken to be where it is expected",
-    "GoTo": "a goal GO_TO, reached when Movement says so",
     "Context.forbiddenAreas": "routes keep clear of them; nothing else does",
     "Context.obstacles": "routes keep clear of them; nothing else does",
     "Context.emergencyAreas": "no way leads there: policies that ask for one are refused",
@@ -35,10 +32,7 @@ CAPABILITIES: Mapping[str, str] = {
     "HoldPosition": "the last goal stays in force",
     "Recharge": "at the surface until the battery is full, and at least so long",
     "HeadTo": "a goal TURN",
-    "Heading.angle": "added to the heading",
-    "Heading.deviceId": "its mount.yaw counts; absent: the front",
     "Heading.target": "where it is expected, or where cameras see it",
-    "GoTo.heading": "heading of the goal",
     "Move.name": "in the log, and printed",
     "Move.preActions": "done before the movement",
     "Move.postActions": "done after the movement",
@@ -50,7 +44,6 @@ CAPABILITIES: Mapping[str, str] = {
     "MoveTransition.fluid": "it stops at every place",
     "Choice": "conditions.adb, which is yours",
     "Choice by a standard condition": "battery-below, detected, found; others in conditions.adb",
-    "DeviceAction": "DeviceCommand, repeated until its status comes",
     "Feedback": "printed",
     "UnicastNotify": "by the gateway, acknowledged",
     "MulticastNotify": "by the gateway, acknowledged",
@@ -58,13 +51,4 @@ CAPABILITIES: Mapping[str, str] = {
     "Notify.active": "the same with false",
     "LINK_LOST": "the bus is silent, or gone; CONTINUE: for 10 s, since it is about radio",
     "PEER_LOST": "the robots that could end a wait are gone, or the gateway, which is never borne",
-    "BATTERY_LOW": "less than the reserve is left",
-    "WAIT_TOO_LONG": "a wait for other robots, or for an answer",
-    "DEVICE_SILENT": "a device does not say that it is done",
-    "POSITION_LOST": "depth, heading or place are not known well enough",
-    "OBSTACLE": "sonar sees something nearer than --clearance",
-    "FENCE_BREACHED": "there is no fence, so that it never happens",
-    "VEHICLE_RESTARTED": "no vehicle on a CAN bus tells it, so that it never happens",
-    "LOG_FAILED": "a step that cannot be written",
-    "GROUND_LOST": "no ground station is heard under water, so that it never happens",
 }

@@ -1,0 +1,66 @@
+"""Dives in real time: by the interpreter and by generated code, on the bus of a vehicle that runs."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from dives import diver
+from mmrs_auv.kinds import AUV_KIND
+from mmrs_auv.rehearsal import Berth
+from mmrs_auv.targets.can_python.target import CAN_PYTHON
+
+from mmrs_core.behaviour.program import Program
+from mmrs_core.contributions.registry import Contributions
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.generation.render import render
+from mmrs_core.generation.writing import write
+from mmrs_core.pipeline import Place, inputs_of
+from mmrs_core.runtime.clock import RealClock
+from mmrs_core.runtime.conditions import asked_by, standard_conditions
+from mmrs_core.runtime.live import Venture
+from mmrs_core.runtime.slots import InProcessBus
+from mmrs_core.transformation.kinds import MOVE_KINDS
+
+SPEED = 0.5
+"""Slower than real time, so that a computer with other work does not make the vehicle give up its dive."""
+
+
+def interpreted(
+    behaviour: Program, berth: Berth, contributions: Contributions, folder: Path, **options: str
+) -> Venture:
+    """Return a dive by the interpreter that keeps its logs in `logs`."""
+    return Venture(
+        behaviour,
+        inputs_of(
+            behaviour,
+            Place({diver().name: diver()}, (), {}),
+            contributions,
+            options={"clock": "bus", **options},
+        ),
+        InProcessBus(behaviour),
+        standard_conditions(asked_by(behaviour)),
+        clock=RealClock(SPEED),
+        folder=folder / "logs",
+        links={"naiad": berth.channel},
+    )
+
+
+def dive_by_code(behaviour: Program, berth: Berth, folder: Path, *words: str) -> None:
+    """Generate code in `code`, run it to its end, and have it keep its logs in `logs`."""
+    kinds = {kind.metaclass: kind for kind in MOVE_KINDS}
+    given = TargetInput(behaviour, {diver().name: diver()}, {AUV_KIND.metaclass: AUV_KIND}, kinds)
+    write(render(CAN_PYTHON, given), folder / "code")
+    words = ("--can", berth.channel, "--clock", "bus", "--speedup", str(SPEED), *words)
+    done = subprocess.run(
+        [sys.executable, "fleet.py", *words, "--log", str(folder / "logs")],
+        cwd=folder / "code",
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
