@@ -10,7 +10,10 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from mmrs_core.geometry.clearance import Vertex, shrink
+from mmrs_core.geometry.clearance import Vertex, grow, shrink
+
+Kept = tuple[tuple[Vertex, ...], float]
+"""A ring, and the metres that robots keep from it on the outside, too."""
 
 _PER_SIDE = 48
 """Candidates along each side of the box about an area, at most."""
@@ -19,7 +22,9 @@ _FINENESS = 4.0
 """Candidates along the least distance between two points."""
 
 
-def refuge_points(ring: Sequence[Vertex], keep: float, apart: float, count: int) -> tuple[Vertex, ...]:
+def refuge_points(
+    ring: Sequence[Vertex], keep: float, apart: float, count: int, barred: Sequence[Kept] = ()
+) -> tuple[Vertex, ...]:
     """Return points inside a ring, as far apart as there is room; fewer than `count` where it has none.
 
     Args:
@@ -27,14 +32,18 @@ def refuge_points(ring: Sequence[Vertex], keep: float, apart: float, count: int)
         keep: metres from the edge to every point, at least.
         apart: metres between two points, at least.
         count: how many are wanted; the first one does not depend on it.
+        barred: what no point may be in, nor nearer to.
     """
-    return _points(tuple(ring), keep, apart, count)
+    return _points(tuple(ring), keep, apart, count, tuple(barred))
 
 
 @lru_cache(maxsize=64)
-def _points(ring: tuple[Vertex, ...], keep: float, apart: float, count: int) -> tuple[Vertex, ...]:
+def _points(
+    ring: tuple[Vertex, ...], keep: float, apart: float, count: int, barred: tuple[Kept, ...]
+) -> tuple[Vertex, ...]:
     """Return them, once for all robots of a fleet."""
-    parts = [part for part in _parts(shrink(ring, keep)) if not part.is_empty]
+    free = shrink(ring, keep).difference(shapely.union_all([grow(*each) for each in barred]))
+    parts = [part for part in _parts(free) if part.area > 0]
     if not parts or count < 1:
         return ()
     inside = max(parts, key=lambda part: float(part.area))

@@ -6,14 +6,17 @@ from dataclasses import replace
 from itertools import combinations
 from math import dist
 
+import pytest
+
 from mmrs_core.behaviour.refuges import refuges_of
 from mmrs_core.scene import Area, AreaUse
-from mmrs_core.testing.programs import program, quad, robot_program
+from mmrs_core.testing.programs import go_to, program, quad, robot_program
 
 
 def refuges(*areas, robots=1, error=1.0, separation=None):
-    """Return where each of so many robots comes down."""
-    fleet = program(*(robot_program(f"r{n}", []) for n in range(robots)))
+    """Return where each of so many robots, whose ways lead from 0 to 30 m of height, comes down."""
+    moves = [go_to("out", (100.0, 100.0, 30.0))]
+    fleet = program(*(robot_program(f"r{n}", moves) for n in range(robots)))
     fleet = replace(fleet, position_error=error, minimum_separation=separation)
     return [refuges_of(robot, fleet, {quad().name: quad()}, areas) for robot in fleet.robots]
 
@@ -49,3 +52,26 @@ def test_people_are_told_where_robots_must_share_a_place():
     assert one.points == two.points == ((5.0, 5.0),)
     assert one.shared == ""
     assert "no room for all of them in 'yard'" in two.shared
+
+
+def beside(use=AreaUse.FORBIDDEN, **heights):
+    """Return an area west of the yard, from which robots keep 10 m."""
+    ring = ((-10.0, -10.0), (-2.0, -10.0), (-2.0, 50.0), (-10.0, 50.0))
+    return Area("west", use, ring, safety_distance=10.0, **heights)
+
+
+@pytest.mark.parametrize("other", [beside(), beside(AreaUse.OBSTACLE, high=8.0)], ids=["forbidden", "low"])
+def test_no_robot_comes_down_too_near_to_what_it_keeps_from(other):
+    found = [point for each in refuges(yard(), other, robots=6) for point in each.points]
+    assert len(found) == 6
+    assert all(east >= -2.0 + 10.0 + 1.5 for east, _ in found)
+
+
+def test_what_is_above_or_below_all_ways_keeps_nobody_from_coming_down():
+    above, below = beside(AreaUse.OBSTACLE, low=31.0), beside(AreaUse.OBSTACLE, high=-1.0)
+    assert refuges(yard(), above, below, robots=3) == refuges(yard(), robots=3)
+
+
+def test_an_emergency_area_without_a_clear_place_has_no_refuge():
+    (found,) = refuges(yard(10.0), replace(beside(), safety_distance=30.0))
+    assert found.points == ()
