@@ -23,7 +23,7 @@ EXTRAS = frozenset((
     *(f"{name}.{axis}" for name, axes in _AXES.items() for axis in axes),
     "righting_arm", "munk", "thruster.lag", "deadman.time", "antenna.height", "sonar.range",
     "peak.time", "rise.time", "power.limit", "climb.speed", "turn.rate", "search.radius", "search.spacing",
-    "movement.patience", "position.lost",
+    "movement.patience", "position.lost", "bottom.clearance",
     "camera.front.forward", "camera.front.down", "camera.bottom.forward", "camera.bottom.down",
     "camera.baseline", "camera.focal",
 ))  # fmt: skip

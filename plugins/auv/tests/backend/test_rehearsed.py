@@ -11,7 +11,7 @@ import pytest
 from dives import POOL, Rehearsed, dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
-from mmrs_auv.vessel.movement import progress
+from mmrs_auv.vessel.movement import movement, progress
 
 from mmrs_core.behaviour.program import Action, Heading, Move, Target, Transition
 from mmrs_core.behaviour.replay import Outcome
@@ -174,6 +174,7 @@ def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.thorough
 def test_policies_of_the_program_count(tmp_path: Path) -> None:
     shore = Area("shore", AreaUse.EMERGENCY, ((-9.0, -3.0), (-3.0, -3.0), (-3.0, 3.0), (-9.0, 3.0)))
     behaviour = dive(swim("out", 6.0, 0.0, 1.0, after=(use("ctd", "Bake"),)))
@@ -288,6 +289,7 @@ def test_two_vehicles_keep_their_slots(tmp_path: Path) -> None:
     assert next(each.time for each in found.run.records if each.move == "b") >= told
 
 
+@pytest.mark.thorough
 def test_the_same_seed_gives_the_same_run(tmp_path: Path) -> None:
     behaviour = dive(swim("out", 2.0, 1.0, 1.0))
     runs = [rehearse(behaviour, tmp_path / f"{n}", seed=seed) for n, seed in enumerate("778")]
@@ -295,6 +297,7 @@ def test_the_same_seed_gives_the_same_run(tmp_path: Path) -> None:
     assert ends[0] == ends[1] != ends[2]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("begins", ["holds", "waits"])
 def test_a_vehicle_that_is_to_stay_where_it_begins_is_not_swept_away(tmp_path: Path, begins: str) -> None:
     held = move("stay", "HoldPosition", duration=20.0)
@@ -334,7 +337,9 @@ def test_a_speed_that_its_bus_cannot_say_is_not_taken_for_as_fast_as_it_likes(tm
     assert found.run.ending.time > 5.0
 
 
-def test_a_vehicle_that_the_bottom_keeps_from_its_goal_comes_up(tmp_path, monkeypatch) -> None:
+@pytest.mark.parametrize("clearance", [movement.CLEARANCE, -5.0], ids=["clear of it", "pressing on it"])
+def test_a_vehicle_that_the_bottom_keeps_from_its_goal_comes_up(clearance, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(movement, "CLEARANCE", clearance)
     monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
     found = rehearse(dive(swim("out", 1.0, 0.0, 5.0)), tmp_path, bottom="2")
     assert found.fault == "NO_PROGRESS"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import hypot
 from random import Random
@@ -72,6 +73,7 @@ def test_it_holds_without_thrust_to_the_side_by_heading_into_the_current() -> No
     assert away(rig, 0.0, 0.0) < 0.5 + 2.0 * rig.state.uncertainty
 
 
+@pytest.mark.thorough
 def test_a_step_of_depth_overshoots_less_than_its_tolerance() -> None:
     rig = begun(pool_sheet())
     rig.craft.hold(0.0, 0.0, 4.0, 0.0)
@@ -147,6 +149,7 @@ def test_a_body_that_is_not_what_its_sheet_says_gets_there_too(part: float) -> N
     assert abs(rig.vehicle.truth.depth - 3.0) < 0.12
 
 
+@pytest.mark.thorough
 def test_a_goal_that_a_current_keeps_it_from_is_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(progress, "ALLOWANCE", 4.0)
     rig = begun(pool_sheet(), (1.5, 0.0))
@@ -203,3 +206,36 @@ def test_it_keeps_to_the_line_to_its_goal() -> None:
         aside.append(abs(rig.state.east))
     assert max(aside) < 0.6
     assert max(aside[len(aside) // 2 :]) < 0.35
+
+
+def deepest(rig: Rig, seconds: float) -> float:
+    """Return how deep the vehicle truly gets in a time, metres."""
+    found = 0.0
+    for _ in range(round(seconds / 0.1)):
+        rig.run(0.1)
+        found = max(found, rig.vehicle.truth.depth)
+    return found
+
+
+@pytest.mark.parametrize("extra", [{}, {"bottom.clearance": 1.0}], ids=["usual", "as the sheet says"])
+@pytest.mark.parametrize("make", SHEETS.values(), ids=SHEETS)
+def test_it_keeps_clear_of_the_bottom_whatever_the_goal(
+    make: Callable[[], Sheet], extra: dict[str, float]
+) -> None:
+    sheet = changed(replace(make(), home=(0.0, 0.0, 2.0)), **extra)
+    rig = Rig(sheet, Surroundings(current=(0.1, 0.0), bottom=3.5))
+    rig.run(0.5)
+    rig.craft.go_to(3.0, 0.0, 4.5, heading=None)
+    least = extra.get("bottom.clearance", sheet.height / 2.0 + 0.2)
+    assert deepest(rig, 40.0) <= 3.5 - least + 0.1
+    assert rig.vehicle.truth.depth == pytest.approx(3.5 - least, abs=DEPTH)
+    assert rig.state.progress == "ACTIVE"
+
+
+def test_it_goes_as_deep_as_it_is_told_where_no_log_tells_how_high_it_is() -> None:
+    rig = Rig(replace(pool_sheet(), home=(0.0, 0.0, 2.0)), Surroundings(bottom=3.5))
+    rig.vehicle.faults.silent.add("Altitude")
+    rig.run(0.5)
+    rig.craft.go_to(0.0, 0.0, 3.2, heading=None)
+    rig.reach()
+    assert rig.vehicle.truth.depth == pytest.approx(3.2, abs=DEPTH + 0.05)

@@ -33,6 +33,10 @@ GOAL_SILENT = 5.0 * GOAL_PERIOD
 PATIENCE = 10.0
 """Seconds for which it holds, before it surfaces by thrust (`Sheet.extra`: ``movement.patience``)."""
 
+CLEARANCE, ALTITUDE_SILENT = 0.2, 1.0
+"""Metres between keel and bottom (`Sheet.extra`: ``bottom.clearance``, of the vehicle's middle); seconds for
+which it goes by a height above the bottom."""
+
 STATE_SILENT = 0.3
 """Seconds without a state that is to be trusted after which it asks for no thrust."""
 
@@ -45,7 +49,7 @@ class Movement:
 
     It asks for no thrust without a goal, without a state that may be trusted, and after an emergency. When
     the decision centre falls silent it holds place and depth for a while, then surfaces by thrust, until a
-    goal is heard again.
+    goal is heard again. While its height above the bottom is known it goes no deeper than leaves it clear.
 
     Attributes:
         motion: the state it goes by.
@@ -61,6 +65,7 @@ class Movement:
         served = Allocation(sheet).served([True] * len(sheet.thrusters))
         self._loops = Loops(self._abilities, served)
         self._patience = sheet.extra.get("movement.patience", PATIENCE)
+        self._clearance = sheet.extra.get("bottom.clearance", sheet.height / 2.0 + CLEARANCE)
         self._most = {
             field.name: field.high
             for each in messages_of(sheet)
@@ -71,7 +76,7 @@ class Movement:
             "Position": self._hear_state, "Depth": self._hear_depth, "Pose": self._hear_state,
             "Velocity": self._hear_state, "Turning": self._hear_turning, "Current": self._hear_current,
             "Reach": self._hear_reach, "GoalPlace": self._hear_place, "GoalPose": self._hear_pose,
-            "Emergency": self._hear_emergency,
+            "Emergency": self._hear_emergency, "Altitude": self._hear_altitude,
         })  # fmt: skip
         self.motion = Motion()
         self.goal: Goal | None = None
@@ -80,7 +85,8 @@ class Movement:
         self._progress: Progress | None = None
         self._emergency: str | None = None
         self._fallback: str | None = None
-        self._trusted_at = self._goal_at = float("-inf")
+        self._trusted_at = self._goal_at = self._bottom_at = float("-inf")
+        self._bottom = float("inf")
         self._began: float | None = None
         self._due = {"Progress": 0.0, "Beat": 0.0}
 
@@ -104,9 +110,16 @@ class Movement:
             return None
         steers = not self._loops.served[1]
         aim = self._guidance.aim(self.motion, steers, self.period)
+        aim = replace(aim, depth=min(aim.depth, self._deepest(now)))
         if self._progress is not None:
             self._progress.judge(self.motion, now, steers=steers)
         return self._loops.wrench(aim, self.motion, self.period)
+
+    def _deepest(self, now: float) -> float:
+        """Return the depth at which it is still clear of the bottom; infinity where nobody knows that."""
+        if now - self._bottom_at > ALTITUDE_SILENT:
+            return float("inf")
+        return max(self._bottom - self._clearance, self._abilities.afloat - 0.1)
 
     def _asked(self, wrench: Array | None) -> list[Frame]:
         numbers = np.zeros(6) if wrench is None else wrench
@@ -204,6 +217,10 @@ class Movement:
     def _hear_reach(self, found: Received, now: float) -> None:
         self._loops.served = tuple(bool(found.values[degree]) for degree in DEGREES)
         self._loops.limited = bool(found.values["Limited"])
+
+    def _hear_altitude(self, found: Received, now: float) -> None:
+        if found.values["Valid"]:
+            self._bottom, self._bottom_at = self.motion.depth + float(found.values["Altitude"]), now
 
     def _hear_place(self, found: Received, now: float) -> None:
         self._place = found
