@@ -18,7 +18,7 @@ NAME = "ardusub-manual"
 def _connect(given: BackendInput) -> Backend:
     if find_spec("pymavlink") is None:
         raise UnsupportedError(f"backend '{NAME}': needs pymavlink; pip install 'mmrs-core[mavlink]'")
-    from mmrs_auv.manual.robot import connect
+    from mmrs_auv.manual.connecting import connect
 
     return connect(given)
 

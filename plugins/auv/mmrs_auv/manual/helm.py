@@ -17,6 +17,9 @@ SLOW_DOWN = 0.5
 FULL_TURN_AT, FULL_CLIMB_AT = 45.0, 1.0
 """Degrees, and metres of depth, of error at which the stick is at its end."""
 
+GRACE, PATIENCE, LEAST_SPEED, SLOWEST_CLIMB = 60.0, 3.0, 0.05, 0.05
+"""A goal may take so many seconds, so many times as long as its way, and as if it climbed so slowly, m/s."""
+
 LEAST = 0.12
 """Part of the stick's way below which autopilots take it to be let go."""
 
@@ -78,6 +81,11 @@ class Helm:
         """Return how fast it goes by the sticks, metres per second."""
         return abs(self._forward) * self._full_speed
 
+    @property
+    def goal(self) -> Goal | None:
+        """Return what it steers towards."""
+        return self._goal
+
     def aim(self, goal: Goal) -> None:
         """Steer towards a goal from now on."""
         self._goal, self._since, self.reached = goal, None, False
@@ -104,10 +112,23 @@ class Helm:
         self._forward = sticks.forward
         return sticks
 
-    def rest(self) -> Sticks:
-        """Let the sticks go, and forget the goal."""
-        self._goal, self._forward, self.reached = None, 0.0, True
+    def drift(self, now: float) -> Sticks:
+        """Let the sticks go for now, since heading or depth is not known; the goal stays."""
+        self._reckon(now, self.heading, self.depth)
+        self._forward = 0.0
         return Sticks()
+
+    def hold(self) -> None:
+        """Stay at the reckoned place, and at the depth where it is."""
+        self.aim(Goal(self.depth, self.east, self.north))
+
+    def seconds(self, goal: Goal) -> float:
+        """Return how long a goal may take from here before something must be wrong."""
+        way = 0.0
+        if goal.east is not None and goal.north is not None:
+            way = hypot(goal.east - self.east, goal.north - self.north)
+        climb = abs(goal.depth - self.depth)
+        return GRACE + PATIENCE * way / max(LEAST_SPEED, goal.speed) + climb / SLOWEST_CLIMB + goal.seconds
 
     def _reckon(self, now: float, heading: float, depth: float) -> None:
         if self._time is not None:

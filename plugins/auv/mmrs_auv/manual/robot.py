@@ -3,110 +3,74 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from math import degrees
-from typing import Any
+from collections import deque
+from collections.abc import Mapping, Sequence
+from math import inf
 
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from mmrs_auv.manual.goals import goal_of, refusals
-from mmrs_auv.manual.helm import Goal, Helm, Sticks
+from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
+from mmrs_auv.manual.goals import goal_of
+from mmrs_auv.manual.helm import Goal, Helm
+from mmrs_auv.manual.ways import Ways
 from mmrs_auv.targets.moves import seconds_of
+from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.contributions.wiring import Wired
-from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.errors import UnreachableError
 from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.links.ports import split_system
-from mmrs_core.flight.links.radios import Radios
-from mmrs_core.flight.services.commands import command
+from mmrs_core.flight.policies import NOTHING
 from mmrs_core.mavlink.actions import DEVICE_ACTION
-from mmrs_core.mavlink.backend.connection import FIRST_PORT, PORT_STEP, FollowingClock
-from mmrs_core.mavlink.context import RobotContext, context_of
+from mmrs_core.mavlink.context import RobotContext
+from mmrs_core.scene import Position
 
-DEPTH_HOLD = 2
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
 
-TOLD = (mavlink.MAVLINK_MSG_ID_ATTITUDE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
-TOLD_EVERY = 100_000
-"""Microseconds."""
+LINK_PATIENCE = 5.0
+"""Seconds of silence after which the link counts as lost, where no policy says."""
 
-NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
-"""What heading and depth are told by, and after how many seconds without they are not known any more."""
+UNHEARD = 60.0
+"""Seconds of silence after which nobody waits any more for a vehicle to do what it was told."""
 
-LINK_PATIENCE, FIRST_SIGN = 5.0, 60.0
-INSISTING, PATIENCE = 12, 3.0
-"""Times that something is asked for until it is done, and seconds between them."""
+NEAR_THE_SURFACE = 0.4
+"""Metres of depth at which a vehicle has come up."""
 
-FULL_SPEED = "full-speed"
+RESTS, FINDS, STAYS = (NOTHING, "STOP_THRUST"), ("RETURN", "EMERGENCY_AREA"), ("HOLD", "CONTINUE")
+OFF = (faults.MOTORS_OFF, faults.VEHICLE_RESTARTED)
+OURS_NO_MORE = (faults.LINK_LOST, faults.TAKEN_OVER, *OFF)
+"""What leaves a vehicle without motors; and after what it does not do what it is told."""
 
-
-def connect(given: BackendInput) -> ManualRobot:
-    """Return a robot at the end of its link.
-
-    Raises:
-        UnsupportedError: an option is unknown, the robot is no underwater vehicle, or it cannot be driven
-            to do all of its program by hand; lists all of it.
-        LinkLostError: the port cannot be opened.
-    """
-    unknown = sorted(set(given.options) - {FULL_SPEED})
-    if unknown:
-        raise UnsupportedError(f"option '{unknown[0]}': the backend has {FULL_SPEED}, metres per second")
-    speed = _full_speed(given)
-    if given.live is None:
-        raise UnsupportedError("backend 'ardusub-manual': drives robots in real time; 'mmrs run' does that")
-    types = {**given.types, given.type.name: given.type}
-    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds)
-    context = context_of(given.robot, input, geographic=False)
-    found = list(refusals(context))
-    if found:
-        raise UnsupportedError(f"robot '{given.robot.id}': cannot be driven to do all of it by hand", found)
-    return ManualRobot(context, _link(given, given.live), given.live, speed)
-
-
-def _full_speed(given: BackendInput) -> float:
-    said = given.options.get(FULL_SPEED)
-    try:
-        speed = given.type.capabilities[0].speed[1] if said is None else float(said)
-    except ValueError as error:
-        raise UnsupportedError(f"option '{FULL_SPEED}': '{said}' is no number") from error
-    if not 0.05 <= speed <= 20.0:
-        raise UnsupportedError(f"option '{FULL_SPEED}': {speed:g} m/s is no speed of an underwater vehicle")
-    return speed
-
-
-def _link(given: BackendInput, live: Live) -> Link:
-    number = [robot.id for robot in given.program.robots].index(given.robot.id)
-    usual = f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
-    try:
-        url, system = split_system(live.links.get(given.robot.id, usual))
-        return Radios(FollowingClock(live.clock)).open(url, system)
-    except ValueError as error:
-        raise UnsupportedError(f"link {error}") from error
-    except faults.Fault as fault:
-        raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
+UNKNOWN = "nobody knows where it is since it came up: bring it home, and begin again with --resume"
 
 
 class ManualRobot:
     """A vehicle in depth hold, and the thread that moves its sticks."""
 
-    def __init__(self, context: RobotContext, link: Link, live: Live, full_speed: float) -> None:
+    def __init__(
+        self, given: BackendInput, context: RobotContext, link: Link, live: Live, full_speed: float
+    ) -> None:
         """Know the robot; nothing is sent before it is to get ready."""
-        home = context.robot.home or (0.0, 0.0, 0.0)
+        self._ways = Ways(given, context)
         self._context, self._link, self._live = context, link, live
-        self._helm = Helm(home[0], home[1], full_speed)
+        self._helm = Helm(self._ways.home[0], self._ways.home[1], full_speed)
         self._lock = threading.RLock()
         self._ended = threading.Event()
+        self._autopilot = Autopilot(link, self._ended.is_set, given.program.reserve)
+        self._patience = patience(faults.LINK_LOST, (*context.robot.policies, *given.policies))
         self._thread: threading.Thread | None = None
-        self._fault: Fault | None = None
-        self._ready = self._released = False
+        self._trouble: Fault | None = None
+        self._own: Fault | None = None
+        self._borne: set[str] = set()
+        self._ready = self._released = self._lost = False
+        self._response = self._instead = ""
+        self._goals: deque[Goal] = deque()
+        self._late_at = inf
         self._busy_until: float | None = None
         self._depth = 0.0
         self._action: Action | None = None
+        self._paused: Goal | None = None
 
     def prepare(self, now: float) -> None:
         """Begin to listen, go into depth hold and arm."""
@@ -117,29 +81,45 @@ class ManualRobot:
         """Begin a movement."""
         with self._lock:
             goal = goal_of(move, self._helm, self._context, self._depth)
-            self._busy_until = now
+            self._busy_until, self._own = now, None
             if goal is not None:
-                self._depth = goal.depth
-                self._helm.aim(goal)
+                self._go((goal,), now)
 
     def act(self, action: Action, now: float) -> None:
         """Begin a device action, as its device is wired; feedback goes to people."""
+        if not action.is_a(DEVICE_ACTION):
+            said = (action.name, *(f"{key}={value}" for key, value in action.parameters))
+            self._live.say(" ".join(filter(None, said)))
+            return
         with self._lock:
-            if action.is_a(DEVICE_ACTION):
-                self._action = action
-            else:
-                said = (action.name, *(f"{key}={value}" for key, value in action.parameters))
-                self._live.say(" ".join(filter(None, said)))
+            self._action, self._own = action, None
+        threading.Thread(target=self._do, args=(action,), name="device", daemon=True).start()
 
     def finished(self, now: float) -> bool:
         """Return whether what was begun last has finished."""
         with self._lock:
-            done = self._ready and self._helm.reached and self._action is None
-            return done and (self._busy_until is None or now >= self._busy_until)
+            if self._response:
+                return self._has_stopped(now)
+            done = self._ready and self._helm.reached and not self._goals and self._action is None
+            return done and self._own is None and (self._busy_until is None or now >= self._busy_until)
 
     def fault(self, now: float) -> Fault | None:
         """Return what went wrong."""
-        return self._fault
+        with self._lock:
+            found = self._trouble or self._own
+            if found is None or found.which in self._borne:
+                return None
+            return self._hinders(found) if self._response else found
+
+    def bear(self, now: float) -> bool:
+        """Go on although something went wrong that policies say to bear."""
+        with self._lock:
+            found = self._trouble or self._own
+            if found is not None and found is self._own:
+                self._own = None
+            elif found is not None:
+                self._borne.add(found.which)
+            return True
 
     def next_event(self, now: float) -> float | None:
         """Nobody knows: the world goes on by itself."""
@@ -148,32 +128,118 @@ class ManualRobot:
     def wait(self, now: float) -> None:
         """Hold the pose."""
         with self._lock:
-            self._helm.aim(Goal(self._depth, self._helm.east, self._helm.north))
+            self._stay(self._depth)
 
     def state(self, now: float) -> RobotState:
         """Return where the robot is by reckoning, and its battery."""
         with self._lock:
-            helm, told = self._helm, self._link.latest("SYS_STATUS")
-            place = (helm.east, helm.north, self._context.zero - helm.depth)
-            left = told.battery_remaining if told is not None else -1
-            return RobotState(now, place, helm.speed, helm.heading, None, left / 100.0 if left >= 0 else None)
+            helm = self._helm
+            charge = self._autopilot.charge()
+            return RobotState(now, self._here(), helm.speed, helm.heading, None, charge)
 
     def stop(self, now: float, response: str = "HOLD") -> None:
-        """Do what a response says: hold, go home, come up, or let go."""
+        """Do what a response says, or come up where that cannot be done."""
         with self._lock:
-            self._action = None
-            home = self._context.robot.home or (0.0, 0.0, 0.0)
-            if response in ("NOTHING", "STOP_THRUST"):
-                self._released = response == "NOTHING"
-                self._helm.rest()
+            self._action = self._paused = None
+            self._response, self._instead = response, ""
+            blind = self._trouble is not None and self._trouble.which == faults.POSITION_LOST
+            if response in RESTS:
+                self._released = response == NOTHING
                 self._ended.set()
-            elif response == "RETURN":
-                self._helm.aim(Goal(self._depth, home[0], home[1]))
-            elif response == "HOLD":
-                self._helm.aim(Goal(self._depth, self._helm.east, self._helm.north))
+            elif response in STAYS:
+                self._autopilot.rising = False
+                self._stay(self._helm.depth)
+            elif response in FINDS and blind:
+                self._come_up(now, "its heading or depth is not known: it comes up")
+            elif response in FINDS:
+                self._find(response, now)
             else:
-                self._depth = 0.0
-                self._helm.aim(Goal(0.0))
+                self._come_up(now)
+
+    def pause(self, now: float) -> None:
+        """Begin to halt."""
+        with self._lock:
+            if self._paused is None:
+                self._paused = self._helm.goal or Goal(self._depth)
+                self._late_at = inf
+                self._helm.hold()
+
+    def resume(self, now: float) -> None:
+        """Go on."""
+        with self._lock:
+            if self._paused is not None:
+                goal, self._paused = self._paused, None
+                self._aim(goal, now)
+
+    def paused(self, now: float) -> bool:
+        """Return whether the vehicle has halted."""
+        return self._paused is not None and self._helm.reached and self._autopilot.armed
+
+    def obeys(self, now: float) -> bool:
+        """Return whether the vehicle does what it was told by `stop`."""
+        if self._response in RESTS:
+            return self._has_stopped(now)
+        ours = self._trouble is None or self._trouble.which not in OURS_NO_MORE
+        mode = SURFACE if self._autopilot.rising else DEPTH_HOLD
+        return self.reachable(now) and ours and self._autopilot.mode == mode
+
+    def watched(self, now: float) -> bool:
+        """Return whether the vehicle holds by thrust, so that somebody must stay."""
+        off = self._trouble is not None and self._trouble.which in OFF
+        return self._response in STAYS and not off and self._ready and self._autopilot.silent <= UNHEARD
+
+    def undone(self, now: float) -> str:
+        """Return why it has stopped without doing what it was told."""
+        if self._response not in RESTS and self._trouble is not None and self._trouble.which in OFF:
+            return f"its motors are off ({self._trouble.which}): it comes up if it is buoyant"
+        return self._instead
+
+    def reachable(self, now: float) -> bool:
+        """Return whether the vehicle was heard of lately."""
+        return self._autopilot.silent <= LINK_PATIENCE
+
+    def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
+        """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
+        with self._lock:
+            self._response, self._own = "", None
+            if why := self.hindrance(passed, begun, now):
+                self._own = Fault(faults.REFUSED, why)
+            else:
+                self._go(self._ways.back(passed, self._here()), now)
+
+    def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
+        """Return why it cannot go on."""
+        with self._lock:
+            if self._lost:
+                return UNKNOWN
+            try:
+                self._ways.back(passed, self._here())
+            except UnreachableError as error:
+                return f"no way is known back to where its program was broken off: {error}"
+            return ""
+
+    def away(self, now: float) -> str:
+        """Return how far from home it is, by reckoning; empty at home."""
+        return self._ways.away(self._helm.east, self._helm.north)
+
+    def moves(self, now: float) -> bool:
+        """Return whether the vehicle may move by thrust at any moment."""
+        return self.reachable(now) and self._autopilot.armed
+
+    def told(self) -> Mapping[str, object]:
+        """Return what the vehicle has told last."""
+        if not self._ready:
+            return {}
+        helm = self._helm
+        place = {"north": round(helm.north, 2), "east": round(helm.east, 2), "height": -round(helm.depth, 2)}
+        return {
+            "mode": self._autopilot.word(),
+            "armed": self._autopilot.armed,
+            "place": place,
+            "heading": round(helm.heading, 2),
+            "speed": round(helm.speed, 3),
+            "energy": self._autopilot.charge(),
+        }
 
     def close(self) -> None:
         """Let the sticks go, disarm where nobody else has the vehicle, and fall silent."""
@@ -184,104 +250,144 @@ class ManualRobot:
 
     def _drive(self) -> None:
         try:
-            self._get_ready()
+            self._autopilot.get_ready()
+            with self._lock:
+                self._helm.depth = self._depth = self._autopilot.depth() or 0.0
+                self._ready = True
+            self._live.wake()
             while not self._ended.wait(self._link.clock.real(PERIOD)):
                 self._tick()
         except faults.Fault as fault:
-            self._fault = Fault(fault.event, str(fault))
+            self._trouble = Fault(fault.event, str(fault))
+        except faults.FAILURES as error:
+            self._trouble = Fault(faults.REFUSED, f"{type(error).__name__}: {error}")
         finally:
             self._let_go()
             self._live.wake()
 
-    def _get_ready(self) -> None:
-        if not self._link.wait(lambda: self._link.component or self._ended.is_set(), FIRST_SIGN):
-            raise faults.Fault(faults.LINK_LOST, "no vehicle is heard")
-        for number in TOLD:
-            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
-        if not self._link.wait(lambda: None not in (self._heading(), self._depth_heard()), FIRST_SIGN):
-            raise faults.Fault("SENSORS_SILENT", "the vehicle tells no heading and no depth")
-        self._insist(self._in_depth_hold, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(DEPTH_HOLD))
-        self._send(Sticks())
-        self._insist(self._armed, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
-        self._depth = self._depth_heard() or 0.0
-        self._ready = True
-        self._live.wake()
-
-    def _insist(self, test: Callable[[], bool], number: int, *params: float) -> None:
-        """Have a vehicle do what it takes some time after its start to do, and see that it does."""
-        for left in reversed(range(INSISTING)):
-            try:
-                command(self._link, number, *params)
-            except faults.Refused:
-                if not left:
-                    raise
-            if self._link.wait(lambda: test() or self._ended.is_set(), PATIENCE):
-                return
-        raise faults.Refused(f"the vehicle does not do what command {number} asks for")
-
     def _tick(self) -> None:
-        now = self._live.clock.now()
-        if self._link.silent_for() > LINK_PATIENCE:
-            raise faults.Fault(faults.LINK_LOST, f"not heard for {LINK_PATIENCE:g} s")
-        if not self._in_depth_hold():
-            raise faults.Fault("TAKEN_OVER", "somebody has changed the mode")
-        if not self._armed():
-            raise faults.Fault(faults.MOTORS_OFF, "somebody, or the vehicle itself, has disarmed it")
-        age = max(map(self._link.since, NEEDED))
-        if age > STALE > self._link.silent_for():
-            raise faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
         with self._lock:
-            before = self._helm.reached
-            sticks = self._helm.step(now, self._heading() or 0.0, self._depth_heard() or 0.0)
-            action = self._action
-            reached = self._helm.reached and not before
-        self._send(sticks)
-        if action is not None:
-            self._do(action)
-        if reached:
+            now, before = self._live.clock.now(), (self._trouble, self._helm.reached)
+            found = self._autopilot.trouble(LINK_PATIENCE if self._patience is None else self._patience)
+            which = found.event if found is not None else ""
+            if found is None or self._trouble is None or self._trouble.which != which:
+                self._trouble = None if found is None else Fault(which, str(found), found.instead)
+            self._steer(now, which)
+            self._see_progress(now)
+            changed = before != (self._trouble, self._helm.reached)
+        if changed:
             self._live.wake()
+
+    def _steer(self, now: float, trouble: str) -> None:
+        """Move the sticks, unless somebody else has the vehicle."""
+        if trouble in (faults.TAKEN_OVER, *OFF) or not self._autopilot.armed:
+            self._helm.drift(now)
+        elif self._autopilot.rising:
+            self._helm.drift(now)
+            self._helm.depth = self._autopilot.depth() or 0.0
+            self._autopilot.rise()
+        elif self._autopilot.mode == SURFACE:
+            self._helm.drift(now)
+            self._autopilot.stay()
+        elif not self._autopilot.knows:
+            self._autopilot.move(self._helm.drift(now))
+        else:
+            heading, depth = self._autopilot.heading(), self._autopilot.depth()
+            self._autopilot.move(self._helm.step(now, heading or 0.0, depth or 0.0))
+
+    def _see_progress(self, now: float) -> None:
+        if not self._helm.reached:
+            if now > self._late_at and self._own is None:
+                self._own = Fault(faults.NO_PROGRESS, "its goal is not reached in time", "SURFACE")
+        elif self._goals:
+            self._aim(self._goals.popleft(), now)
+        elif self._response in FINDS and not self._autopilot.rising:
+            self._come_up(now, self._instead)
 
     def _do(self, action: Action) -> None:
         wiring = self._context.wiring(action)
-        if not isinstance(wiring, Wired):
-            raise faults.Fault("DEVICE_SILENT", f"'{action.device}' is not wired for '{action.name}'")
-        for number, params in ((wiring.command, wiring.params), *wiring.more):
-            command(self._link, number, *params)
-        seconds = seconds_of(action, self._context.type) if wiring.seconds is None else wiring.seconds
+        found: Fault | None = None
+        seconds = 0.0
+        try:
+            if not isinstance(wiring, Wired):
+                raise faults.Refused(f"'{action.device}' is not wired for '{action.name}'")
+            for number, params in ((wiring.command, wiring.params), *wiring.more):
+                self._autopilot.do(number, *params)
+        except faults.Fault as fault:
+            found = Fault(faults.DEVICE_SILENT, str(fault))
+        else:
+            seconds = seconds_of(action, self._context.type) if wiring.seconds is None else wiring.seconds
         with self._lock:
-            self._busy_until, self._action = self._live.clock.now() + seconds, None
+            if self._action is action:
+                self._own, self._action = found, None
+                self._busy_until = self._live.clock.now() + seconds
+        self._live.wake()
+
+    def _hinders(self, found: Fault) -> Fault | None:
+        """Return what keeps the vehicle from what it was told to do instead of its program."""
+        if found.which == faults.TAKEN_OVER or (found.which == faults.LINK_LOST and self._silent()):
+            return found
+        if found.which == faults.CRASHED and self._response != "SURFACE":
+            return found
+        if found.which in (faults.POSITION_LOST, faults.NO_PROGRESS) and self._response in FINDS:
+            return Fault(found.which, found.reason, "SURFACE") if not self._autopilot.rising else None
+        return None
+
+    def _has_stopped(self, now: float) -> bool:
+        trouble = self._trouble
+        driven = self._ready and self._thread is not None and self._thread.is_alive()
+        if self._response == NOTHING or not driven or (trouble is not None and trouble.which in OFF):
+            return True
+        if self._autopilot.rising and now > self._late_at:
+            self._instead = f"it is not known to have come up: {self._helm.depth:.1f} m deep when last heard"
+            return True
+        if trouble is not None and trouble.which == faults.LINK_LOST:
+            return False
+        if self._autopilot.rising:
+            return self._autopilot.knows_depth and self._helm.depth <= NEAR_THE_SURFACE
+        held = self._helm.reached or not self._autopilot.knows
+        return self._response in STAYS and self._autopilot.mode == DEPTH_HOLD and held
+
+    def _silent(self) -> bool:
+        return self._autopilot.silent > UNHEARD
+
+    def _find(self, response: str, now: float) -> None:
+        """Go round forbidden areas and obstacles to home or to an emergency area, then come up."""
+        goals = self._ways.for_response(response, self._here())
+        if goals:
+            self._autopilot.rising = False
+            self._go(goals, now)
+        else:
+            self._come_up(now, "no way there is known: it comes up where it is")
+
+    def _come_up(self, now: float, instead: str = "") -> None:
+        self._goals.clear()
+        self._instead = instead
+        self._late_at = now + self._helm.seconds(Goal(0.0))
+        self._lost = self._autopilot.rising = True
+
+    def _stay(self, depth: float) -> None:
+        self._goals.clear()
+        self._late_at = inf
+        self._helm.aim(Goal(depth, self._helm.east, self._helm.north))
+
+    def _go(self, goals: Sequence[Goal], now: float) -> None:
+        self._goals = deque(goals)
+        if self._goals:
+            self._aim(self._goals.popleft(), now)
+
+    def _aim(self, goal: Goal, now: float) -> None:
+        self._depth, self._late_at = goal.depth, now + self._helm.seconds(goal)
+        self._helm.aim(goal)
+
+    def _here(self) -> Position:
+        return (self._helm.east, self._helm.north, self._context.zero - self._helm.depth)
 
     def _let_go(self) -> None:
         """Let the sticks go; disarm where the robot is still ours and its mode is."""
-        if self._released or not self._ready or not self._in_depth_hold():
+        if self._released or not self._ready:
             return
         try:
-            self._send(Sticks())
-            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, tries=2)
+            self._autopilot.let_go(at_once=self._response == "STOP_THRUST")
         except faults.Fault as fault:
             self._live.say(f"could not be disarmed: {fault}")
-
-    def _armed(self) -> bool:
-        beat = self._link.latest("HEARTBEAT")
-        return beat is not None and bool(beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-
-    def _in_depth_hold(self) -> bool:
-        beat = self._link.latest("HEARTBEAT")
-        return beat is not None and beat.custom_mode == DEPTH_HOLD
-
-    def _send(self, sticks: Sticks) -> None:
-        self._link.send(manual_control(self._link.system, sticks))
-
-    def _heading(self) -> float | None:
-        told = self._link.latest("ATTITUDE")
-        return None if told is None else degrees(told.yaw) % 360.0
-
-    def _depth_heard(self) -> float | None:
-        told = self._link.latest("GLOBAL_POSITION_INT")
-        return None if told is None else max(0.0, -told.relative_alt * 1e-3)
-
-
-def manual_control(system: int, sticks: Sticks) -> Any:
-    """Return the message of the sticks as ArduSub takes it: z is from 0 to 1000, and rests at 500."""
-    x, z, r = round(1000 * sticks.forward), round(500 + 500 * sticks.up), round(1000 * sticks.turn)
-    return mavlink.MAVLink_manual_control_message(system, x, 0, z, r, 0)

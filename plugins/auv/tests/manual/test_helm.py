@@ -7,8 +7,8 @@ from math import cos, hypot, radians, sin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mmrs_auv.manual.autopilot import manual_control
 from mmrs_auv.manual.helm import Goal, Helm, Sticks
-from mmrs_auv.manual.robot import manual_control
 
 FULL, CLIMB, TURN, STEP = 1.0, 0.5, 45.0, 0.1
 
@@ -106,8 +106,19 @@ def test_without_a_goal_the_sticks_are_let_go():
     assert helm.step(0.0, 90.0, 3.0) == Sticks()
     helm.aim(Goal(0.0, 9.0, 9.0))
     assert helm.step(0.1, 90.0, 3.0) != Sticks()
-    assert helm.rest() == Sticks()
-    assert helm.step(0.2, 90.0, 3.0) == Sticks()
+    assert helm.drift(0.2) == Sticks()
+
+
+def test_a_vehicle_that_drifts_is_not_reckoned_to_go_on():
+    helm = Helm(0.0, 0.0, FULL)
+    helm.aim(Goal(0.0, 0.0, 9.0))
+    helm.step(0.0, 0.0, 0.0)
+    assert helm.speed > 0.0
+    helm.drift(0.1)
+    north = helm.north
+    helm.drift(5.0)
+    assert (helm.speed, helm.north) == (0.0, north)
+    assert helm.step(5.1, 0.0, 0.0) != Sticks()
 
 
 @pytest.mark.parametrize(

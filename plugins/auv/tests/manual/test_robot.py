@@ -9,23 +9,25 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
+from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.manual import ARDUSUB_MANUAL
-from mmrs_auv.manual.robot import TOLD
+from mmrs_auv.manual.autopilot import TOLD
 from mmrs_auv.names import AUV_MOVEMENT
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mmrs_core.behaviour.program import Heading, Target
+from mmrs_core.behaviour.program import BEHAVIOUR, Action, Heading, Target
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.flight.services.commands import command
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.scene import Capability, Frame, Part, RobotType
+from mmrs_core.scene import Area, AreaUse, Capability, Device, DeviceAction, Frame, Part, RobotType
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, robot_program
 
 SPEEDUP = 10.0
 POOL = Frame("EPSG:4326", None, None, surface=0.0)
 ROBOT = ("urn:mmrs:robot:1.0", "Robot")
+DEVICE_ACTION = ((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action"))
 DIVER = RobotType(
     "Diver",
     (ROBOT,),
@@ -34,8 +36,8 @@ DIVER = RobotType(
     None,
     (Capability(0.0, 3600.0, (0.0, 1.0)),),
     (),
-    {},
-    Part((ROBOT,), {}),
+    {"lamp": Device("lamp", {"on": DeviceAction("on", 0.0)}, {"mavlink.relay": "1"})},
+    Part((ROBOT,), {"maxOperatingPressure": 600_000.0}),
 )
 
 
@@ -51,9 +53,11 @@ MOVES = (
 )
 
 
-def given(*moves, live=None, **options):
+def given(*moves, live=None, areas=(), **options):
     robot = robot_program("naiad", moves or MOVES, home=(0.0, 0.0, 0.0), type_name="Diver")
-    return BackendInput(program(robot, frame=POOL), robot, DIVER, {}, {}, {}, options, live=live)
+    kinds = {AUV_MOVEMENT: AUV_KIND}
+    behaviour = program(robot, frame=POOL, reserve=0.2)
+    return BackendInput(behaviour, robot, DIVER, kinds, {}, {}, options, areas=areas, live=live)
 
 
 def free_port():
@@ -80,6 +84,18 @@ class Driven:
         until(lambda: self.fault or self.backend.finished(self.clock.now()))
         assert self.fault is None
 
+    def stop(self, response):
+        self.backend.stop(self.clock.now(), response)
+        until(lambda: self.backend.finished(self.clock.now()))
+
+    def pass_by(self, seconds):
+        end = self.clock.now() + seconds
+        until(lambda: self.clock.now() >= end)
+
+    @property
+    def undone(self):
+        return self.backend.undone(self.clock.now())
+
     @property
     def fault(self):
         return self.backend.fault(self.clock.now())
@@ -91,11 +107,11 @@ class Driven:
 
 
 @contextmanager
-def sub(*, located=False, **settings):
+def sub(*, located=False, areas=(), **settings):
     """Give a simulated ArduSub that has no position, and its robot, ready."""
     port, clock, said = free_port(), RealClock(SPEEDUP), []
     live = Live(clock, lambda: None, said.append, "run-0", links={"naiad": f"udpin:127.0.0.1:{port}"})
-    backend = ARDUSUB_MANUAL.connect(given(live=live))
+    backend = ARDUSUB_MANUAL.connect(given(live=live, areas=areas))
     with SimulatedVehicle(port, Settings(kind="sub", **settings), speedup=SPEEDUP) as vehicle:
         vehicle.autopilot.located = located
         driven = Driven(backend, clock, vehicle, said)
@@ -141,7 +157,10 @@ def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):
         command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), -1.0)
         until(lambda: driven.fault)
         assert driven.fault.which == "POSITION_LOST"
-        until(lambda: not driven.vehicle.autopilot.armed)
+        here = driven.truth
+        driven.pass_by(5.0)
+        assert driven.truth == pytest.approx(here, abs=0.2)
+    assert not driven.vehicle.autopilot.armed
 
 
 def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
@@ -170,6 +189,7 @@ def test_who_takes_the_stick_has_the_vehicle():
         driven.vehicle.faults.take_stick("manual")
         until(lambda: driven.fault is not None)
         assert driven.fault.which == "TAKEN_OVER"
+        driven.stop("NOTHING")
         assert driven.vehicle.autopilot.armed
 
 
@@ -181,17 +201,177 @@ def test_a_link_that_is_lost_is_told():
         assert driven.fault.which == "LINK_LOST"
 
 
-@pytest.mark.parametrize(("response", "up"), [("SURFACE", 0.0), ("HOLD", -1.0)])
-def test_it_stops_as_a_response_says(response, up):
+def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        driven.vehicle.faults.fall_dumb()
+        until(lambda: driven.fault)
+        assert driven.backend.bear(driven.clock.now())
+        assert driven.fault is None
+        east = driven.truth[0]
+        driven.pass_by(5.0)
+        assert driven.truth[0] == pytest.approx(east, abs=0.2)
+        driven.vehicle.faults.speak()
+        driven.finish()
+        assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
+
+
+def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
     with sub() as driven:
         driven.begin("out")
         until(lambda: driven.truth[2] < -1.0)
-        driven.backend.stop(driven.clock.now(), response)
-        until(lambda: driven.backend.finished(driven.clock.now()))
-        if response == "SURFACE":
-            assert driven.truth[2] == pytest.approx(up, abs=0.4)
-        else:
-            assert driven.truth[2] <= up
+        driven.vehicle.faults.set_battery(0.15)
+        until(lambda: driven.fault)
+        assert driven.fault.which == "BATTERY_LOW"
+        driven.stop("SURFACE")
+        assert driven.vehicle.autopilot.mode_name == "surface"
+        assert driven.truth[2] >= -0.4
+        assert not driven.undone
+        assert not driven.backend.watched(driven.clock.now())
+        assert "nobody knows where it is" in driven.backend.hindrance((), "out", driven.clock.now())
+
+
+def test_water_inside_brings_it_up():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.vehicle.autopilot.say(4, "Leak Detected")
+        until(lambda: driven.fault)
+        assert (driven.fault.which, driven.fault.instead) == ("CRASHED", "SURFACE")
+        driven.stop("SURFACE")
+        assert driven.truth[2] >= -0.4
+
+
+def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():
+    with sub() as driven:
+        driven.begin("out")
+        driven.pass_by(15.0)
+        driven.vehicle.faults.restart()
+        until(lambda: driven.fault and driven.fault.which == "VEHICLE_RESTARTED")
+        driven.stop("SURFACE")
+        assert "its motors are off" in driven.undone
+        assert not driven.vehicle.autopilot.armed
+
+
+def test_it_holds_its_depth_where_nobody_knows_its_heading_any_more():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(TOLD[0]), -1.0)
+        until(lambda: driven.fault)
+        driven.stop("HOLD")
+        assert driven.backend.watched(driven.clock.now())
+        driven.pass_by(5.0)
+        assert driven.vehicle.autopilot.armed
+        assert driven.truth[2] < -1.0
+        driven.stop("RETURN")
+        assert "not known: it comes up" in driven.undone
+        assert driven.truth[2] >= -0.4
+
+
+@pytest.mark.parametrize("response", ["RETURN", "EMERGENCY_AREA"])
+def test_it_goes_round_what_is_forbidden_and_comes_up_there(response):
+    wall = Area("wall", AreaUse.FORBIDDEN, ((2.0, -0.4), (3.0, -0.4), (3.0, 0.4), (2.0, 0.4)))
+    refuge = Area("bay", AreaUse.EMERGENCY, ((-9.0, -4.0), (-1.0, -4.0), (-1.0, 4.0), (-9.0, 4.0)))
+    with sub(areas=(wall, refuge)) as driven:
+        driven.begin("out")
+        driven.finish()
+        gone = len(driven.vehicle.autopilot.track)
+        driven.stop(response)
+        track = driven.vehicle.autopilot.track[gone:]
+        within = [(east, north) for _, north, east, _ in track if 2.0 <= east <= 3.0]
+        assert min(abs(north) for _, north in within) > 0.4
+        assert (
+            driven.truth[0] == pytest.approx(0.0, abs=1.5) if response == "RETURN" else driven.truth[0] < 0.0
+        )
+        assert driven.truth[2] >= -0.4
+        assert not driven.undone
+
+
+def test_it_comes_up_and_says_so_where_there_is_no_emergency_area():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.stop("EMERGENCY_AREA")
+        assert driven.undone == "no way there is known: it comes up where it is"
+        assert driven.truth[2] >= -0.4
+
+
+def test_thrust_that_is_to_stop_has_stopped():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.stop("STOP_THRUST")
+        assert not driven.vehicle.autopilot.armed
+
+
+def test_a_vehicle_that_comes_up_can_be_told_to_stay():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.9)
+        driven.backend.stop(driven.clock.now(), "SURFACE")
+        until(lambda: driven.vehicle.autopilot.mode_name == "surface")
+        driven.stop("HOLD")
+        assert driven.vehicle.autopilot.mode_name == "alt_hold"
+        assert driven.truth[2] < -0.4
+
+
+def test_a_device_that_does_not_answer_is_told_while_the_vehicle_is_steered_on():
+    with sub() as driven:
+        driven.begin("out")
+        driven.finish()
+        driven.vehicle.faults.silence(mavlink.MAV_CMD_DO_SET_RELAY)
+        driven.backend.act(Action(DEVICE_ACTION, "on", "lamp"), driven.clock.now())
+        until(lambda: driven.fault)
+        assert driven.fault.which == "DEVICE_SILENT"
+        assert driven.vehicle.autopilot.armed
+        assert driven.backend.bear(driven.clock.now())
+        driven.finish()
+
+
+def test_it_pauses_and_goes_on():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        driven.backend.pause(driven.clock.now())
+        until(lambda: driven.backend.paused(driven.clock.now()))
+        here = driven.truth
+        driven.pass_by(5.0)
+        assert driven.truth == pytest.approx(here, abs=0.3)
+        driven.backend.resume(driven.clock.now())
+        driven.finish()
+        assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
+
+
+def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
+    with sub() as driven:
+        driven.begin("out")
+        driven.backend._late_at = driven.clock.now()
+        until(lambda: driven.fault)
+        assert (driven.fault.which, driven.fault.instead) == ("NO_PROGRESS", "SURFACE")
+
+
+def test_who_is_told_to_end_while_it_gets_ready_arms_nothing():
+    port, clock = free_port(), RealClock(SPEEDUP)
+    live = Live(clock, lambda: None, print, "run-0", links={"naiad": f"udpin:127.0.0.1:{port}"})
+    backend = ARDUSUB_MANUAL.connect(given(live=live))
+    with SimulatedVehicle(port, Settings(kind="sub", silent=frozenset({176})), speedup=SPEEDUP) as vehicle:
+        backend.prepare(clock.now())
+        until(lambda: any(kind == "COMMAND_LONG" for _, kind in vehicle.received))
+        time.sleep(0.2)
+        backend.close()
+        assert not vehicle.autopilot.armed
+        assert not any("Arming" in text for _, _, text in vehicle.autopilot.said)
+
+
+@pytest.mark.parametrize("response", ["HOLD", "SURFACE"])
+def test_it_stops_as_a_response_says(response):
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.stop(response)
+        assert driven.truth[2] >= -0.4 if response == "SURFACE" else driven.truth[2] <= -1.0
 
 
 @pytest.mark.parametrize(

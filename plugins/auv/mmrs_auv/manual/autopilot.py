@@ -1,0 +1,244 @@
+"""What an ArduSub tells of itself, and how it is got ready, brought up and let go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import degrees, inf
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_auv.manual.helm import Sticks
+from mmrs_core.flight import faults
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.services.commands import ask, command
+from mmrs_core.flight.vehicles.modes import word_of
+from mmrs_core.flight.vehicles.texts import Texts
+
+DEPTH_HOLD, SURFACE = 2, 9
+
+TOLD = (mavlink.MAVLINK_MSG_ID_ATTITUDE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
+TOLD_EVERY = 100_000
+"""Microseconds."""
+
+NEEDED, STALE = ("ATTITUDE", "GLOBAL_POSITION_INT"), 2.0
+"""What heading and depth are told by, and after how many seconds without they are not known any more."""
+
+FIRST_SIGN = 60.0
+INSISTING, PATIENCE = 12, 3.0
+"""Times that something is asked for until it is done, and seconds between them."""
+
+ASKED_EVERY = 1.0
+"""Seconds after which a vehicle that does not come up is told to once more."""
+
+OFF_FOR = 2.0
+"""Seconds without motors after which no news of a new start is waited for."""
+
+LEAK = "leak detected"
+COMES_UP = "SURFACE"
+"""What an ArduSub says of water inside, in small letters, and the response to that."""
+
+
+class Autopilot:
+    """An ArduSub at the end of its link, in depth hold as long as it is not to come up.
+
+    Attributes:
+        rising: whether it is to come up by itself.
+    """
+
+    def __init__(self, link: Link, given_up: Callable[[], bool], reserve: float) -> None:
+        """Listen; nothing is said before it is to get ready.
+
+        Args:
+            link: to the vehicle.
+            given_up: whether nobody waits for it any more.
+            reserve: part of the battery with less than which it counts as low.
+        """
+        self.rising = self._rose = False
+        self._link, self._given_up, self._reserve = link, given_up, reserve
+        self._texts = Texts(link.clock)
+        link.observe(self._texts)
+        self._starts, self._ready_at, self._asked, self._off_since = 0, -inf, -inf, inf
+
+    def get_ready(self) -> None:
+        """Go into depth hold and arm.
+
+        Raises:
+            faults.Fault: it is not heard, tells too little, or does not do it; or nobody waits any more.
+        """
+        if not self._wait(lambda: bool(self._link.component), FIRST_SIGN):
+            raise faults.Fault(faults.LINK_LOST, "no vehicle is heard")
+        for number in TOLD:
+            command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
+        if not self._wait(lambda: None not in (self.heading(), self.depth()), FIRST_SIGN):
+            raise faults.Fault("SENSORS_SILENT", "the vehicle tells no heading and no depth")
+        self._insist(lambda: self.mode == DEPTH_HOLD, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(DEPTH_HOLD))
+        self.move(Sticks())
+        self._insist(lambda: self.armed, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
+        self._starts, self._ready_at = self._link.starts, self._link.clock.now()
+
+    def trouble(self, patience: float) -> faults.Fault | None:
+        """Return what is wrong; what leaves the vehicle to itself, or to others, goes first.
+
+        Args:
+            patience: seconds of silence after which the link counts as lost.
+        """
+        if self._link.silent_for() > patience:
+            return faults.Fault(faults.LINK_LOST, f"not heard for {self._link.silent_for():.0f} s")
+        if self._link.starts != self._starts:
+            return faults.Fault(faults.VEHICLE_RESTARTED, "it has begun anew, with its motors off")
+        if not self.armed:
+            return self._disarmed()
+        self._off_since = inf
+        return self._risen() or self._taken() or self._stale() or self._low()
+
+    @property
+    def knows(self) -> bool:
+        """Return whether heading and depth were told just now."""
+        return max(map(self._link.since, NEEDED)) <= STALE
+
+    @property
+    def knows_depth(self) -> bool:
+        """Return whether its depth was told just now."""
+        return self._link.since(NEEDED[1]) <= STALE
+
+    def heading(self) -> float | None:
+        """Return degrees clockwise from north, as told last."""
+        told = self._link.latest("ATTITUDE")
+        return None if told is None else degrees(told.yaw) % 360.0
+
+    def depth(self) -> float | None:
+        """Return metres below the surface, as told last."""
+        told = self._link.latest("GLOBAL_POSITION_INT")
+        return None if told is None else max(0.0, -told.relative_alt * 1e-3)
+
+    def charge(self) -> float | None:
+        """Return which part of the battery is left, as told last."""
+        told = self._link.latest("SYS_STATUS")
+        left = told.battery_remaining if told is not None else -1
+        return left / 100.0 if left >= 0 else None
+
+    @property
+    def armed(self) -> bool:
+        """Return whether its motors may run, as its last heartbeat says."""
+        beat = self._link.latest("HEARTBEAT")
+        return beat is not None and bool(beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
+    @property
+    def mode(self) -> int | None:
+        """Return the number of its mode, as its last heartbeat says."""
+        beat = self._link.latest("HEARTBEAT")
+        return None if beat is None else int(beat.custom_mode)
+
+    @property
+    def silent(self) -> float:
+        """Return for how many seconds it has not been heard."""
+        return self._link.silent_for()
+
+    def word(self) -> str:
+        """Return its mode in words."""
+        return "" if self.mode is None else word_of(self._link, "sub", self.mode)
+
+    def move(self, sticks: Sticks) -> None:
+        """Have the sticks be somewhere."""
+        self._link.send(manual_control(self._link.system, sticks))
+
+    def rise(self) -> None:
+        """Have it come up by itself; by the stick as long as it does not. To be called again and again."""
+        self.rising = self._rose = True
+        self.move(Sticks(up=0.0 if self.mode == SURFACE else 1.0))
+        self._ask(SURFACE)
+
+    def stay(self) -> None:
+        """Have it stay at its depth after it was to come up. To be called until it is in depth hold."""
+        self.move(Sticks())
+        self._ask(DEPTH_HOLD)
+
+    def let_go(self, *, at_once: bool) -> None:
+        """Let the sticks go, and disarm where it is in depth hold still, or `at_once`, while it comes up.
+
+        Raises:
+            faults.Fault: it does not disarm.
+        """
+        if self.mode == DEPTH_HOLD or (at_once and self._rose and self.mode == SURFACE):
+            self.move(Sticks())
+            command(self._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0, tries=2)
+
+    def do(self, number: int, *params: float) -> None:
+        """Have it carry out a command, and return when it says that it does.
+
+        Raises:
+            faults.Fault: it does not, or does not answer.
+        """
+        command(self._link, number, *params)
+
+    def _ask(self, mode: int) -> None:
+        now = self._link.clock.now()
+        if self.mode != mode and now - self._asked >= ASKED_EVERY:
+            self._asked = now
+            ask(self._link, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(mode))
+
+    def _disarmed(self) -> faults.Fault | None:
+        """Return that its motors are off, unless it may be about to tell that it has begun anew."""
+        self._off_since = min(self._off_since, self._link.clock.now())
+        if self._link.clock.now() - self._off_since < OFF_FOR:
+            return None
+        return faults.Fault(faults.MOTORS_OFF, "somebody, or the vehicle itself, has disarmed it")
+
+    def _risen(self) -> faults.Fault | None:
+        """Return what has the vehicle come up by itself, or should."""
+        if self._rose:
+            return None
+        if said := self._said(LEAK):
+            return faults.Fault(faults.CRASHED, f"the vehicle says '{said}'", COMES_UP)
+        if self.mode == SURFACE and self._is_low():
+            return faults.Fault(faults.BATTERY_LOW, "the vehicle comes up by itself", COMES_UP)
+        return None
+
+    def _taken(self) -> faults.Fault | None:
+        if self.mode == DEPTH_HOLD or (self._rose and self.mode == SURFACE):
+            return None
+        return faults.Fault(
+            "TAKEN_OVER", f"its mode is '{self.word()}' now: a pilot, or itself, has changed it"
+        )
+
+    def _stale(self) -> faults.Fault | None:
+        age = max(map(self._link.since, NEEDED))
+        if age <= STALE or self._link.silent_for() >= STALE:
+            return None
+        return faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
+
+    def _low(self) -> faults.Fault | None:
+        return faults.Fault(faults.BATTERY_LOW, f"{self.charge():.0%} are left") if self._is_low() else None
+
+    def _is_low(self) -> bool:
+        charge = self.charge()
+        return charge is not None and charge < self._reserve
+
+    def _said(self, words: str) -> str:
+        told = (each.text for each in self._texts.since(self._ready_at))
+        return next((text for text in told if words in text.lower()), "")
+
+    def _insist(self, test: Callable[[], bool], number: int, *params: float) -> None:
+        """Have a vehicle do what it takes some time after its start to do, and see that it does."""
+        for left in reversed(range(INSISTING)):
+            try:
+                command(self._link, number, *params)
+            except faults.Refused:
+                if not left:
+                    raise
+            if self._wait(test, PATIENCE):
+                return
+        raise faults.Refused(f"the vehicle does not do what command {number} asks for")
+
+    def _wait(self, test: Callable[[], bool], seconds: float) -> bool:
+        found = self._link.wait(lambda: test() or self._given_up(), seconds)
+        if self._given_up():
+            raise faults.Stopped
+        return bool(found)
+
+
+def manual_control(system: int, sticks: Sticks) -> Any:
+    """Return the message of the sticks as ArduSub takes it: z is from 0 to 1000, and rests at 500."""
+    x, z, r = round(1000 * sticks.forward), round(500 + 500 * sticks.up), round(1000 * sticks.turn)
+    return mavlink.MAVLink_manual_control_message(system, x, 0, z, r, 0)

@@ -1,0 +1,64 @@
+"""From what a run says to a robot that is driven by hand, at the end of its link."""
+
+from __future__ import annotations
+
+from mmrs_auv.manual.goals import refusals
+from mmrs_auv.manual.robot import ManualRobot
+from mmrs_core.contributions.backends import BackendInput, Live
+from mmrs_core.contributions.targets import TargetInput
+from mmrs_core.errors import LinkLostError, UnsupportedError
+from mmrs_core.flight import faults
+from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.links.ports import split_system
+from mmrs_core.flight.links.radios import Radios
+from mmrs_core.mavlink.backend.connection import FIRST_PORT, PORT_STEP, FollowingClock
+from mmrs_core.mavlink.context import context_of
+
+FULL_SPEED = "full-speed"
+
+
+def connect(given: BackendInput) -> ManualRobot:
+    """Return a robot at the end of its link.
+
+    Raises:
+        UnsupportedError: an option is unknown, the robot is no underwater vehicle, or it cannot be driven
+            to do all of its program by hand; lists all of it.
+        LinkLostError: the port cannot be opened.
+    """
+    unknown = sorted(set(given.options) - {FULL_SPEED})
+    if unknown:
+        raise UnsupportedError(f"option '{unknown[0]}': the backend has {FULL_SPEED}, metres per second")
+    speed = _full_speed(given)
+    if given.live is None:
+        raise UnsupportedError("backend 'ardusub-manual': drives robots in real time; 'mmrs run' does that")
+    types = {**given.types, given.type.name: given.type}
+    wirings = given.device_actions
+    input = TargetInput(given.program, types, given.robot_kinds, given.move_kinds, device_actions=wirings)
+    context = context_of(given.robot, input, geographic=False)
+    found = list(refusals(context))
+    if found:
+        raise UnsupportedError(f"robot '{given.robot.id}': cannot be driven to do all of it by hand", found)
+    return ManualRobot(given, context, _link(given, given.live), given.live, speed)
+
+
+def _full_speed(given: BackendInput) -> float:
+    said = given.options.get(FULL_SPEED)
+    try:
+        speed = given.type.capabilities[0].speed[1] if said is None else float(said)
+    except ValueError as error:
+        raise UnsupportedError(f"option '{FULL_SPEED}': '{said}' is no number") from error
+    if not 0.05 <= speed <= 20.0:
+        raise UnsupportedError(f"option '{FULL_SPEED}': {speed:g} m/s is no speed of an underwater vehicle")
+    return speed
+
+
+def _link(given: BackendInput, live: Live) -> Link:
+    number = [robot.id for robot in given.program.robots].index(given.robot.id)
+    usual = f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
+    try:
+        url, system = split_system(live.links.get(given.robot.id, usual))
+        return Radios(FollowingClock(live.clock)).open(url, system)
+    except ValueError as error:
+        raise UnsupportedError(f"link {error}") from error
+    except faults.Fault as fault:
+        raise LinkLostError(f"robot '{given.robot.id}': {fault}") from fault
