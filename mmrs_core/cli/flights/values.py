@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,11 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.flight.faults import TAKEN_OVER
 from mmrs_core.flight.policies import NOTHING
 from mmrs_core.geometry.frames import Floats
-from mmrs_core.scene import Position
+from mmrs_core.scene import PolicyEvent, Position
 
 _OFTEN = 0.5
+EVENTS = frozenset(get_args(PolicyEvent))
+"""Names of what policies answer."""
 Flags: TypeAlias = NDArray[np.bool_]
 
 
@@ -97,6 +99,21 @@ class Flown:
             for entry, content in decisions
             if content.get("response") == NOTHING and content.get("what") != TAKEN_OVER
         )
+
+    @property
+    def answered(self) -> tuple[Entry, ...]:
+        """Return the decisions that answer faults of which its log does not know: its program went on."""
+        logged = {record.detail.partition(":")[0] for record in self.records if record.label == "fault"}
+        return tuple(
+            entry
+            for entry in self.of_kind("decision")
+            if entry.content.get("what") in EVENTS - logged and entry not in self.given_up
+        )
+
+    @property
+    def program_time(self) -> float:
+        """Return how long its program took by its log, seconds; without one, until the last sign of it."""
+        return self.records[-1].time - self.records[0].time if self.records else self.end
 
     @property
     def end(self) -> float:

@@ -118,16 +118,15 @@ def _of_flight(
     from mmrs_core.cli.behaviours import load_behaviour
     from mmrs_core.cli.flights.gathering import read_flight
     from mmrs_core.cli.flights.planned import planned_for
-    from mmrs_core.cli.preview.from_flight import picture_of_flight
-    from mmrs_core.cli.preview.from_run import Surroundings
+    from mmrs_core.cli.report.command import picture_of as picture_of_flight
+    from mmrs_core.cli.report.making import Given, report_of
     from mmrs_core.cli.simulation import answers
 
     loaded = load_behaviour(workshop, file, context=context, robots=robots)
-    program, place = loaded.program, loaded.place
-    flight = read_flight(logs, program, place.types)
+    flight = read_flight(logs, loaded.program, loaded.place.types)
     planned = planned_for(workshop, loaded, flight, answers(assume))
-    around = Surroundings(place.areas or (), loaded.elements, place.types)
-    return picture_of_flight(program, flight, planned, workshop.contributions, around)
+    given = Given(loaded.program, loaded.place, flight, planned, workshop.contributions.move_kinds)
+    return picture_of_flight(workshop, loaded, given, report_of(given), file.parent)
 
 
 def write_pictures(picture: Picture, folder: Path) -> tuple[Path, ...]:

@@ -114,7 +114,11 @@ class _Shown:
             planned_heights=plan.heights,
             arms=(Arm("as planned", plan.bars[0].begin, plan.bars[-1].end, plan.bars),) if plan.bars else (),
             marks=tuple(self._marks()),
-            summary=(("moves", _moves_done(self._program, flown)), *known, ("time", clock(flown.end))),
+            summary=(
+                ("moves", _moves_done(self._program, flown)),
+                *known,
+                ("time", clock(flown.program_time)),
+            ),
         )
 
     def _legs(self) -> Iterator[Leg]:
@@ -182,7 +186,7 @@ class _Shown:
             at = self._flown.track.at(record.time) if record.label == "fault" else None
             if at is not None:
                 yield Mark("fault", at, f"{record.detail} at {clock(record.time)}, move {record.move}")
-        for entry in self._flown.given_up:
+        for entry in (*self._flown.answered, *self._flown.given_up):
             if (at := self._flown.track.at(entry.time)) is not None:
                 what, why = entry.content.get("what"), entry.content.get("why")
                 yield Mark("fault", at, f"{what} at {clock(entry.time)}: {why}")

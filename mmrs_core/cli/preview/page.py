@@ -15,7 +15,7 @@ from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, Thing
 from mmrs_core.cli.preview.profile import BARS, profile_markup
 from mmrs_core.cli.preview.projection import projection_of
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
-from mmrs_core.cli.preview.timeline import timeline_markup
+from mmrs_core.cli.preview.timeline import KEY, KEY_OF_FLIGHTS, timeline_markup
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 _TALLEST = 940
@@ -56,6 +56,7 @@ def page(picture: Picture) -> str:
             "section",
             None,
             element("h2", None, "Who does what, and who waits for whom"),
+            element("p", {"class": "soft"}, KEY_OF_FLIGHTS if picture.flown else KEY),
             element("div", {"class": "wide"}, timeline_markup(picture)),
         ),
         element(

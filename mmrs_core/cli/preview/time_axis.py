@@ -33,7 +33,9 @@ class TimeAxis:
 
     def markup(self, top: float, bottom: float) -> str:
         """Return the lines and words of the axis for a chart between two heights in pixels."""
-        return element("g", {"class": "axis"}, (self._mark(at, top, bottom) for at in self.marks()))
+        name = {"x": LEFT - 28, "y": bottom + 15, "text_anchor": "end"}
+        marks = (self._mark(at, top, bottom) for at in self.marks())
+        return element("g", {"class": "axis"}, element("text", name, "time"), marks)
 
     def _mark(self, seconds: float, top: float, bottom: float) -> str:
         x = self.at(seconds)

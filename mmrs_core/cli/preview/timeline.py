@@ -35,6 +35,9 @@ _WHATS = {
     "response": "does what no move says",
 }
 
+KEY = "Tall: works; low: takes off, travels or lands; hatched: waits; framed: stays, recharges or chooses."
+KEY_OF_FLIGHTS = f"{KEY} Red: does what no move says. Beneath, smaller: as planned."
+
 
 def timeline_markup(picture: Picture) -> str:
     """Return the timeline as one ``svg`` element with its own style, readable by itself."""

@@ -64,7 +64,7 @@ def report(
     made = report_of(given)
     path = output if output is not None else _beside(logs[0])
     refuse_inputs((path,), (*workshop.inputs, *read_files(logs)))
-    _write(path, made, given, _picture(workshop, loaded, given, made, file.parent))
+    _write(path, made, given, picture_of(workshop, loaded, given, made, file.parent))
     if json:
         say_json({"files": [path], "report": made})
     else:
@@ -84,7 +84,8 @@ def _beside(logs: Path) -> Path:
     return (logs if logs.is_dir() else logs.parent) / PAGE
 
 
-def _picture(workshop: Workshop, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
+def picture_of(workshop: Workshop, loaded: Loaded, given: Given, made: Report, folder: Path) -> Picture:
+    """Return the picture of a flight, with the tasks of the mission that lies in a folder."""
     from mmrs_core.cli.preview.from_flight import picture_of_flight
     from mmrs_core.cli.preview.from_run import Surroundings
     from mmrs_core.cli.report.asked import with_tasks

@@ -111,7 +111,7 @@ def _robot(robot: RobotProgram, given: Given, judged: ReplayResult) -> RobotRepo
         _ending(robot, flown, judged),
         _length(flown) if len(flown.track.times) else None,
         sum(dist(a.position, b.position) for a, b in pairwise(track)) if track else None,
-        flown.records[-1].time - flown.records[0].time if flown.records else flown.end,
+        flown.program_time,
         steps[-1].time - steps[0].time if steps else None,
         (len(ended), len(robot.moves)),
     )

@@ -15,7 +15,7 @@ from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture
 from mmrs_core.cli.preview.profile import BARS, profile_markup
-from mmrs_core.cli.preview.timeline import timeline_markup
+from mmrs_core.cli.preview.timeline import KEY_OF_FLIGHTS, timeline_markup
 from mmrs_core.cli.report import measures, sections
 from mmrs_core.cli.report.charts import battery_chart, off_way_chart
 from mmrs_core.cli.report.deviations import deviations_over_time
@@ -85,7 +85,8 @@ def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
     yield section("Map", _map(picture), key_markup(picture))
     yield sections.robots(report)
     yield sections.events(report)
-    yield section("Who did what, and who waited for whom", _wide(timeline_markup(picture)))
+    shown = _wide(timeline_markup(picture))
+    yield section("Who did what, and who waited for whom", shown, note=KEY_OF_FLIGHTS)
     words = f"{BARS} Dashed grey: as planned."
     yield section("Heights above the origin", _wide(profile_markup(picture)), note=words)
     yield measures.deviations(report)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mmrs_core.cli.figures import clock
+from mmrs_core.cli.flights.values import EVENTS
 from mmrs_core.cli.preview.markup import element, text
 from mmrs_core.cli.report.values import Report, Status
-from mmrs_core.cli.report.words import metres, percent
+from mmrs_core.cli.report.words import metres, percent, spoken
 
 
 def verdict(report: Report) -> str:
@@ -66,5 +67,13 @@ def _figures(report: Report) -> Iterator[tuple[str, str]]:
     if report.photos and not report.simulated:
         taken = sum(photo.state == "taken" for photo in report.photos)
         yield "photos confirmed", f"{taken} of {len(report.photos)}"
-    faults = sum(event.kind == "fault" for event in report.events)
-    yield "faults", str(faults) if faults else "none"
+    yield "faults", _faults(report)
+
+
+def _faults(report: Report) -> str:
+    """Return how many faults there were, and which: those that ended programs, or were answered."""
+    ended = [(e.robot, e.what.partition(":")[0]) for e in report.events if e.kind == "fault"]
+    decided = [(e.robot, e.what) for e in report.events if e.kind == "decision" and e.what in EVENTS]
+    faults = [*ended, *(each for each in decided if each not in ended)]
+    names = dict.fromkeys(spoken(name) for _, name in faults)
+    return f"{len(faults)} ({', '.join(names)})" if faults else "none"

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import shutil
 from html.parser import HTMLParser
 
 import pytest
+
+from mmrs_core.resources import shipped
 
 
 class Page(HTMLParser):
@@ -183,6 +186,16 @@ def test_a_preview_of_logs_shows_what_was_flown_over_what_was_planned(mmrs, proj
     assert text.count('class="planned"') > 2
     assert '"times":' in text or '"times": ' in text
     assert "flown for" in text
+
+
+def test_a_preview_of_logs_shows_the_tasks_of_the_mission_beside_the_behaviour(mmrs, tmp_path):
+    project = shutil.copytree(shipped("examples") / "drone-and-rover", tmp_path / "yard")
+    for order in (("plan", project), ("simulate", project, "-o", project / "logs")):
+        assert mmrs(*order)[0] == 0
+    assert mmrs("preview", project, "--logs", project / "logs", "-o", project / "out")[0] == 0
+    text = (project / "out" / "preview.html").read_text("utf-8")
+    assert "2 robots, 3 tasks, flown for" in text
+    assert text.count('class="task-bar"') == 3
 
 
 def test_a_replay_tells_where_robots_were(mmrs, project):

@@ -113,3 +113,18 @@ def test_the_page_has_the_times_of_the_ways(shown):
     text = page(shown())
     assert '"times"' in text
     assert "ways as planned" in text
+
+
+def test_a_fault_is_marked_where_it_was_answered_although_the_program_went_on(shown, run):
+    times = [sample.time for sample in run.tracks["alpha"]]
+    content = {"what": "BATTERY_LOW", "why": "20 % is left", "response": "RETURN"}
+    entry = Entry("r", "alpha", times[len(times) // 2], "", "decision", content)
+    (mark,) = (mark for mark in shown(alpha={"entries": (entry,)}).robots[0].marks if mark.kind == "fault")
+    assert mark.tip.startswith("BATTERY_LOW at ")
+
+
+def test_a_robot_took_as_long_as_its_program(shown, run):
+    last = [record for record in run.records if record.robot == "alpha"][-1]
+    later = Entry("r", "alpha", last.time + 500.0, "", "note", {})
+    robot = shown(alpha={"entries": (later,)}).robots[0]
+    assert dict(robot.summary)["time"] == dict(shown().robots[0].summary)["time"]

@@ -108,3 +108,9 @@ def test_the_water_surface_is_drawn_for_those_under_it(picture):
     wet = replace(picture, surface=1.0)
     assert len(with_class(profile_markup(wet), "surface")) == len(picture.robots)
     assert with_class(profile_markup(picture), "surface") == []
+
+
+def test_the_time_axis_has_a_name(picture):
+    for markup in (timeline_markup(picture), profile_markup(picture)):
+        (axis,) = with_class(markup, "axis")
+        assert axis.findtext(f"{SVG}text") == "time"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mmrs_core.cli.flights.planned import Planned
 from mmrs_core.cli.report.making import Given, report_of
 from mmrs_core.cli.report.sections import events
+from mmrs_core.cli.report.summary import tiles
 
 
 def test_codes_are_spelt_out_and_names_of_things_and_of_others_stay(
@@ -19,3 +20,27 @@ def test_codes_are_spelt_out_and_names_of_things_and_of_others_stay(
     assert "EKF Failsafe: changed to LAND Mode" in told
     assert "position lost" in told
     assert "it has no GPS fix; response: emergency area" in told
+
+
+def test_faults_that_were_answered_count_although_the_program_went_on(
+    behaviour, place, run, contributions, as_run, make
+):
+    alpha = (
+        make.entry(2.0, "decision", what="BATTERY_LOW", why="20 % is left", response="RETURN"),
+        make.entry(9.0, "decision", what="resume", why="its log ends", response="goes the way it came"),
+    )
+    told = tiles(
+        report_of(
+            Given(behaviour, place, as_run(alpha={"entries": alpha}), Planned(run), contributions.move_kinds)
+        )
+    )
+    assert "<dt>faults</dt><dd>1 (battery low)</dd>" in told
+
+
+def test_a_fault_that_ended_a_program_counts_once(behaviour, place, run, contributions, as_run, make):
+    alpha = {
+        "entries": (make.entry(2.0, "decision", what="LINK_LOST", why="nothing heard", response="RETURN"),),
+        "records": make.records("alpha", (2.0, "fault", "a2", "LINK_LOST: nothing heard")),
+    }
+    given = Given(behaviour, place, as_run(alpha=alpha), Planned(run), contributions.move_kinds)
+    assert "<dt>faults</dt><dd>1 (link lost)</dd>" in tiles(report_of(given))
