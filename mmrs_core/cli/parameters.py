@@ -55,6 +55,14 @@ def _files_of(path: Path) -> tuple[Path, ...]:
     return found
 
 
+def without_mission(project: Path) -> Path:
+    """Return the behaviour that stands in a folder without a mission; else the path itself."""
+    from mmrs_core.languages.modelset import model_in
+
+    alone = model_in(project, "behaviour") if model_in(project, "mission") is None else None
+    return alone or project
+
+
 def behaviour_file(given: Path) -> Path:
     """Return the file of a behaviour, which a folder may stand for.
 

@@ -11,7 +11,7 @@ import typer
 from mmrs_core.cli.any_model import Metamodels, is_metamodel
 from mmrs_core.cli.metamodel_tree import validate_metamodel
 from mmrs_core.cli.output import counted, report, say, say_json, tell
-from mmrs_core.cli.parameters import Context, Project, Robots, robot_files
+from mmrs_core.cli.parameters import Context, Project, Robots, robot_files, without_mission
 from mmrs_core.cli.reports import STANDARD_OUTPUT, Sarif, refuse_two_outputs
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.errors import UnreadableError
@@ -58,7 +58,9 @@ def validate(
         raise typer.BadParameter(f"--metamodel is for one model: name its file in {project}")
     refuse_two_outputs(sarif, json or fix)
     workshop = Workshop(settings_of(call))
-    subject = Subject(workshop, project, context, robot_files(robots), tuple(metamodel or ()))
+    subject = Subject(
+        workshop, without_mission(project), context, robot_files(robots), tuple(metamodel or ())
+    )
     found, changed = subject.examined(), False
     repairer = repairer_for(workshop.contributions, subject.diagnose)
     report(found.faults)

@@ -56,5 +56,7 @@ def hint_for(ns_uri: str, registry: Registry, kept: str = _KEPT) -> str:
     if distribution:
         return f"a plug-in is missing: install {distribution}, which brings {ns_uri}; {kept}"
     guess = typo_of(ns_uri, installed)
-    missing = f"a plug-in is missing: install the one that brings {ns_uri}; {kept}"
+    missing = (
+        f"a plug-in is missing: install the one that brings {ns_uri}, or write it ('mmrs plugin new'); {kept}"
+    )
     return f"{guess} else {missing}" if guess else missing

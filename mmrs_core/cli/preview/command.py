@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mmrs_core.cli.output import say, say_json
-from mmrs_core.cli.parameters import Assume, Context, Robots, Seed, behaviour_file, robot_files
+from mmrs_core.cli.parameters import (
+    Assume,
+    Context,
+    Robots,
+    Seed,
+    behaviour_file,
+    robot_files,
+    without_mission,
+)
 from mmrs_core.cli.settings import Json, settings_of
 from mmrs_core.resources import named
 
@@ -57,8 +65,8 @@ def preview(
     types = robot_files(robots)
     if logs:
         picture = _of_flight(workshop, behaviour_file(project), context, types, assume, logs)
-    elif is_behaviour(workshop, project):
-        picture = _of_behaviour(workshop, project, context, types, assume)
+    elif is_behaviour(workshop, alone := without_mission(project)):
+        picture = _of_behaviour(workshop, alone, context, types, assume)
     elif assume:
         raise typer.BadParameter(
             "--assume goes with a behaviour, or with --logs; a mission is drawn as planned"

@@ -9,8 +9,11 @@ from lxml import etree
 CHOICE = "energy_above_100_kJ"
 
 
-def test_validate_accepts_a_behaviour(mmrs, project):
+def test_validate_takes_the_file_or_a_folder_without_a_mission(mmrs, project):
     assert mmrs("validate", project / "behaviour.xmi")[0] == 0
+    assert mmrs("validate", project) == (0, f"{project}: valid\n", "")
+    (project / "mission.xmi").write_text("<no/>")
+    assert "mission.xmi:1: error" in mmrs("validate", project)[2]
 
 
 def test_check_takes_the_folder_or_the_file(mmrs, project):
@@ -158,6 +161,9 @@ def test_logs_of_an_earlier_run_go_away_and_other_files_stay(mmrs, project):
 def test_a_behaviour_can_be_drawn(mmrs, project):
     code, out, _ = mmrs("preview", project / "behaviour.xmi", "-o", project / "pictures")
     assert code == 0
+    page = (project / "pictures" / "preview.html").read_bytes()
+    assert mmrs("preview", project, "-o", project / "of-folder")[0] == 0
+    assert (project / "of-folder" / "preview.html").read_bytes() == page
     assert out.count("written: ") == 2
     svg = etree.parse(project / "pictures" / "preview.svg")
     words = "".join(svg.getroot().itertext())
