@@ -10,17 +10,18 @@ from pathlib import Path
 
 import pytest
 
-HERE = Path(__file__).parent
+ROOT = Path(__file__).parents[1]
 IN_REAL_TIME = {
-    "controllers": ("end_to_end/controllers",),
-    "runs and buses": ("conformance/bus", "end_to_end/bus", "end_to_end/run"),
+    "controllers": ("tests/end_to_end/controllers",),
+    "runs and buses": ("tests/conformance/bus", "tests/end_to_end/bus", "tests/end_to_end/run"),
+    "vessels": ("tests/end_to_end/vessels", "plugins/auv/tests/manual"),
     "parts of flights": (
-        "end_to_end/faults",
-        "end_to_end/vehicles",
-        "unit/flight",
-        "unit/mavlink/backend/test_response.py",
-        "unit/runtime",
-        "unit/sitl",
+        "tests/end_to_end/faults",
+        "tests/end_to_end/vehicles",
+        "tests/unit/flight",
+        "tests/unit/mavlink/backend/test_response.py",
+        "tests/unit/runtime",
+        "tests/unit/sitl",
     ),
 }
 """Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
@@ -37,6 +38,10 @@ SHARING = (
     "tests/unit/generation/test_capabilities.py",
 )
 """Modules whose tests share what is long in the making, so that one worker makes it once."""
+SHARED = {str(ROOT / module) for module in SHARING}
+AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
+GIVING_WAY = 10
+"""Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -76,10 +81,24 @@ def draw_the_same_examples_everywhere() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give tests with full counts time enough."""
+    """Give tests with full counts time enough; have workers begin with what keeps to the wall clock."""
     for item in items:
         if item.get_closest_marker("thorough") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(3600))
+    if AT_WORK_WITH_OTHERS:
+        items.sort(key=lambda item: rank_of(group_of(item.nodeid)))
+
+
+def rank_of(group: str) -> int:
+    """Return when a group of tests begins: those in real time, those that take long, all others."""
+    return 0 if group in IN_REAL_TIME else 1 if group in SHARED else 2
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Have tests that only compute give way to those that keep to the wall clock."""
+    if AT_WORK_WITH_OTHERS and hasattr(os, "nice") and group_of(item.nodeid) not in IN_REAL_TIME:
+        os.nice(GIVING_WAY - os.nice(0))
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -88,6 +107,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log):
     if config.getoption("dist") != "loadgroup":
         return None
     from xdist.scheduler import LoadScopeScheduling
+
+    config.option.loadscopereorder = False
 
     class ByGroup(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
@@ -98,11 +119,11 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log):
 
 def group_of(nodeid: str) -> str:
     """Return the group of a test; of one that needs none, its own name."""
-    path = HERE.parent / nodeid.partition("::")[0]
+    path = ROOT / nodeid.partition("::")[0]
     for group, folders in IN_REAL_TIME.items():
-        if any(path.is_relative_to(HERE / folder) for folder in folders):
+        if any(path.is_relative_to(ROOT / folder) for folder in folders):
             return group
-    return str(path) if any(path == HERE.parent / module for module in SHARING) else nodeid
+    return str(path) if str(path) in SHARED else nodeid
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
 COMMANDS = [line[2:] for block in BLOCKS for line in block.splitlines() if line.startswith("$ ")]
 SET_UP = "python3 -m venv .venv && .venv/bin/pip install -r requirements-dev.txt && .venv/bin/mmrs demo"
-TESTS = ".venv/bin/pytest -n 4 --dist loadgroup"
+TESTS = ".venv/bin/pytest -n 6 --dist loadgroup"
 
 
 def test_the_first_command_is_the_whole_set_up():

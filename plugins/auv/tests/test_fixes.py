@@ -10,6 +10,7 @@ from mmrs_core.testing.conformance.missions import run_command
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("project", "file", "right", "wrong"),
     [

@@ -75,11 +75,19 @@ def test_a_second_node_of_any_kind_ends_the_dive(kind: str) -> None:
     ("message", "period", "values"),
     [
         ("WrenchForce", 0.05, {"Surge": 30.0, "Sway": 0.0, "Heave": 0.0, "Enable": True}),
-        ("WrenchForce", 1.0, {"Surge": 30.0, "Sway": 0.0, "Heave": 0.0, "Enable": True}),
+        pytest.param(
+            *("WrenchForce", 1.0, {"Surge": 30.0, "Sway": 0.0, "Heave": 0.0, "Enable": True}),
+            marks=pytest.mark.thorough,
+        ),
         ("Thruster0Command", 0.05, {"Thrust": 30.0, "Enable": True}),
-        ("Thruster0Status", 0.1, {"Thrust": 0.0, "Power": 0.0, "Drive": "FAULT"}),
+        pytest.param(
+            *("Thruster0Status", 0.1, {"Thrust": 0.0, "Power": 0.0, "Drive": "FAULT"}),
+            marks=pytest.mark.thorough,
+        ),
         ("Depth", 0.05, {"Depth": 0.2, "Uncertainty": 0.1, "Trusted": True}),
-        ("Pressure", 0.05, {"Pressure": 101325.0, "Temperature": 10.0}),
+        pytest.param(
+            *("Pressure", 0.05, {"Pressure": 101325.0, "Temperature": 10.0}), marks=pytest.mark.thorough
+        ),
         ("GoalPlace", 0.2, {"North": 0.0, "East": 0.0}),
         ("ActuatorsBeat", 0.5, {"State": "RUNS", "Uptime": 1.0, "Reason": "NONE"}),
     ],

@@ -41,7 +41,9 @@ def test_help_costs_less_than_half_a_second():
     assert cost("mmrs", "--help") < 1.5
 
 
-@pytest.mark.parametrize("example", ["carbon-dioxide", "mixed-team"])
+@pytest.mark.parametrize(
+    "example", [pytest.param("carbon-dioxide", marks=pytest.mark.thorough), "mixed-team"]
+)
 def test_validating_an_example_costs_less_than_a_second_and_a_half(example):
     assert cost("mmrs", "validate", shipped("examples") / example) < 4.5
 

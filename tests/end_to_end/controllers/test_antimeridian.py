@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from mmrs_core.behaviour.program import Transition
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import LAND, go_to, program, robot_program, take_off
@@ -11,6 +13,7 @@ FIJI = Frame("EPSG:4326", -17.0, 179.9999, 20.0, "MSL")
 """Ten metres west of the line."""
 
 
+@pytest.mark.thorough
 def test_a_run_and_steps_over_the_antimeridian_are_flown_as_anywhere(controllers, hangar):
     over = [go_to(name, (10.0 * n, 5.0, 8.0)) for n, name in enumerate("abcd", start=1)]
     moves = [take_off("up", 8.0), *over, go_to("home", (0.0, 0.0, 8.0)), LAND]

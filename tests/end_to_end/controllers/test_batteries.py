@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+import pytest
+
 from mmrs_core.scene import Policy
 from mmrs_core.testing.programs import LAND, move, program, robot_program, take_off
 
@@ -49,6 +51,7 @@ def test_a_battery_that_stays_empty_is_not_taken_for_a_full_one(controllers, han
     assert take_offs(vehicles["alpha"]) == 1
 
 
+@pytest.mark.thorough
 def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
     made = controllers(two_sorties(Policy("BATTERY_LOW", "CONTINUE")))
     vehicles, links = hangar(made.program, energy=100.0, recharge=1e9)
@@ -67,6 +70,7 @@ def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
     assert ended - begun > 50.0
 
 
+@pytest.mark.thorough
 def test_a_robot_that_does_not_know_its_battery_says_so_and_charges_as_long_as_expected(controllers, hangar):
     made = controllers(two_sorties())
     vehicles, links = hangar(made.program, tells_battery=False)

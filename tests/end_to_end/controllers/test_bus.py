@@ -67,6 +67,7 @@ def test_separate_programs_synchronise_and_their_logs_replay(controllers, endpoi
     assert (result.outcome, result.complaints) == (Outcome.SUCCESS, ())
 
 
+@pytest.mark.thorough
 def test_what_a_robot_was_told_is_on_its_disk(controllers, endpoint):
     made = controllers(two_drones())
     with ExitStack() as stack:

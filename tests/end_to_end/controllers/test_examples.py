@@ -13,6 +13,7 @@ from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.resources import shipped
 
 EXAMPLES = ("carbon-dioxide", "drone-and-rover", "mixed-team", "outfall", "pool", "solar-park")
+OTHERS = ("carbon-dioxide", "drone-and-rover", "outfall", "solar-park")
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +51,9 @@ def made(planned, contributions, controllers):
     return make
 
 
-@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.parametrize(
+    "example", ["mixed-team", "pool", *(pytest.param(each, marks=pytest.mark.thorough) for each in OTHERS)]
+)
 def test_a_dry_run_of_an_example_replays(made, example):
     controllers = made(example)
     code, said = controllers.run("fleet.py", "--dry-run", "--speedup", "2000")

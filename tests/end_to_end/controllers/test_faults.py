@@ -150,6 +150,7 @@ def test_a_device_that_does_not_answer_is_a_fault(controllers, hangar):
     assert not vehicles["alpha"].autopilot.armed
 
 
+@pytest.mark.thorough
 def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "CONTINUE"), hold=1.0))
     _, links = hangar(made.program, silent=frozenset({2000}))
@@ -159,6 +160,7 @@ def test_a_policy_may_carry_on_without_a_device(controllers, hangar):
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_robot_that_holds_is_watched_until_its_link_is_lost(controllers, hangar):
     made = controllers(one_drone(Policy("DEVICE_SILENT", "HOLD"), hold=1.0))
     vehicles, links = hangar(made.program, silent=frozenset({2000}))

@@ -171,6 +171,7 @@ def test_status_says_where_a_robot_is_and_what_it_does(controllers, hangar):
     assert told["place"]["height"] == pytest.approx(12.0, abs=0.6)
 
 
+@pytest.mark.thorough
 def test_a_robot_that_holds_after_a_fault_obeys_what_can_still_be_done(controllers, hangar):
     made = controllers(survey(leg=20.0))
     vehicles, links = hangar(made.program, speedup=SPEEDUP, silent=frozenset({2000}))

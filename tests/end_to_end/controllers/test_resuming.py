@@ -122,6 +122,7 @@ def test_a_battery_that_is_changed_while_others_work_needs_no_second_start(contr
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_restarted_vehicle_with_a_new_battery_is_set_up_again(controllers, hangar):
     made = controllers(coverage())
     vehicles, links = hangar(made.program)
@@ -164,6 +165,7 @@ def test_a_killed_process_goes_on_in_the_air_where_its_robot_waits(controllers, 
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(controllers, hangar):
     down = go_to("down to work", (0.0, 60.0, 15.0), trajectory="HORIZONTAL_FIRST")
     alpha = robot_program("alpha", [take_off("up", 40.0), down, LAND])
@@ -182,6 +184,7 @@ def test_a_killed_process_goes_on_where_its_robot_is_on_the_corner_of_a_leg(cont
     assert made.replayed().complaints == ()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("stays", ["Recharge", "HoldPosition"])
 def test_a_killed_process_goes_on_on_the_ground_where_its_robot_has_landed(controllers, hangar, stays):
     ways = [take_off("up", 6.0), go_to("out", (0.0, 30.0, 6.0)), go_to("home", (0.0, 0.0, 6.0)), LAND]
@@ -204,6 +207,7 @@ def delivery():
     return program(replace(robot, policies=(Policy("LINK_LOST", "HOLD", 60.0),)))
 
 
+@pytest.mark.thorough
 def test_a_killed_process_goes_on_in_the_air_after_it_has_landed_elsewhere(controllers, hangar):
     made = controllers(delivery())
     vehicles, links = hangar(made.program, speedup=20.0)

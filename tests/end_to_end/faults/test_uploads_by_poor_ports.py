@@ -29,6 +29,7 @@ def refusals(monkeypatch):
     return results
 
 
+@pytest.mark.thorough
 @mainly(GENERATED)
 def test_items_that_come_twice_since_the_way_is_long_end_no_upload(tmp_path, execution, refusals):
     with Fleet(tmp_path, [Pad("a")], execution, speedup=10.0, delay=SLOW) as fleet:

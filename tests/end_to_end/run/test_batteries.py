@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from fault_table.fleet import wait_for
 from fault_table.project import Pad
 from real_runs import PATIENCE, begun, judged, ordered
@@ -9,6 +10,7 @@ from real_runs import PATIENCE, begun, judged, ordered
 from mmrs_core.behaviour.replay import Outcome
 
 
+@pytest.mark.thorough
 def test_a_robot_that_came_down_elsewhere_for_its_battery_is_not_resumed_before_it_stands_at_home(fleet):
     flown = fleet(Pad("a", policies=(("BATTERY_LOW", "LAND", None),)))
     process = flown.start("--battery-patience", "600")

@@ -22,7 +22,7 @@ BEYOND = 5.0
 """Metres beyond the perch, eastwards, from which on the second sortie has begun its leg."""
 
 
-@pytest.fixture(params=EXECUTIONS)
+@pytest.fixture(params=[EXECUTIONS[0], pytest.param(EXECUTIONS[1], marks=pytest.mark.thorough)])
 def flown(request, tmp_path):
     """Return a robot that lands on its way, and its vehicle, flown one way or the other."""
     with Fleet(tmp_path, [PERCHED], request.param, speedup=SPEEDUP) as fleet:

@@ -49,6 +49,7 @@ def test_orders_are_obeyed_and_confirmed_by_the_vehicles(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
+@pytest.mark.thorough
 def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
     flown = fleet(Pad("a"))
     process = flown.start()
@@ -58,6 +59,7 @@ def test_a_vehicle_that_hears_nothing_confirms_nothing(fleet):
     assert process.end(PATIENCE) == 5, process.said
 
 
+@pytest.mark.thorough
 def test_a_robot_whose_link_comes_back_is_heard_again_and_lands_where_it_is_told_to(fleet):
     flown = fleet(Pad("a", policies=(("LINK_LOST", "RETURN", 5.0),)), speedup=8.0)
     process = flown.start()
@@ -101,6 +103,7 @@ def test_an_interrupt_stops_every_robot_and_each_confirms(fleet):
     assert judged(flown) is Outcome.FAILED
 
 
+@pytest.mark.thorough
 def test_a_return_that_is_held_is_watched_until_it_goes_on(fleet):
     flown = fleet(Pad("a"), speedup=UNHURRIED)
     process = flown.start()

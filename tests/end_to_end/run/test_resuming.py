@@ -40,6 +40,7 @@ def broken_off(flown, **moves):
     flown.vehicles["b"].faults.cut_link()
 
 
+@pytest.mark.thorough
 def test_a_battery_that_was_not_changed_is_not_flown_with_by_a_new_process_either(fleet):
     flown = fleet(Pad("a", policies=(("BATTERY_LOW", "RETURN", None),)))
     process = flown.start()
@@ -87,6 +88,7 @@ def test_a_robot_in_the_air_obeys_before_another_is_heard_that_then_goes_on_too(
     assert judged(flown) is Outcome.FAILED
 
 
+@pytest.mark.thorough
 def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_heard_again(fleet):
     flown = fleet(
         Pad("a", "wait", (STAYS, ("PEER_LOST", "RETURN", 2.0))), Pad("b", "give", stay=100.0, gives="a")
@@ -103,6 +105,7 @@ def test_a_robot_in_the_air_comes_home_by_its_policy_where_another_is_never_hear
     assert flown.steps("b") == before
 
 
+@pytest.mark.thorough
 def test_a_robot_whose_run_is_killed_on_its_way_home_for_its_battery_comes_home_in_the_resumed_run(fleet):
     low = (STAYS, ("BATTERY_LOW", "RETURN", None))
     flown = fleet(Pad("a", policies=low, stay=2.0), Pad("b", stay=2.0), speedup=UNHURRIED)

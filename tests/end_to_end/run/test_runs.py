@@ -31,6 +31,7 @@ def told(capsys):
     return call
 
 
+@pytest.mark.thorough
 def test_robots_of_one_process_wait_for_each_other_and_their_logs_replay(fleet):
     flown = fleet(*SYNCHRONISED, Pad("c", stay=2.0))
     assert flown.start().end(PATIENCE) == 0, flown.process.said
@@ -51,6 +52,7 @@ def test_robots_fly_on_where_nobody_reads_or_what_is_said_cannot_be_written(flee
     assert judged(flown) is Outcome.SUCCESS
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not FULL.exists(), reason="needs a device that is full")
 def test_robots_fly_where_nothing_that_is_said_can_be_written(fleet):
     flown = fleet(Pad("a"))

@@ -35,8 +35,6 @@ from mmrs_core.testing.programs import feedback, move
 from mmrs_core.testing.small_programs import notify
 from mmrs_core.transformation.kinds import MOVE_KINDS
 
-pytestmark = pytest.mark.xdist_group("vessels in real time")
-
 SLOTS = ("go", "GO")
 
 PHOTO = Action(((BEHAVIOUR, "DeviceAction"), (BEHAVIOUR, "Action")), "TakePicture", "front-camera")
@@ -249,6 +247,7 @@ def test_the_vehicle_is_given_up_when_its_mission_stands_still(tmp_path: Path) -
     assert found.replayed.accepted, found.replayed.complaints
 
 
+@pytest.mark.thorough
 def test_a_lost_bus_is_a_fault_of_the_move_that_was_under_way(tmp_path: Path) -> None:
     behaviour = dive(swim("far", 30.0, 0.0, 1.0))
     found = run(build(write(behaviour, tmp_path / "out")), behaviour, tmp_path, cut=2.5)
@@ -257,6 +256,7 @@ def test_a_lost_bus_is_a_fault_of_the_move_that_was_under_way(tmp_path: Path) ->
     assert found.replayed.accepted, found.replayed.complaints
 
 
+@pytest.mark.thorough
 def test_two_decision_centres_wait_for_each_other_over_the_bus_between_robots(tmp_path: Path) -> None:
     file = tmp_path / "pair.xmi"
     file.write_text(waiting_pair("Pool AUV"))

@@ -13,8 +13,6 @@ from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.control import failsafe
 from vessel_processes import Boat, boat, until
 
-pytestmark = pytest.mark.xdist_group("vessels in real time")
-
 BUSY = 0.6
 """Seconds that this machine may make everything late: other tests run beside."""
 
@@ -33,6 +31,7 @@ def goes(vehicle: Boat, north: float, depth: float) -> None:
     vehicle.craft.go_to(north, 0.0, depth)
 
 
+@pytest.mark.thorough
 def test_a_dive_is_made_with_them(drives: Path, tmp_path: Path) -> None:
     with boat(pool_sheet(), tmp_path, drives) as vehicle:
         goes(vehicle, 0.6, 0.6)

@@ -15,8 +15,6 @@ from mmrs_auv.vision.renderer import Renderer
 from vessel_processes import until
 from vision_processes import POOL, Head, eyes
 
-pytestmark = pytest.mark.xdist_group("vessels in real time")
-
 HERE = Pose(0.0, 0.0, 1.5, 2.0, -3.0, 5.0)
 NAMES = frozenset(thing.name for thing in POOL.things)
 HALF_A_CORE = 0.5
@@ -83,6 +81,7 @@ def film(path: Path, pictures: int) -> Path:
     return path
 
 
+@pytest.mark.thorough
 def test_a_dark_film_stands_for_cameras_and_ends_the_process_when_it_ends(tmp_path: Path) -> None:
     with eyes(tmp_path, HERE) as head:
         head.parts["frames"].terminate()

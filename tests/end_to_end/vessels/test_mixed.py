@@ -19,7 +19,7 @@ from mmrs_auv.vessel.body.surroundings import from_json
 
 from mmrs_core.cli.demo import example_folder
 
-pytestmark = [pytest.mark.xdist_group("vessels in real time"), pytest.mark.thorough]
+pytestmark = pytest.mark.thorough
 
 MMRS = (sys.executable, "-m", "mmrs_core")
 SPEED, LONGEST = 2.0, 600.0

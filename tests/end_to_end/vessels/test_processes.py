@@ -10,8 +10,6 @@ from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.control import failsafe
 from vessel_processes import Boat, boat, until
 
-pytestmark = pytest.mark.xdist_group("vessels in real time")
-
 WATCHDOG = 0.5
 BUSY = 0.6
 """Seconds that this machine may make everything late: other tests run beside."""
@@ -64,6 +62,7 @@ def test_no_thrust_in_time_when_the_bus_is_cut(tmp_path: Path) -> None:
         assert {said.values["Thrust"] for said in drives} == {0.0}
 
 
+@pytest.mark.thorough
 def test_it_arrives_though_frames_are_lost_late_and_wrong(tmp_path: Path) -> None:
     with boat(pool_sheet(), tmp_path) as vehicle:
         for trouble in ("loss 0.05", "delay 0.01", "corruption 0.05"):

@@ -57,6 +57,7 @@ def devices_confirm(folder: Path) -> bool:
     return start["link"] == "can" and start["confirms"] is True
 
 
+@pytest.mark.thorough
 def test_a_dive_is_carried_out_over_the_bus(berth, contributions, tmp_path):
     venture = interpreted(short_dive(), berth, contributions, tmp_path)
     with LogWriter(tmp_path / "logs") as writer:

@@ -27,7 +27,7 @@ from mmrs_core.behaviour.replay import Outcome, replay
 from mmrs_core.runtime.live import run_live
 from mmrs_core.testing.programs import feedback, move
 
-pytestmark = [pytest.mark.xdist_group("vessels in real time"), pytest.mark.thorough]
+pytestmark = pytest.mark.thorough
 
 AROUND = Surroundings(
     bottom=5.0,

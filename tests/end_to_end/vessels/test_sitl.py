@@ -15,8 +15,6 @@ from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.vessel.wire.ports import open_port
 from vessel_processes import Ear, until
 
-pytestmark = pytest.mark.xdist_group("vessels in real time")
-
 POOL = Path(__file__).parents[3] / "examples" / "pool"
 
 

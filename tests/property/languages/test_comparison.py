@@ -48,6 +48,7 @@ def changes_are_told_if_there_are_any(registry, data):
     assert bool(changes_between(other, one)) == differs
 
 
+@pytest.mark.thorough
 @RELAXED
 @given(data=st.data())
 def test_changes_are_told_if_there_are_any(registry, data):

@@ -77,6 +77,7 @@ def test_a_changed_value_shows(said, sources, fixtures, data):
     check_every_change_shows(said, sources, fixtures, data, change)
 
 
+@pytest.mark.thorough
 @ROUNDS
 @given(data=st.data())
 def test_a_missing_value_shows(said, sources, fixtures, data):

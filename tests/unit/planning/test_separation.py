@@ -70,6 +70,7 @@ def test_robots_that_wait_for_each_other_aloft_take_turns():
     assert [each.sorties for each in found.robots] == [2, 2]
 
 
+@pytest.mark.thorough
 def test_taking_turns_keeps_choices_and_wanted_robots():
     team = (robot("r1"), robot("r2", (30.0, 0.0, 0.0)))
     line = road((100.0, 0.0, 20.0), (200.0, 0.0, 20.0), cuts=(25.0, 50.0, 75.0))

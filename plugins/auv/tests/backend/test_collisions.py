@@ -22,6 +22,7 @@ def test_a_vehicle_does_not_go_through_obstacles(tmp_path: Path, north: float, o
     assert found.fault == ("CRASHED" if outcome is Outcome.FAILED else "")
 
 
+@pytest.mark.thorough
 def test_a_vehicle_that_pressed_on_the_bottom_comes_up(tmp_path: Path) -> None:
     found = rehearse(dive(swim("out", 2.0, 0.0, 2.6)), tmp_path, bottom="2.5", noise="no")
     vehicle = found.robots["naiad"].stage.vehicle

@@ -157,6 +157,7 @@ def test_a_vehicle_that_does_not_get_back_comes_up(tmp_path: Path, monkeypatch) 
     assert (fault.which, fault.instead) == ("NO_PROGRESS", "SURFACE")
 
 
+@pytest.mark.thorough
 def test_a_bus_that_falls_silent_is_a_lost_link(tmp_path: Path) -> None:
     def deafen(robot: RehearsedRobot) -> None:
         hear = robot.stage.craft.hear

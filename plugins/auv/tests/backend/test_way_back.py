@@ -39,6 +39,7 @@ def test_it_goes_round_what_is_in_its_way(tmp_path: Path) -> None:
     assert not [place for place in track if 2.3 < place[0] < 3.7 and -1.7 < place[1] < 1.0]
 
 
+@pytest.mark.thorough
 def test_it_is_refused_where_there_is_no_way(tmp_path: Path) -> None:
     robot, now = dived(tmp_path, block(-3.0, -3.0, 3.0, 3.0))
     said = robot.hindrance(("start", "first"), "second", now)

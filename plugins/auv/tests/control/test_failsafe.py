@@ -178,6 +178,7 @@ def test_a_decision_centre_that_died_leaves_a_vehicle_that_holds_and_then_surfac
     assert rig.emergencies == []
 
 
+@pytest.mark.thorough
 def test_a_decision_centre_that_is_heard_again_has_its_goal_pursued() -> None:
     rig = diving(FLOATS)
     rig.bus.kill("Decision")
@@ -314,6 +315,7 @@ def test_declared_times_are_those_of_the_manual() -> None:
     } <= told
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["Pressure", "Attitude"])
 def test_an_instrument_that_never_moved_is_found_out_by_the_others(name: str) -> None:
     rig = Rig(replace(FLOATS, home=(0.0, 0.0, 2.0)), CURRENT)

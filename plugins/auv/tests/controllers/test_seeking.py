@@ -88,6 +88,7 @@ def test_it_is_found_where_it_is_seen_on_the_way(vehicle_of, eyes):
     assert vehicle.state().detected == {"red buoy"}
 
 
+@pytest.mark.thorough
 def test_it_is_looked_for_from_as_far_as_the_movement_stops(vehicle_of, eyes):
     vehicle, rig = vehicle_of(eyes)
     with pytest.raises(Fault, match=r"object 'red buoy' is not seen where it is expected") as missed:
@@ -96,6 +97,7 @@ def test_it_is_looked_for_from_as_far_as_the_movement_stops(vehicle_of, eyes):
     assert missed.value.instead == "SURFACE"
 
 
+@pytest.mark.thorough
 def test_it_may_be_no_farther_from_where_it_is_expected_than_the_mission_allows(vehicle_of, eyes):
     vehicle, _ = vehicle_of(eyes, (7.0, 0.0, 1.0))
     with pytest.raises(Fault, match=r"is 5\.0 m from where it is expected"):

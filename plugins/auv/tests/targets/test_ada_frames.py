@@ -38,7 +38,7 @@ from vessel_sheets import sheet
 from mmrs_core.flight.program import Local
 from mmrs_core.flight.steps.ways import way_back
 
-COUNTS = [300, pytest.param(5000, marks=pytest.mark.thorough)]
+COUNTS = [100, pytest.param(5000, marks=pytest.mark.thorough)]
 SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(1, 12))]
 
 

@@ -108,6 +108,7 @@ def test_a_buoy_that_is_not_where_it_is_expected_is_found_and_approached(seed: i
         assert dive.detections.newest("red buoy") is not None
 
 
+@pytest.mark.thorough
 def test_a_buoy_that_is_behind_is_found_by_looking_around() -> None:
     buoy = Thing(BUOY, "red buoy", -3.5, 0.5, 1.6, 0.0, "red", 0.3)
     with diver(buoy, seed=4) as dive:

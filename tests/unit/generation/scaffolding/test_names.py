@@ -59,7 +59,7 @@ def test_every_name_makes_names_that_python_takes(name):
 
 
 @pytest.mark.parametrize("kind", TASK_KINDS)
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(NAMES)
 def test_every_name_fits_into_every_file(kind, name):
     try:
