@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import isfinite
+from math import floor, isfinite, log10
 
 import numpy as np
 
-from mmrs_core.cli.figures import length
 from mmrs_core.cli.preview.markup import element, number, style_sheet, text
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH, TimeAxis
 from mmrs_core.geometry.frames import Floats
@@ -16,6 +15,7 @@ _HEIGHT = 92.0
 _TOP = 10.0
 _FOOT = 26.0
 _MOST_COLUMNS = 1000
+_LEAST_METRES = 0.5
 
 Line = tuple[Floats, Floats]
 """Times and values; a chart may have several pieces, not joined."""
@@ -24,11 +24,21 @@ Line = tuple[Floats, Floats]
 def off_way_chart(pieces: Sequence[Line], end: float, colour: str) -> str:
     """Return how far a robot was from its planned way over time, metres; the largest of each stretch."""
     most = max((float(values.max()) for _, values in pieces), default=0.0)
-    high = max(most * 1.1, 0.5)
+    high = _round_above(max(most, _LEAST_METRES))
     thin = [_largest(piece, end) for piece in pieces]
-    levels = [(value, length(value)) for value in (0.0, high / 2, high)]
+    levels = [(value, f"{value:g} m") for value in (0.0, high / 2, high)]
     lines = (_line(piece, end, high, {"class": "height", "stroke": colour}) for piece in thin)
     return _chart("metres from the planned way", end, levels, high, lines)
+
+
+def _round_above(value: float) -> float:
+    """Return the next of 1, 2, 5, 10, 20 and so on, and of 0.5, 0.2, 0.1 and so on.
+
+    >>> _round_above(0.38), _round_above(2.0), _round_above(61.0)
+    (0.5, 2.0, 100.0)
+    """
+    ten = 10.0 ** floor(log10(value))
+    return next(float(step * ten) for step in (1, 2, 5, 10) if step * ten >= value)
 
 
 def battery_chart(flown: Line, planned: Line, reserve: float, end: float, colour: str) -> str:

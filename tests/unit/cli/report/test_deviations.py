@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +14,7 @@ from shapely.geometry import LineString, Point
 from mmrs_core.cli.flights.nearest import along, nearest
 from mmrs_core.cli.flights.places import Places
 from mmrs_core.cli.flights.planned import PlannedLeg
+from mmrs_core.cli.report.charts import off_way_chart
 from mmrs_core.cli.report.deviations import deviation_of
 from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import go_to, move
@@ -107,3 +110,9 @@ def test_parts_of_a_way_are_told():
     way = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 30.0, 0.0]])
     assert along(np.array([[5.0, 1.0, 0.0], [10.0, 10.0, 9.0]]), way).tolist() == [0.125, 0.5]
     assert along(np.array([[5.0, 1.0, 0.0]]), way[:1].repeat(2, axis=0)).tolist() == [0.0]
+
+
+def test_the_scale_of_a_chart_is_told_as_it_is():
+    pieces = [(np.array([0.0, 10.0]), np.array([0.1, 0.38]))]
+    told = re.findall(r">([\d.]+) m<", off_way_chart(pieces, 10.0, "#000"))
+    assert told == ["0", "0.25", "0.5"]
