@@ -22,6 +22,18 @@ MOVES: Mapping[Name, Sort] = {
 """Moves by their own metaclass: one that extends it may move otherwise, and is not known."""
 
 
+SLOWEST, FASTEST = 0.01, 100.0
+"""Metres per second between which speeds mean something to vehicles of others."""
+
+DEEPEST = 11_000.0
+"""Metres: no sea is deeper."""
+
+
+def writable_speed(speed: float) -> float:
+    """Return the nearest speed that means something, metres per second."""
+    return min(FASTEST, max(SLOWEST, speed))
+
+
 def above_surface(position: Position, context: RobotContext) -> float:
     """Return how far a position is above the surface, metres; one of a robot that stays on it never is."""
     return metres(position[2] - context.frame.surface) if context.vehicle.dives else 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mmrs_auv.targets.moves import MOVES, above_surface
+from mmrs_auv.targets.moves import DEEPEST, FASTEST, MOVES, SLOWEST, above_surface
 from mmrs_core.behaviour.program import Move, RobotProgram, Target
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Policy
@@ -44,14 +44,21 @@ def of_movement(move: Move, context: RobotContext, wording: Wording) -> Iterator
     known = MOVES.get(move.metaclasses[0])
     if known is None:
         yield f"{move.kind} is not known to this target"
-    if known == "go" and context.speed(move) is None:
-        yield "its speed is not known, because its robot type is not given"
+    if known == "go":
+        yield from _of_speed(context.speed(move))
     if known == "turn":
         yield f"turns on the spot, {wording.turn}"
     elif move.heading is not None:
         yield f"heading on the way, {wording.heading}"
     if move.target is not None:
         yield from _of_target(move.target, context, wording)
+
+
+def _of_speed(speed: float | None) -> Iterator[str]:
+    if speed is None:
+        yield "its speed is not known, because its robot type is not given"
+    elif not SLOWEST <= speed <= FASTEST:
+        yield f"its speed of {speed:g} m/s is not from {SLOWEST:g} to {FASTEST:g}"
 
 
 def _of_target(target: Target, context: RobotContext, wording: Wording) -> Iterator[str]:
@@ -61,3 +68,5 @@ def _of_target(target: Target, context: RobotContext, wording: Wording) -> Itera
         above = above_surface(target.position, context)
         if above > 1e-6:
             yield f"leads {above:g} m above the surface"
+        elif -above > DEEPEST:
+            yield f"leads {-above:g} m below the surface, and no sea is deeper than {DEEPEST:,g} m"

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from math import degrees, radians
+from itertools import pairwise
+from math import degrees, dist, radians
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,6 +12,7 @@ from imc_reader import FORMS, check_sum, read_packet, smallest
 from mmrs_auv.targets.imc.messages import DEFINITIONS, Message
 from mmrs_auv.targets.imc.packing import crc16, packet, payload
 from mmrs_auv.targets.imc.target import IMC
+from pyproj import Geod
 
 from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.errors import UnsupportedError
@@ -19,6 +21,7 @@ from mmrs_core.scene import Frame
 from mmrs_core.testing.programs import move, robot_program
 
 RELAXED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+WGS84 = Geod(ellps="WGS84")
 SONAR = {
     "imc__entity": "Sidescan",
     "imc__set__Record": "Active=true; Range=50",
@@ -225,11 +228,44 @@ def test_a_plan_that_no_packet_holds_is_refused(given, dive):
     [
         ({"target": Target((9.0, 0.0, 5.0))}, "leads 7 m above the surface"),
         ({"target": Target((9.0, 0.0, -5.0), "a buoy", 1.0)}, "object 'a buoy', which a plan cannot have"),
+        ({"target": Target((9.0, 0.0, -12_000.0))}, "leads 11998 m below the surface, and no sea is"),
+        ({"target": Target((9.0, 0.0, -1e39))}, "leads 1e[+]39 m below the surface, and no sea is"),
+        ({"speed": 0.0}, "its speed of 0 m/s is not from 0.01 to 100"),
+        ({"speed": 4e-4}, "its speed of 0 m/s is not from 0.01 to 100"),
+        ({"speed": 1e39}, "its speed of 1e[+]39 m/s is not from 0.01 to 100"),
+        ({"target": Target((70_000.0, 0.0, -7.0))}, "takes 70,000 s, of 65,475 at most"),
     ],
 )
 def test_what_plans_cannot_express_is_told_with_its_move(given, dive, changes, why):
     with pytest.raises(UnsupportedError, match=why):
         render(IMC, given(dive("a", 9.0, 0.0, 5.0, **changes)))
+
+
+def test_an_action_that_takes_longer_than_manoeuvres_may_is_refused(given, dive, does, swimmer):
+    moved = dive("a", 9.0, 0.0, 5.0, after=(does(),))
+    with pytest.raises(UnsupportedError, match="action 'Record' takes 70,000 s, of 65,535 at most"):
+        render(IMC, given(moved, type=swimmer(70_000.0, **SONAR)))
+
+
+@pytest.mark.parametrize("changes", [{"speed": 1e39}, {"speed": 0.0}, {"target": Target((9.0, 0.0, -1e39))}])
+def test_with_losses_what_no_plan_holds_is_as_near_to_it_as_a_plan_can(given, dive, changes):
+    (goto,) = maneuvers(plan(given(dive("a", 9.0, 0.0, 5.0, **changes)), lossy=True))
+    assert 0.0 < goto["speed"] <= 100.0
+    assert goto["z"] <= 11_000.0
+
+
+@pytest.mark.parametrize(
+    "origin", [(0.0, 180.0), (12.0, -180.0), (-60.0, 179.9999), (88.9, 0.0), (-89.9, 77.0)]
+)
+def test_places_are_as_far_apart_as_they_were_meant_wherever_on_the_earth_that_is(given, dive, origin):
+    places = [(800.0, 0.0), (800.0, 600.0), (-800.0, -600.0)]
+    frame = Frame("EPSG:4326", *origin, 0.0, "MSL", surface=-2.0)
+    found = maneuvers(plan(given(*(dive(f"m{i}", *p, 5.0) for i, p in enumerate(places)), frame=frame)))
+    here = [(0.0, 0.0), *places]
+    on_earth = [origin, *((degrees(each["lat"]), degrees(each["lon"])) for each in found)]
+    for (a, b), (one, other) in zip(pairwise(here), pairwise(on_earth), strict=True):
+        _, _, metres = WGS84.inv(one[1], one[0], other[1], other[0])
+        assert metres == pytest.approx(dist(a, b), rel=2e-3)
 
 
 def test_a_local_behaviour_has_no_plan(given, dive):

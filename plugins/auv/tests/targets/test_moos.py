@@ -65,6 +65,25 @@ def test_a_dive_on_the_spot_waits_for_its_depth(given, dive):
     assert passes(helm, (0.0, 0.0, 20.0), (5.0, 0.0, 20.0))
 
 
+def test_a_hold_of_next_to_nothing_still_ends(given, dive):
+    (text,) = written(given(dive("a", 9.0, 0.0, 2.0), move("h", "HoldPosition", duration=1e-4))).values()
+    durations = [float(each["duration"][0]) for kind, each in read(text)[1] if kind == "BHV_Timer"]
+    assert min(durations) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"speed": 1e-4}, "its speed of 0 m/s is not from 0.01 to 100"),
+        ({"target": Target((9.0, 0.0, -20_000.0))}, "no sea is deeper than 11,000 m"),
+    ],
+)
+def test_speeds_and_depths_that_mean_nothing_are_refused(given, dive, changes, why):
+    with pytest.raises(UnsupportedError, match=why):
+        render(MOOS, given(dive("a", 9.0, 0.0, 5.0, **changes)))
+    assert render(MOOS, given(dive("a", 9.0, 0.0, 5.0, **changes)), allow_lossy=True)
+
+
 def test_a_hold_lasts_as_long_as_asked_for(given, dive):
     helm = sailed(given(dive("a", 9.0, 0.0, 2.0), move("h", "HoldPosition", duration=30.0)))
     times = {value: time for time, name, value in helm.posted if name == "MMRS_STEP"}

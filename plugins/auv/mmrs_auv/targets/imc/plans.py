@@ -17,7 +17,14 @@ from mmrs_auv.targets.imc.messages import (
     Value,
 )
 from mmrs_auv.targets.imc.wiring import set_by
-from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of, seconds_of_hold
+from mmrs_auv.targets.moves import (
+    DEEPEST,
+    MOVES,
+    above_surface,
+    seconds_of,
+    seconds_of_hold,
+    writable_speed,
+)
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.generation.escaping import file_stems
 from mmrs_core.mavlink.actions import DEVICE_ACTION
@@ -25,6 +32,9 @@ from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.mavlink.earth import metres
 from mmrs_core.scene import Position
 from mmrs_core.transformation.kinds import before_target
+
+LONGEST_TEXT = 200
+"""Letters of a description at most."""
 
 DONE, IS_DONE = "_done_", "ManeuverIsDone"
 LONGEST = 0xFFFF
@@ -50,10 +60,11 @@ class Maneuver:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A robot's plan: the message, and its manoeuvres in order."""
+    """A robot's plan: the message, its manoeuvres in order, and which moves take longer than these may."""
 
     message: Message
     maneuvers: tuple[Maneuver, ...]
+    faults: tuple[tuple[Move, str], ...]
 
 
 def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
@@ -73,7 +84,7 @@ def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
     maneuvers = tuple(walk.maneuvers)
     values: dict[str, Value] = {
         "plan_id": stem,
-        "description": f"{name}, {context.robot.id}".encode("ascii", "replace").decode(),
+        "description": f"{name}, {context.robot.id}".encode("ascii", "replace").decode()[:LONGEST_TEXT],
         "vnamespace": "",
         "variables": (),
         "start_man_id": ids[maneuvers[0].id] if maneuvers else "",
@@ -86,7 +97,7 @@ def plan_of(context: RobotContext, name: str, stem: str) -> Plan:
     }
     for each in maneuvers:
         each.id = ids[each.id]
-    return Plan(Message("PlanSpecification", values), maneuvers)
+    return Plan(Message("PlanSpecification", values), maneuvers, tuple(walk.faults))
 
 
 class _Walk:
@@ -94,6 +105,7 @@ class _Walk:
 
     def __init__(self, context: RobotContext) -> None:
         self.maneuvers: list[Maneuver] = []
+        self.faults: list[tuple[Move, str]] = []
         self._context = context
         self._here: Position = context.robot.home or (0.0, 0.0, 0.0)
         self._pending: list[Message] = []
@@ -134,10 +146,12 @@ class _Walk:
 
     def _go(self, move: Move, position: Position) -> None:
         place = before_target(self._here, position, move.distance)
-        speed = self._context.speed(move) or 0.0
+        speed = writable_speed(self._context.speed(move) or 0.0)
         way = dist(self._here, place)
         self._here = place
-        timeout = min(LONGEST, GRACE + ceil(PATIENCE * way / speed)) if speed > 0.0 else LONGEST
+        if GRACE + way / speed > LONGEST:
+            self.faults.append((move, f"takes {way / speed:,.0f} s, of {LONGEST - GRACE:,} at most"))
+        timeout = ceil(min(LONGEST, GRACE + PATIENCE * way / speed))
         angles = {"roll": UNCONSIDERED, "pitch": UNCONSIDERED, "yaw": UNCONSIDERED}
         self._add(move.id, move, "Goto", {"timeout": timeout, "speed": speed, **angles})
 
@@ -158,6 +172,8 @@ class _Walk:
         if isinstance(made, str):
             return
         seconds = ceil(seconds_of(action, self._context.type))
+        if seconds > LONGEST:
+            self.faults.append((move, f"action '{action.name}' takes {seconds:,} s, of {LONGEST:,} at most"))
         if seconds:
             self._pending.append(made)
             self._hold(id, move, seconds)
@@ -174,7 +190,7 @@ class _Walk:
         self._pending = []
 
     def _depth(self) -> float:
-        return metres(max(0.0, -above_surface(self._here, self._context)))
+        return metres(min(DEEPEST, max(0.0, -above_surface(self._here, self._context))))
 
     def _slowly(self) -> float:
         type = self._context.type

@@ -35,8 +35,11 @@ def _of_robot(robot: RobotProgram, input: TargetInput) -> Iterator[str]:
     context = context_of(robot, input, geographic=False)
     if context.vehicle.flies:
         yield f"robot '{robot.id}': flies, and heights of these plans count down from the water surface"
-    elif not plan_of(context, input.program.name, robot.id).maneuvers:
-        yield f"robot '{robot.id}': does nothing that a manoeuvre of IMC does"
+    else:
+        plan = plan_of(context, input.program.name, robot.id)
+        if not plan.maneuvers:
+            yield f"robot '{robot.id}': does nothing that a manoeuvre of IMC does"
+        yield from (f"{context.label(move)}: {why}" for move, why in plan.faults)
     yield from of_policies(robot, context, WORDING)
     for index, move in enumerate(robot.moves):
         for why in _of_move(move, context):

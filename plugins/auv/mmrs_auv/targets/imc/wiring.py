@@ -22,6 +22,7 @@ def set_by(action: Action, type: RobotType | None) -> Message | str:
     if not entity or not said:
         return f"device '{action.device}' has no {ENTITY} and {SETS}{action.name}"
     pairs = [each.partition("=") for each in said.split(";")]
+    entity = entity.strip()
     told = [entity, *(text for name, _, value in pairs for text in (name, value))]
     if not all(equals and name.strip() for name, equals, _ in pairs) or not all(map(str.isascii, told)):
         return f"{SETS}{action.name} of device '{action.device}' is '{said}', not Name=value;Name=value"

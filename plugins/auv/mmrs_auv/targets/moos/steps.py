@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import ceil, dist
 
 from mmrs_auv.targets.moos.words import MESSAGE, variables_of, words_of
-from mmrs_auv.targets.moves import MOVES, above_surface, seconds_of, seconds_of_hold
+from mmrs_auv.targets.moves import DEEPEST, MOVES, above_surface, seconds_of, seconds_of_hold, writable_speed
 from mmrs_core.behaviour.program import BEHAVIOUR, Action, Move, SlotId
 from mmrs_core.contributions.targets import TargetInput
 from mmrs_core.mavlink.actions import DEVICE_ACTION
@@ -28,6 +28,9 @@ TOLERANCE = 0.5
 
 PIECE = 1.0
 """Metres of depth that one piece of a sloping way takes: so near it keeps to its straight line."""
+
+SHORTEST = 0.1
+"""Seconds that a step lasts at least."""
 
 MOST_PIECES = 400
 """Pieces of one sloping way at most."""
@@ -178,7 +181,7 @@ class _Walk:
         if pieces > MOST_PIECES:
             self.faults.append((move, f"slopes over more than {MOST_PIECES * PIECE:g} m of depth"))
             pieces = MOST_PIECES
-        speed = self._context.speed(move) or TOLERANCE
+        speed = writable_speed(self._context.speed(move) or TOLERANCE)
         for piece in range(1, pieces + 1):
             east, north, up = (a + (b - a) * piece / pieces for a, b in zip(here, goal, strict=True))
             step = self._hold(f"{word}_goes_{piece}", move, (east, north, up), 0.1)
@@ -186,8 +189,10 @@ class _Walk:
         return goal
 
     def _hold(self, id: str, move: Move, here: Position, seconds: float) -> Step:
-        depth = max(0.0, -above_surface(here, self._context))
-        step = Step(id, move, (metres(here[0]), metres(here[1])), metres(depth), seconds=seconds)
+        depth = min(DEEPEST, max(0.0, -above_surface(here, self._context)))
+        step = Step(
+            id, move, (metres(here[0]), metres(here[1])), metres(depth), seconds=max(SHORTEST, seconds)
+        )
         self.steps.append(step)
         return step
 
