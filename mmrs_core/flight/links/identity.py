@@ -8,6 +8,12 @@ LATE_MILLISECONDS = 5_000
 CONFIRMED = 3
 """How many messages from another start there must be before it is believed."""
 
+WRAP = 2**32
+"""Milliseconds, 49.7 days, after which a vehicle's time is counted from 0 again."""
+
+AROUND_WRAP = 600_000
+"""Milliseconds before and after that in which a vehicle whose time begins again has not started anew."""
+
 
 class Identity:
     """Tells a vehicle that has started anew, and two vehicles that have the same system id.
@@ -29,6 +35,7 @@ class Identity:
 
     def booted(self, milliseconds: float) -> None:
         """Take note of the time since the vehicle's start, as one of its messages says it."""
+        milliseconds = self._counted_on(milliseconds)
         if milliseconds >= self._newest - self._late:
             self._newest = max(self._newest, milliseconds)
             self._between += self._behind > 0
@@ -40,6 +47,15 @@ class Identity:
         self._other, self._behind = milliseconds, self._behind + 1
         if self._behind >= CONFIRMED and not self._between:
             self._begin_anew(milliseconds)
+
+    def _counted_on(self, milliseconds: float) -> float:
+        """Return the time since the start where it may have been counted from 0 again, once or more."""
+        turns, before = divmod(self._newest, WRAP)
+        if before >= WRAP - AROUND_WRAP and milliseconds < AROUND_WRAP:
+            turns += 1
+        elif turns and before < AROUND_WRAP and milliseconds >= WRAP - AROUND_WRAP:
+            turns -= 1
+        return milliseconds + turns * WRAP
 
     def _begin_anew(self, milliseconds: float) -> None:
         self.starts += 1

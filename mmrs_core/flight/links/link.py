@@ -291,6 +291,9 @@ class Link:
         if own and not self._is_own(message, sender):
             self._radio.dropped[f"{message.get_type()}: from a second system {self.system}"] += 1
             return
+        if own and message.get_type() == "HEARTBEAT" and not is_autopilot(message):
+            self._radio.dropped["HEARTBEAT: with the vehicle's ids, and no autopilot's"] += 1
+            return
         for observer in self._observers:
             observer(message, False)
         with self._changed:

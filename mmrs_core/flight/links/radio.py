@@ -22,6 +22,9 @@ GLANCE_SECONDS = 0.2
 SENDERS = 64
 """From how many addresses frames are put together at once; beyond, the oldest is forgotten."""
 
+NO_VEHICLES = frozenset({6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
+"""MAV_TYPEs of ground stations and devices: some gimbals say that they had an autopilot, a generic one."""
+
 FORGOTTEN_SECONDS = 60.0
 """Real seconds for which heartbeats still go to an address that has fallen silent, unless it was the last."""
 
@@ -257,7 +260,7 @@ def is_autopilot(message: Message) -> bool:
     """Return whether a message is the heartbeat of an autopilot, not of a station, camera or gimbal."""
     return bool(
         message.get_type() == "HEARTBEAT"
-        and message.type != mavlink.MAV_TYPE_GCS
+        and message.type not in NO_VEHICLES
         and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID
     )
 

@@ -39,3 +39,21 @@ def test_two_vehicles_that_take_turns_are_told_and_are_no_start():
     identity = told(90_000, *turns)
     assert identity.starts == 0
     assert identity.twin == "messages from two different starts take turns"
+
+
+WRAP = 2**32
+
+
+def test_a_vehicle_whose_time_is_counted_from_0_again_after_49_days_has_not_started_anew():
+    times = [*range(WRAP - 60_000, WRAP, 200), *range(0, 60_000, 200)]
+    identity = told(*times[:-310], times[-301], *times[-310:])
+    assert (identity.starts, identity.twin) == (0, "")
+
+
+def test_a_vehicle_that_starts_anew_after_its_time_was_counted_from_0_again_is_noticed():
+    afterwards = range(0, 2_000_000, 200)
+    assert told(*range(WRAP - 60_000, WRAP, 200), *afterwards, *range(0, 20_000, 200)).starts == 1
+
+
+def test_a_vehicle_that_starts_anew_long_before_its_time_would_be_counted_from_0_again_is_noticed():
+    assert told(*range(WRAP - 2_000_000, WRAP - 1_000_000, 200), *range(0, 20_000, 200)).starts == 1

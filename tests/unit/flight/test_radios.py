@@ -158,6 +158,25 @@ def test_a_camera_or_a_ground_station_is_no_vehicle():
     link.close()
 
 
+def test_a_gimbal_that_says_that_it_had_a_generic_autopilot_is_no_vehicle():
+    wire, clock = Wire(), Clock()
+    link = Link(Radio(wire, clock), clock)
+    wire.say(heartbeat(kind=mavlink.MAV_TYPE_GIMBAL, autopilot=0), component=154)
+    wire.beat()
+    assert link.wait(lambda: link.component, 5.0)
+    assert (link.system, link.component) == (1, 1)
+    link.close()
+
+
+def test_a_ground_station_with_the_ids_of_the_vehicle_does_not_speak_for_it():
+    with linked() as (link, wire):
+        wire.say(heartbeat(mode=0, kind=mavlink.MAV_TYPE_GCS, autopilot=mavlink.MAV_AUTOPILOT_INVALID))
+        wire.say(ITEM)
+        assert link.wait(lambda: link.latest("MISSION_CURRENT"), 5.0)
+        assert link.latest("HEARTBEAT").custom_mode == 4
+        assert link.dropped == {"HEARTBEAT: with the vehicle's ids, and no autopilot's": 1}
+
+
 def test_components_of_the_vehicle_are_heard_by_those_who_ask_for_them():
     image = mavlink.MAVLink_camera_feedback_message(0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0)
     with linked() as (link, wire):
