@@ -42,13 +42,19 @@ class Reserve:
 
     It is low when less than the robot's reserve is left, or when what is left no longer suffices for
     the response to a low battery from where the robot is: whichever comes first. Power is the type's
-    mean power, or what the sortie has used so far where that is more.
+    mean power, or what the sortie has used so far where that is more. What a vehicle no longer tells is
+    reckoned on from what it told last in the air.
+
+    Attributes:
+        untold: what people should know of a battery that is told no longer; empty while it is.
     """
 
     def __init__(self, robot: Robot) -> None:
         """Know nothing of a sortie yet."""
+        self.untold = ""
         self._robot = robot
         self._begun: tuple[float, float] | None = None
+        self._told: tuple[float, float] | None = None
         self._counted = -inf
         self._seconds = 0.0
         self._wind = MeanWind()
@@ -65,11 +71,16 @@ class Reserve:
             response: what it does when the battery is low.
             track: the places that it has passed in this sortie.
         """
-        left, state = state.energy, self._wind.heed(state)
+        state = self._wind.heed(state)
+        if not state.armed:
+            self._told = None
+        left = self._left(state)
         if left is None or not state.armed:
             return ""
         if self._begun is None:
             self._begun = (state.time, left)
+        if state.energy is not None:
+            self._told = (state.time, state.energy)
         if left < self._robot.reserve:
             return f"less than {self._robot.reserve:.0%} of the energy is left"
         endurance = self._endurance(state.time, left)
@@ -83,7 +94,7 @@ class Reserve:
 
     def short(self, state: State, response: str, track: Track) -> str:
         """Return why what is left does not suffice for a response, margin or not; empty where it may."""
-        left = state.energy
+        left = self._left(state)
         endurance = None if left is None or self._begun is None else self._endurance(state.time, left)
         if left is None or endurance is None or response not in COMES_DOWN:
             return ""
@@ -92,10 +103,20 @@ class Reserve:
             return ""
         return f"{left:.0%} of the energy is left, and {response} takes {needed:.0%}"
 
+    def _left(self, state: State) -> float | None:
+        """Return what is left as it is told, or as it is reckoned; None where nobody knows."""
+        self.untold = ""
+        if state.energy is not None or self._told is None:
+            return state.energy
+        time, left = self._told
+        endurance = self._endurance(time, left)
+        known = "nobody will notice when it is low" if endurance is None else f"reckoned from {left:.0%}"
+        self.untold = f"does not tell its battery any more: {known}"
+        return None if endurance is None else max(0.0, left - (state.time - time) / endurance)
+
     def _endurance(self, time: float, left: float) -> float | None:
         """Return for how many seconds a full battery lasts; None where nobody knows."""
-        assert self._begun is not None
-        begun, full = self._begun
+        begun, full = self._begun or (time, left)
         used = full - left
         found = (time - begun) / used if used >= LEAST_USED else None
         known = [each for each in (self._robot.endurance, found) if each]

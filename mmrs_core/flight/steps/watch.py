@@ -95,7 +95,7 @@ class Watch:
         self._watched: _Watched | None = None
         self._heeded: frozenset[str] | None = None
         self._hands_off = self._alone = False
-        self._response = ""
+        self._response = self._untold = ""
         self._anew = False
         self._since: dict[str, float] = {}
         self._borne: set[str] = set()
@@ -254,6 +254,11 @@ class Watch:
         response = policy_for(BATTERY_LOW, self._robot, self.current()).response
         state = vehicle.state()
         low = self._reserve.low(state, response, self.track())
+        if (untold := self._reserve.untold) != self._untold:
+            self._untold = untold
+            if untold:
+                self.say(untold)
+                self.decide(BATTERY_LOW, untold, WATCHED)
         return low or (vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
 
     def _weigh(self, event: str, why: str) -> None:

@@ -13,6 +13,7 @@ from ..links.link import Link, Message
 from ..links.messages import tells_place
 from ..program import Geographic, Local, Place
 from .announcements import WORDS, Announcements
+from .batteries import Batteries
 from .detections import Detections
 from .readiness import lacks, unlocated
 from .texts import Texts
@@ -57,6 +58,8 @@ class Telemetry:
         link.observe(self.texts)
         self.announcements = Announcements(link.clock, self.texts)
         link.observe(self.announcements)
+        self._batteries = Batteries(lambda: link.component)
+        link.observe(self._batteries)
         self._detections = Detections(lambda: self.here() if self.placed() else None)
         link.observe(self._detections)
 
@@ -195,16 +198,14 @@ class Telemetry:
 
     def energy(self) -> float | None:
         """Return the part of the battery that is left; None where the vehicle does not say."""
-        for kind in ("SYS_STATUS", "BATTERY_STATUS"):
-            told = self._link.latest(kind)
-            if told is not None and told.battery_remaining >= 0:
-                return float(told.battery_remaining) / 100.0
-        return None
+        told = self._link.latest("SYS_STATUS")
+        if told is not None and told.battery_remaining >= 0:
+            return float(told.battery_remaining) / 100.0
+        return self._batteries.left
 
     def battery_trouble(self) -> str:
         """Return what the vehicle itself says against its battery; empty if nothing."""
-        told = self._link.latest("BATTERY_STATUS")
-        word = CHARGE.get(told.charge_state) if told is not None else None
+        word = CHARGE.get(self._batteries.state)
         return "" if word is None else f"it says that its battery is {word}"
 
     def armed(self) -> bool:

@@ -128,6 +128,31 @@ def test_a_wind_that_is_too_strong_is_a_reason_to_turn_round_at_once():
     assert "the wind is stronger than the robot" in why
 
 
+def test_a_battery_that_is_told_no_longer_is_reckoned_on_from_what_was_told_last():
+    watched, low = Reserve(robot()), TRACK[:1]
+    assert watched.low(state(0.5, time=0.0, place=low[0][1]), "LAND", low) == ""
+    assert watched.untold == ""
+    assert watched.low(state(None, time=350.0, place=low[0][1]), "LAND", low) == ""
+    assert watched.untold == "does not tell its battery any more: reckoned from 50%"
+    watched.begin()
+    assert "less than 10%" in watched.low(state(None, time=410.0, place=low[0][1]), "LAND", low)
+    assert watched.low(state(0.5, time=411.0, place=low[0][1]), "LAND", low) == watched.untold == ""
+
+
+def test_a_battery_that_is_told_no_longer_is_forgotten_on_the_ground():
+    watched = Reserve(robot())
+    watched.low(state(0.2, time=0.0), "LAND", TRACK)
+    watched.low(state(None, time=5.0, armed=False), "LAND", TRACK)
+    assert watched.low(state(None, time=1000.0), "LAND", TRACK) == watched.untold == ""
+
+
+def test_people_are_told_where_nobody_can_reckon_a_battery_that_is_told_no_longer():
+    watched = Reserve(robot(endurance=None))
+    watched.low(state(0.5, time=0.0), "LAND", TRACK)
+    assert watched.low(state(None, time=9.0), "LAND", TRACK) == ""
+    assert "nobody will notice when it is low" in watched.untold
+
+
 @pytest.mark.parametrize("known", [state(None), state(0.01, armed=False)])
 def test_nothing_is_low_that_nobody_knows_or_that_stands_on_the_ground(known):
     assert Reserve(robot()).low(known, "RETURN", TRACK) == ""

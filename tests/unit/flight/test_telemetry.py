@@ -173,6 +173,23 @@ def test_energy_is_none_where_nobody_tells_it(told):
     assert told(status(battery=43)).energy() == 0.43
 
 
+def battery(id: int, left: int, state: int, function: int = 0):
+    return mavlink.MAVLink_battery_status_message(
+        id, function, 0, 2000, [3800] + [65_535] * 9, 500, 100, -1, left, 0, state
+    )
+
+
+def test_a_battery_of_several_that_is_low_is_not_hidden_by_the_others(told):
+    telemetry = told(status(battery=-1), battery(0, 20, 2), battery(1, 90, 1), battery(2, 30, 7))
+    assert (telemetry.energy(), telemetry.battery_trouble()) == (0.2, "it says that its battery is low")
+
+
+def test_a_battery_of_the_payload_is_not_that_of_the_vehicle(told):
+    payload = battery(1, 5, 3, mavlink.MAV_BATTERY_FUNCTION_PAYLOAD)
+    telemetry = told(status(battery=-1), battery(0, 80, 1), payload)
+    assert (telemetry.energy(), telemetry.battery_trouble()) == (0.8, "")
+
+
 def test_place_and_speed_are_those_of_the_last_position(told):
     telemetry = told(*READY)
     assert telemetry.here() == Geographic(pytest.approx(42.37), pytest.approx(13.35), pytest.approx(30.0))
