@@ -330,14 +330,15 @@ class Pilot:
                 self._pass_waypoint(flight.ends[seq], moves)
 
         self._obedience.repeat(lambda: self._vehicle.fly(following, flight.last, reached))
+        self.journal.write("end")
         return self._steps[moves[-1]]
 
     def _pass_waypoint(self, move: str, moves: tuple[str, ...]) -> None:
         movement = self._steps[move].movement
         assert isinstance(movement, GoTo)
         self._passed(place_of(movement.at, {}, self._vehicle.state()))
-        self.journal.write("end")
         if move != moves[-1]:
+            self.journal.write("end")
             following = moves[moves.index(move) + 1]
             self.journal.write("take", following)
             self._tell(self._steps[following])
