@@ -11,7 +11,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from types import TracebackType
 
-from mmrs_auv.vessel.body.befalling import befalling
+from mmrs_auv.vessel.body.befalling import NoSuchFaultError, befalling
 from mmrs_auv.vessel.body.surroundings import Surroundings
 from mmrs_auv.vessel.body.surroundings import to_json as surroundings_json
 from mmrs_auv.vessel.sheet import Sheet, to_json
@@ -23,6 +23,7 @@ PARTS = ("vehicle", "sensors", "actuators", "movement")
 QUIT = frozenset({"quit", "exit"})
 HUB_SECONDS, END_SECONDS = 30.0, 10.0
 """Real seconds that a hub has to begin, and that processes have to end."""
+BUS_FAULTS = "cut, loss PART, delay SECONDS, corruption PART, and mend bus"
 
 
 class Berth:
@@ -104,13 +105,16 @@ class Berth:
                 self._tell("hub", "cut")
             case ["mend", "bus"]:
                 self._tell("hub", "mend")
-            case ["loss" | "delay" | "corruption", amount]:
-                Troubles(**{words[0]: float(amount)})
+            case ["loss" | "delay" | "corruption" as what, amount]:
+                Troubles(**{what: _number(amount)})
                 self._tell("hub", " ".join(words))
             case ["status"]:
                 self._tell("vehicle", "status")
             case _:
-                befalling(self._sheet, words)
+                try:
+                    befalling(self._sheet, words)
+                except NoSuchFaultError as error:
+                    raise ValueError(f"{error}; of the bus {BUS_FAULTS}") from error
                 self._tell("vehicle", " ".join(words))
 
     def close(self) -> None:
@@ -181,6 +185,13 @@ def keep(
                 return
             _obey(line, berths, say)
         time.sleep(0.1)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{text} is not a number") from None
 
 
 def _obey(line: str, berths: Mapping[str, Berth], say: Callable[[str], None]) -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from queue import SimpleQueue
 
 import pytest
@@ -40,6 +41,16 @@ def test_what_is_typed_befalls_the_vehicle_until_it_is_mended(vehicle, line, tol
     assert befall(vehicle, " ".join(("mend", fault, *rest[:1]))) == sound
 
 
+@pytest.mark.parametrize("line", ["thruster-dead rear port", "thruster-dead 'rear port'"])
+def test_a_thruster_may_have_a_name_of_several_words(vehicle, line):
+    thrusters = (replace(SHEET.thrusters[0], id="rear port"), *SHEET.thrusters[1:])
+    sheet = replace(SHEET, thrusters=thrusters)
+    befalling(sheet, line.split())(vehicle)
+    assert status_of(sheet, vehicle).endswith("; thruster rear port dead")
+    befalling(sheet, f"mend {line}".split())(vehicle)
+    assert not vehicle.faults.dead
+
+
 def test_a_battery_is_as_full_as_is_typed(vehicle):
     assert "battery 20%" in befall(vehicle, "battery 0.2")
     assert vehicle.charge == pytest.approx(0.2 * SHEET.battery)
@@ -54,6 +65,7 @@ def test_a_battery_is_as_full_as_is_typed(vehicle):
         ("mend battery", "no such fault"),
         ("thruster-dead 6", "6: no such thruster; there are T1, T2"),
         ("thruster-dead -1", "-1: no such thruster"),
+        ("thruster-dead rear port", "rear port: no such thruster"),
         ("frozen Depth", "Depth: no instrument's message; there are Pressure"),
         ("battery nan", "nan is not a number from 0 to 1"),
         ("battery 1.1", "1.1 is not a number"),

@@ -17,6 +17,10 @@ FAULTS = "thruster-dead THRUSTER, frozen MESSAGE, silent MESSAGE, noisy MESSAGE 
 Act: TypeAlias = Callable[[Vehicle], None]
 
 
+class NoSuchFaultError(ValueError):
+    """Words that name no fault of a vehicle."""
+
+
 def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
     """Return what some words do to a vehicle: one of `FAULTS`, or ``mend`` and a fault without its figure.
 
@@ -26,11 +30,11 @@ def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
         ValueError: they say nothing of that kind.
     """
     match words:
-        case ["thruster-dead", name]:
-            number = _thruster(sheet, name)
+        case ["thruster-dead", _, *_]:
+            number = _thruster(sheet, " ".join(words[1:]))
             return lambda vehicle: vehicle.faults.dead.add(number)
-        case ["mend", "thruster-dead", name]:
-            number = _thruster(sheet, name)
+        case ["mend", "thruster-dead", _, *_]:
+            number = _thruster(sheet, " ".join(words[2:]))
             return lambda vehicle: vehicle.faults.dead.discard(number)
         case ["frozen" | "silent" as what, name]:
             message = _message(name)
@@ -50,7 +54,8 @@ def befalling(sheet: Sheet, words: Sequence[str]) -> Act:
         case ["battery", part]:
             left = _number(part, 1.0)
             return lambda vehicle: _charge(vehicle, left * sheet.battery)
-    raise ValueError(f"{' '.join(words)}: no such fault; there are {FAULTS}, and mend FAULT but for the last")
+    said = " ".join(words)
+    raise NoSuchFaultError(f"{said}: no such fault; there are {FAULTS}, and mend FAULT but for the last")
 
 
 class Befallen:
@@ -106,6 +111,7 @@ def status_of(sheet: Sheet, vehicle: Vehicle) -> str:
 
 def _thruster(sheet: Sheet, name: str) -> int:
     ids = [each.id for each in sheet.thrusters]
+    name = name.strip("'\"")
     if name in ids:
         return ids.index(name)
     if name.isascii() and name.isdecimal() and int(name) < len(ids):
