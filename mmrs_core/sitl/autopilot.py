@@ -109,7 +109,7 @@ class Autopilot:
         self.steered: list[float] = []
         self.sticks: Sticks | None = None
         self.grounded_since = self.time
-        self.home = (*self.degrees(), self.settings.altitude + self.body.position[2])
+        self.home = self._here()
         self.settled = False
         self.beats_now = False
         self.failed: dict[str, float] = {}
@@ -231,8 +231,13 @@ class Autopilot:
         self.grounded_since = self.time
         self.crumbs = [self.body.position]
         if not (self.airborne or self.settled):
-            self.home = (*self.degrees(), self.settings.altitude + self.body.position[2])
+            self.home = self._here()
         self.say(mavlink.MAV_SEVERITY_INFO, "Arming motors")
+
+    def _here(self) -> tuple[float, float, float]:
+        """Return where home is if it is here; that of a submarine is at the surface above it."""
+        height = 0.0 if self.settings.kind == "sub" else self.body.position[2]
+        return (*self.degrees(), self.settings.altitude + height)
 
     def disarm(self) -> None:
         """Stop the motors; the mission begins at its first item again."""

@@ -1,4 +1,4 @@
-"""Whether the motors of a vehicle may be off: not where it was in the air, and has not come down to land."""
+"""Whether the motors of a vehicle may be off: not where it was in the air or below, and has not come home."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ..vehicles.mavlink_vehicle import MavlinkVehicle
 
 TOUCHING = 1.0
-"""Metres above home below which a vehicle that lands may stop its motors any moment."""
+"""Metres from the height of home within which a vehicle may stop its motors any moment."""
 
 COMES_DOWN_IN = frozenset({modes.LAND, modes.SURFACE, "return", "smart return"})
 """Modes at whose end the motors stop."""
@@ -22,7 +22,7 @@ DOWN = {"copter": LAND, "sub": "SURFACE", "rover": HOLD}
 
 
 class Motors:
-    """Keeps whether a vehicle is on its way through the air."""
+    """Keeps whether a vehicle is on its way through the air, or below the surface."""
 
     def __init__(self, vehicle: MavlinkVehicle, kind: str) -> None:
         """Look at a ``copter``, ``sub`` or ``rover``."""
@@ -34,7 +34,7 @@ class Motors:
         self._flown = False
 
     def check(self, *, moving: bool) -> None:
-        """Make sure that a vehicle that was in the air stops its motors only to land.
+        """Make sure that a vehicle that was in the air, or below, stops its motors only to land or surface.
 
         If it does so elsewhere, it has crashed, or somebody has stopped it: whoever lies there must not be
         armed again.
@@ -46,11 +46,12 @@ class Motors:
             Fault: it has stopped them elsewhere.
         """
         tells, state = self._vehicle.telemetry, self._vehicle.state()
-        if self._kind != "copter" or not moving or state.mode in COMES_DOWN_IN:
-            low = tells.grounded() or state.place.height < TOUCHING
+        below = self._kind == "sub" and state.place.height < -TOUCHING
+        if self._kind == "rover" or not moving or state.mode in COMES_DOWN_IN:
+            low = not below and (tells.grounded() or state.place.height < TOUCHING)
             self._flown = self._flown and moving and not low
         elif tells.armed():
-            self._flown = self._flown or tells.airborne()
+            self._flown = below or (self._kind == "copter" and (self._flown or tells.airborne()))
         elif self._flown:
             raise Fault(MOTORS_OFF, "its motors have stopped on its way: it has crashed, or somebody did it")
 

@@ -264,12 +264,12 @@ class MavlinkVehicle:
         """
         if not self._helm.motors_may_run():
             return False
-        if (self._telemetry.grounded() or not self._telemetry.armed()) and self._helm.stops_motors():
+        stands = self._telemetry.grounded() and self._kind != "sub"
+        if (stands or not self._telemetry.armed()) and self._helm.stops_motors():
             return False
         self._helm.enter(modes.HOLD)
-        begun = self._link.clock.now()
-        stands = partial(self._telemetry.still_since, begun, STILL)
-        if not self._link.wait(stands, PATIENCE_SECONDS, heard=True):
+        still = partial(self._telemetry.still_since, self._link.clock.now(), STILL)
+        if not self._link.wait(still, PATIENCE_SECONDS, heard=True):
             raise Refused("the vehicle does not come to a halt")
         return self._telemetry.armed()
 
@@ -321,11 +321,22 @@ class MavlinkVehicle:
         self._helm.insists = insists
 
     def surface(self) -> None:
-        """Come up to the water surface."""
-        self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)
-        self._helm.until(
-            lambda: self._telemetry.here().height > -self._acceptance, 10 * PATIENCE_SECONDS, "to surface"
-        )
+        """Come up to the water surface.
+
+        Raises:
+            Refused: its motors are off, below.
+            Fault: it does not come up.
+        """
+
+        def is_up() -> bool:
+            return self._telemetry.here().height > -self._acceptance
+
+        if self._telemetry.armed():
+            self._helm.enter(modes.SURFACE if self._helm.has(modes.SURFACE) else modes.HOLD)
+            seconds = 10 * PATIENCE_SECONDS
+            self._helm.until(lambda: is_up() or not self._telemetry.armed(), seconds, "to surface")
+        if not is_up():
+            raise Refused("its motors are off: it comes up only if it is buoyant")
 
     def disarm(self) -> None:
         """Switch off propulsion, whatever happens then."""

@@ -164,3 +164,12 @@ def test_a_sub_dives_and_surfaces():
     assert bench.wait_for(lambda: bench.pilot.body.position[2] < -7.9)
     bench.mode("surface")
     assert bench.wait_for(lambda: bench.pilot.body.position[2] > -0.1)
+
+
+def test_the_home_of_a_submarine_stays_at_the_surface_wherever_it_is_armed_or_starts_anew():
+    bench = Bench(kind="sub")
+    bench.pilot.body.rest_at(-3.0)
+    bench.pilot.arm()
+    armed = bench.pilot.home[2]
+    bench.pilot.restart()
+    assert (armed, bench.pilot.home[2]) == (bench.pilot.settings.altitude, bench.pilot.settings.altitude)

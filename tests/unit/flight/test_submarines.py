@@ -1,0 +1,52 @@
+"""Vehicles below the surface: they hold with their motors, and have come up only when they are up."""
+
+from __future__ import annotations
+
+import pytest
+from flight_crew import manned, robot_of
+
+from mmrs_core.flight.faults import MOTORS_OFF, Refused
+from mmrs_core.flight.program import Geographic
+from mmrs_core.flight.services.uploads import Uploads
+
+BELOW = Geographic(42.37, 13.35, -4.0)
+
+
+@pytest.fixture
+def below(tmp_path):
+    """Give a submarine four metres below its home."""
+    with manned(tmp_path, robot_of(vehicle="sub"), kind="sub") as made:
+        crew = made.crew
+        crew.vehicle.prepare(Uploads())
+        crew.watch.renew()
+        crew.vehicle.go_to(BELOW, None, None, False)
+        yield made
+
+
+def test_a_submarine_that_holds_keeps_its_motors_running(below):
+    assert below.crew.vehicle.hold()
+    assert below.simulated.autopilot.armed
+
+
+def test_a_submarine_whose_motors_are_off_below_has_not_surfaced(below):
+    with below.simulated.lock:
+        below.simulated.autopilot.disarm()
+    below.crew.watch.moving = False
+    assert below.crew.link.wait(lambda: not below.crew.vehicle.state().armed, 60.0)
+    with pytest.raises(Refused, match="its motors are off: it comes up only if it is buoyant"):
+        below.crew.vehicle.surface()
+
+
+def test_motors_that_stop_below_are_noticed(below):
+    below.quiet(2.0)
+    with below.simulated.lock:
+        below.simulated.autopilot.disarm()
+    assert below.caught().event == MOTORS_OFF
+
+
+def test_motors_that_stop_at_the_surface_are_not(below):
+    below.quiet(2.0)
+    below.crew.vehicle.surface()
+    with below.simulated.lock:
+        below.simulated.autopilot.disarm()
+    below.quiet(5.0)
