@@ -15,9 +15,9 @@ from mmrs_auv.vessel.wire.hub import Hub
 class RunningHub:
     """A hub that listens; `hub` may be looked at from anywhere, its methods are called in its thread."""
 
-    def __init__(self, hub: Hub) -> None:
+    def __init__(self, hub: Hub, port: int) -> None:
         self.hub = hub
-        self.port = 0
+        self.port = port
         self._loop = asyncio.new_event_loop()
         self._ready = threading.Event()
         self._stopping = threading.Lock()
@@ -27,7 +27,7 @@ class RunningHub:
 
     def _run(self) -> None:
         asyncio.set_event_loop(self._loop)
-        self.port = self._loop.run_until_complete(self.hub.start())
+        self.port = self._loop.run_until_complete(self.hub.start(port=self.port))
         self._ready.set()
         self._loop.run_forever()
         self._loop.run_until_complete(self.hub.stop())
@@ -42,9 +42,9 @@ class RunningHub:
 
 
 @contextmanager
-def running(hub: Hub | None = None) -> Iterator[RunningHub]:
-    """Have a hub run."""
-    found = RunningHub(hub or Hub())
+def running(hub: Hub | None = None, port: int = 0) -> Iterator[RunningHub]:
+    """Have a hub run, at a port of its own choice or at that one."""
+    found = RunningHub(hub or Hub(), port)
     try:
         yield found
     finally:

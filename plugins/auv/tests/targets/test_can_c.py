@@ -283,6 +283,29 @@ def test_the_program_ends_with_the_bus(program):
             drives.kill()
 
 
+def test_the_program_waits_for_the_hub_a_while(program):
+    with running() as hub:
+        port = hub.port
+    drives = subprocess.Popen([program, "127.0.0.1", str(port)])
+    try:
+        with pytest.raises(subprocess.TimeoutExpired):
+            drives.wait(0.3)
+        with running(port=port), Raw(port) as client:
+            statuses(client, Codec(sheet(2)), lambda status: True)
+            drives.send_signal(signal.SIGTERM)
+            assert drives.wait(10) == 0
+    finally:
+        drives.kill()
+        drives.wait()
+
+
+def test_the_program_says_that_there_is_no_hub(program):
+    with running() as hub:
+        port = str(hub.port)
+    done = subprocess.run([program, "127.0.0.1", port], capture_output=True, timeout=20)
+    assert (done.returncode, done.stderr) == (3, f"drives: no hub at 127.0.0.1:{port}\n".encode())
+
+
 def test_the_program_says_how_it_is_called(program):
     done = subprocess.run([program], capture_output=True, timeout=10)
     assert (done.returncode, done.stderr) == (2, b"usage: drives HOST PORT [CHANNEL]\n")

@@ -2,7 +2,8 @@
  *
  * drives HOST PORT [CHANNEL]
  *
- * Ends with 0 at SIGTERM or SIGINT, with 2 where its words are wrong, with 3 when the bus is gone.
+ * Waits five seconds for the hub. Ends with 0 at SIGTERM or SIGINT, with 2 where its words are wrong, with 3
+ * where there is no hub or the bus is gone.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -186,6 +187,19 @@ static int connected(const char *host, const char *port)
     return opened;
 }
 
+/* Return a connection to the hub, which may be there soon; -1 if there is none. */
+static int connected_soon(const char *host, const char *port)
+{
+    const struct timespec moment = {.tv_nsec = 100000000};
+    const uint32_t began = microseconds();
+    int opened = connected(host, port);
+    while (opened < 0 && !ends && microseconds() - began < PATIENCE) {
+        (void)nanosleep(&moment, NULL);
+        opened = connected(host, port);
+    }
+    return opened;
+}
+
 int main(int count, char **words)
 {
     if (count < 3 || count > 4 || (count == 4 && strlen(words[3]) > 32u)) {
@@ -197,14 +211,17 @@ int main(int count, char **words)
     action.sa_handler = end;
     (void)sigaction(SIGTERM, &action, NULL);
     (void)sigaction(SIGINT, &action, NULL);
-    struct client client = {.socket = connected(words[1], words[2]), .channel = count == 4 ? words[3] : "can0"};
+    struct client client = {.socket = -1, .channel = count == 4 ? words[3] : "can0"};
+    client.socket = connected_soon(words[1], words[2]);
+    if (client.socket < 0) {
+        (void)fprintf(stderr, "drives: no hub at %s:%s\n", words[1], words[2]);
+        return ends ? ENDED : BUS_GONE;
+    }
     static struct drives drives;
     drives_begin(&drives);
-    const bool served = client.socket >= 0 && serve(&client, &drives);
+    const bool served = serve(&client, &drives);
     drives_quiet(&drives);
-    if (client.socket >= 0) {
-        (void)close(client.socket);
-    }
+    (void)close(client.socket);
     if (!served) {
         (void)fprintf(stderr, "drives: the bus at %s, port %s, is gone\n", words[1], words[2]);
     }
