@@ -35,6 +35,7 @@ from mmrs_auv.vessel.wire.frame import Frame
 SCRIPT = Path(__file__).parents[2] / "plugins" / "auv" / "tests" / "targets" / "craft_script.adb"
 KNOWN = {message.name: message for message in (*COMMON, *BEATS)}
 MESSAGES: Sequence[Message] = [KNOWN[name] for name in (*SPOKEN, *HEARD)]
+OWNER = 'Né "1"'
 OBJECTS = ("a buoy", 'gate "1"', "é")
 NAMES = (
     b'"a\\u0020\\u0062uoy"', b'"gate \\u00221\\""', b'"\\u00e9"', b'"\xc3\xa9"', b'"a buoy\\n"', b'"a\x01"',
@@ -317,8 +318,10 @@ def some_datagram(random: Random, time: float) -> bytes:
     time = max(0.0, time - random.choice([0.0] * 6 + [5.0, 100.0]))
     confidence = random.choice([0.9] * 6 + [0.5, 0.49, 1.01])
     camera = random.choice(CAMERAS)
-    data = to_datagram(Detection(time, OBJECTS[number], confidence, north, east, depth, camera))
-    match random.choice(["as it is"] * 8 + ["cut", "text", "less", "other hand", "name", "camera"]):
+    whose = random.choice(["", "", OWNER, OWNER, "Otter"])
+    data = to_datagram(Detection(time, OBJECTS[number], confidence, north, east, depth, camera, whose))
+    ways = ["cut", "text", "less", "other hand", "name", "camera", "robot"]
+    match random.choice(["as it is"] * 8 + ways):
         case "other hand":
             tight = random.choice([(",", ":"), (" ,\t", " : ")])
             return json.dumps(json.loads(data), ensure_ascii=False, separators=tight).encode()
@@ -327,6 +330,8 @@ def some_datagram(random: Random, time: float) -> bytes:
             return data.replace(named, random.choice(NAMES))
         case "camera":
             return data.replace(f'"{camera}"'.encode(), b'"side"')
+        case "robot":
+            return json.dumps(json.loads(data) | {"robot": random.choice(["", 7, "a", None])}).encode()
         case "cut":
             return data[: random.randrange(1, len(data) - 1)]
         case "text":

@@ -208,7 +208,7 @@ def _eyes(given: BackendInput, options: Connecting) -> Detections | None:
             )
         return None
     try:
-        return Detections(port=options.detections)
+        return Detections(port=options.detections, robot=given.robot.id)
     except OSError as error:
         raise LinkLostError(f"robot '{given.robot.id}': {error}") from error
 

@@ -72,7 +72,7 @@ def main(
                 port.close()
 
             stack.callback(let_go)
-            patience, eyes = options.reach.patience, _eyes(ports.get(robot.id), stack)
+            patience, eyes = options.reach.patience, _eyes(robot.id, ports.get(robot.id), stack)
             return CanVehicle(
                 robot,
                 sheet,
@@ -137,11 +137,11 @@ def _ports(parser: argparse.ArgumentParser, robots: Sequence[str], texts: Sequen
     return {robot: int(text) for robot, text in found.items()}
 
 
-def _eyes(port: int | None, stack: ExitStack) -> Detections | None:
+def _eyes(robot: str, port: int | None, stack: ExitStack) -> Detections | None:
     if port is None:
         return None
     try:
-        return stack.enter_context(Detections(port=port))
+        return stack.enter_context(Detections(port=port, robot=robot))
     except OSError as error:
         raise Fault(LINK_LOST, f"--detections {port}: {error.strerror or error}") from error
 

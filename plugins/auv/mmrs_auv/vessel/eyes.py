@@ -19,7 +19,7 @@ from .sheet import Vector
 FRONT, BOTTOM = "front", "bottom"
 CAMERAS = (FRONT, BOTTOM)
 
-LONGEST, LONGEST_NAME, FARTHEST, DEEPEST = 1024, 80, 8388.0, 11000.0
+LONGEST, LONGEST_NAME, FARTHEST, DEEPEST = 4096, 80, 8388.0, 11000.0
 """Bytes of a datagram, characters of a name, metres from the origin and of depth that are taken at most."""
 
 KEPT, NAMES = 9, 256
@@ -41,6 +41,7 @@ class Detection:
         confidence: from 0 to 1: how often such a detection is right.
         north, east, depth: of the object's middle, metres.
         camera: one of `CAMERAS`.
+        robot: whose cameras saw it, the beginning of a long name; empty: nobody says.
     """
 
     time: float
@@ -50,11 +51,13 @@ class Detection:
     east: float
     depth: float
     camera: str
+    robot: str = ""
 
 
 def to_datagram(detection: Detection) -> bytes:
     """Return a detection as it goes through UDP."""
-    return json.dumps(asdict(detection), allow_nan=False).encode() + b"\n"
+    told = {key: value for key, value in asdict(detection).items() if key != "robot" or value}
+    return json.dumps(told, allow_nan=False).encode() + b"\n"
 
 
 def from_datagram(data: bytes) -> Detection:
@@ -69,13 +72,16 @@ def from_datagram(data: bytes) -> Detection:
         found = json.loads(data)
     except (ValueError, RecursionError):
         raise ValueError("no JSON") from None
-    if not isinstance(found, dict) or set(found) != {each.name for each in fields(Detection)}:
+    if not isinstance(found, dict) or {*found, "robot"} != {each.name for each in fields(Detection)}:
         raise ValueError("other keys")
     name = found["name"]
     if not isinstance(name, str) or not 0 < len(name) <= LONGEST_NAME or not name.isprintable():
         raise ValueError("no name")
     if found["camera"] not in CAMERAS:
         raise ValueError("no camera")
+    robot = found.get("robot", "")
+    if not isinstance(robot, str) or len(robot) > LONGEST_NAME:
+        raise ValueError("no robot")
     return Detection(
         _number(found, "time", 0.0, 1e12),
         name,
@@ -84,7 +90,13 @@ def from_datagram(data: bytes) -> Detection:
         _number(found, "east", -FARTHEST, FARTHEST),
         _number(found, "depth", -FARTHEST, DEEPEST),
         str(found["camera"]),
+        robot,
     )
+
+
+def owner_of(robot: str) -> str:
+    """Return how detections name a robot."""
+    return robot[:LONGEST_NAME]
 
 
 def _number(found: Mapping[str, object], key: str, low: float, high: float) -> float:
@@ -118,10 +130,12 @@ class Detections:
         least: int = 2,
         spread: float = 1.0,
         clock: Callable[[], float] = time.monotonic,
+        robot: str = "",
     ) -> None:
         """Open the port; 0: any that is free.
 
         Args:
+            robot: whose cameras count, and those that do not say whose they are; empty: all.
             confidence: less counts for nothing.
             lasting: seconds after its arrival, by the clock, that a detection counts.
             least: number of them that must agree. spread: metres from their median within which they do.
@@ -131,7 +145,7 @@ class Detections:
         """
         self.bad: Counter[str] = Counter()
         self._confidence, self._lasting, self._least, self._spread = confidence, lasting, least, spread
-        self._clock = clock
+        self._clock, self._owner = clock, owner_of(robot)
         self._lock = threading.Lock()
         self._kept: dict[str, deque[tuple[float, Detection]]] = {}
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -199,6 +213,9 @@ class Detections:
             detection = from_datagram(data)
         except ValueError as error:
             self._refuse(str(error))
+            return
+        if self._owner and detection.robot not in ("", self._owner):
+            self._refuse("of another robot")
             return
         if detection.confidence < self._confidence:
             return

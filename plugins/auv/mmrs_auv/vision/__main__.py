@@ -128,7 +128,7 @@ def _serve(given: argparse.Namespace, sheet: Sheet, around: Surroundings, stop: 
     for each in unseen(camera, sought):
         print(f"{given.part}: {each}", file=sys.stderr)
     with Reader(f"{given.memory}-{given.part}") as reader:
-        watch(reader, camera, sought, given.to, stop, hazier(POOL, around.haze))
+        watch(reader, camera, sought, given.to, stop, hazier(POOL, around.haze), sheet.robot)
 
 
 def _serve_frames(

@@ -32,7 +32,7 @@ class Eyes:
         water: Water = POOL,
     ) -> None:
         """Look out for what is sought; None: for all that is there."""
-        self._cameras = cameras_of(sheet)
+        self._cameras, self._robot = cameras_of(sheet), sheet.robot
         self._renderer = Renderer(surroundings, seed, conditions, water)
         self.sought = sought_in(surroundings) if sought is None else tuple(sought)
         self._water = hazier(water, surroundings.haze)
@@ -48,5 +48,5 @@ class Eyes:
         for camera in self._cameras:
             left, right = self._renderer.pair(camera, pose, time)
             sightings = detect(left, right, camera, self.sought, self._water)
-            found += detections_of(sightings, camera, believed or pose, time)
+            found += detections_of(sightings, camera, believed or pose, time, self._robot)
         return found

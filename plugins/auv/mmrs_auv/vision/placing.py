@@ -5,24 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import dist
 
-from ..vessel.eyes import Detection
+from ..vessel.eyes import Detection, owner_of
 from ..vessel.sheet import Vector
 from .cameras import Camera, Pose
 from .detecting import Sighting, Sought
 
 
-def detections_of(sightings: Iterable[Sighting], camera: Camera, pose: Pose, time: float) -> list[Detection]:
+def detections_of(
+    sightings: Iterable[Sighting], camera: Camera, pose: Pose, time: float, robot: str = ""
+) -> list[Detection]:
     """Return what is told of sightings; each name at most once, the surest first.
 
     Args:
+        sightings: in the camera's pictures.
+        camera: of the vehicle.
         pose: where the vehicle believed to be when the pictures were taken, at `time`.
+        time: seconds of the vehicle's clock.
+        robot: whose camera it is; empty: that is not told.
     """
     found: dict[str, Detection] = {}
     for each in sorted(sightings, key=lambda each: -each.confidence):
         place = camera.world(each.point, pose)
         name = name_of(each.matches, place)
         if name is not None and name not in found:
-            found[name] = Detection(time, name, each.confidence, *place, camera.name)
+            found[name] = Detection(time, name, each.confidence, *place, camera.name, owner_of(robot))
     return list(found.values())
 
 

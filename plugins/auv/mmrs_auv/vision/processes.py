@@ -90,6 +90,7 @@ def watch(
     to: tuple[str, int],
     stop: threading.Event,
     water: Water = POOL,
+    robot: str = "",
 ) -> int:
     """Tell what is seen in pairs of one camera, by UDP, until told to stop; return how many were looked at.
 
@@ -117,7 +118,7 @@ def watch(
             looked += 1
             fitting = camera.scaled(pair.left.shape[1], pair.left.shape[0])
             sightings = detect(pair.left, pair.right, fitting, sought, water)
-            for detection in detections_of(sightings, fitting, pair.pose, pair.time):
+            for detection in detections_of(sightings, fitting, pair.pose, pair.time, robot):
                 _send(out, to_datagram(detection), to)
     return looked
 

@@ -247,6 +247,7 @@ procedure Craft_Script is
             begin
                Sight.Take (Line (Next .. Last), Now);
             end;
+         when 'b' => Sight.Belong_To (Line (Next .. Last));
          when 'w' => Look_For;
          when 'm' => Add_Move;
          when 'a' => Pass;

@@ -12,6 +12,7 @@ import pytest
 from ada_crafts import (
     MESSAGES,
     OBJECTS,
+    OWNER,
     bits,
     compiled,
     happenings,
@@ -100,8 +101,8 @@ def test_depths_are_written_in_the_steps_of_each_vehicle(program, deepest):
 @pytest.mark.parametrize("count", COUNTS)
 def test_objects_are_seen_at_the_same_places(program, count):
     now, random = [0.0], Random(count)
-    lines, expected = [], []
-    with Detections(clock=lambda: now[0]) as eyes:
+    lines, expected = [f"b {json.dumps(OWNER)}"], [""]
+    with Detections(clock=lambda: now[0], robot=OWNER) as eyes:
         for number in range(count):
             now[0] += random.choice([0.0, 0.1, 0.5, 3.0])
             data = some_datagram(random, number * 0.1)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mmrs_auv.vessel.eyes import LONGEST, NAMES, Detection, Detections, from_datagram, to_datagram
+from mmrs_auv.vessel.eyes import LONGEST, NAMES, Detection, Detections, from_datagram, owner_of, to_datagram
 
 BUOY = Detection(12.0, "red buoy", 0.9, 3.0, -1.0, 2.0, "front")
 
@@ -59,6 +59,8 @@ def test_a_detection_comes_back_as_it_was_sent() -> None:
         ({"name": "a\x1bb"}, "no name"),
         ({"name": 3}, "no name"),
         ({"time": -1.0}, "time out of range"),
+        ({"robot": 3}, "no robot"),
+        ({"robot": "x" * 81}, "no robot"),
         ({"colour": "red"}, "other keys"),
     ],
 )
@@ -82,6 +84,28 @@ def test_datagrams_of_anything_are_counted(eyes: Detections, data: bytes) -> Non
 def test_no_bytes_break_the_reader(data: bytes) -> None:
     with pytest.raises(ValueError):
         from_datagram(data)
+
+
+def test_what_the_cameras_of_another_robot_see_counts_for_nothing(clock: Hands) -> None:
+    with Detections(clock=clock, robot="Thetis") as eyes:
+        tell(eyes, {"robot": "Otter"}, {"robot": "Otter"}, {"robot": "thetis"})
+        assert eyes.place("red buoy") is None
+        assert eyes.bad == {"of another robot": 3}
+        tell(eyes, {"robot": "Thetis"}, {"robot": ""})
+        assert eyes.place("red buoy") == (3.0, -1.0, 2.0)
+
+
+def test_a_robot_of_a_long_name_knows_its_cameras_by_the_beginning_of_it(clock: Hands) -> None:
+    name = "\U0001f991" * 300
+    with Detections(clock=clock, robot=name) as eyes:
+        tell(eyes, {"robot": owner_of(name)}, {"robot": owner_of(name), "name": "\U0001f991" * 80})
+        assert eyes.bad.total() == 0
+
+
+def test_who_says_nothing_of_robots_is_read_as_before(eyes: Detections) -> None:
+    assert b"robot" not in to_datagram(BUOY)
+    tell(eyes, {"robot": "Otter"}, {})
+    assert eyes.seen() == {"red buoy"}
 
 
 def test_one_detection_alone_is_no_place(eyes: Detections) -> None:

@@ -13,6 +13,7 @@ from mmrs_auv.sheets import action_number
 from mmrs_auv.targets.ada import policies as answers
 from mmrs_auv.targets.ada.refusals import DEVICE_ACTION, NOTIFY, SORTS, of_action, of_movement
 from mmrs_auv.targets.moves import seconds_of
+from mmrs_auv.vessel.eyes import owner_of
 from mmrs_auv.vessel.goals import SLOWEST
 from mmrs_auv.vessel.refusals import MOST_SPEED
 from mmrs_core.behaviour.log import log_name
@@ -58,6 +59,7 @@ class Mission:
         robot = self._context.robot
         return {
             "id": _json(robot.id),
+            "eyes": _json(owner_of(robot.id)),
             "name": robot.id,
             "mission": self._program.name,
             "log": log_name(robot.id),

@@ -11,6 +11,7 @@ package body Datagrams is
    subtype Low_Half is Natural range 16#DC00# .. 16#DFFF#;
 
    function After_Blanks (Line : String; From : Positive) return Positive;
+   function Value_In (Line, Key : String) return Natural;
    function Value_Of (Line, Key : String) return Positive;
    function Body_Of (Line : String; First : Positive) return String;
    function Written (Code : Natural) return String;
@@ -21,8 +22,8 @@ package body Datagrams is
       elsif Line (From) in ' ' | ASCII.HT | ASCII.LF | ASCII.CR then After_Blanks (Line, From + 1)
       else From);
 
-   --  Where a key's value begins.
-   function Value_Of (Line, Key : String) return Positive is
+   --  Where a key's value begins; 0: the key is missing.
+   function Value_In (Line, Key : String) return Natural is
       Mark  : constant String := """" & Key & """";
       Place : Natural := Index (Line, Mark);
       Next  : Positive;
@@ -34,8 +35,11 @@ package body Datagrams is
          end if;
          Place := Index (Line, Mark, Place + 1);
       end loop;
-      raise Constraint_Error;
-   end Value_Of;
+      return 0;
+   end Value_In;
+
+   --  The same. Raises Constraint_Error where the key is missing.
+   function Value_Of (Line, Key : String) return Positive is (Value_In (Line, Key));
 
    function Number_Of (Line, Key : String; Low, High : Long_Float) return Long_Float is
       First : constant Positive := Value_Of (Line, Key);
@@ -133,5 +137,18 @@ package body Datagrams is
       when Encoding_Error =>
          raise Constraint_Error;
    end Name_Of;
+
+   function Agrees (Line, Key, Text : String) return Boolean is
+      First : constant Natural := Value_In (Line, Key);
+   begin
+      if First = 0 then
+         return True;
+      end if;
+      declare
+         Found : constant String := Body_Of (Line, First);
+      begin
+         return Found = "" or else """" & Found & """" = Text or else Name_Of (Line, Key) = Text;
+      end;
+   end Agrees;
 
 end Datagrams;

@@ -6,4 +6,7 @@ package Datagrams is
    --  A name that can be printed, in JSON: all that write the same name are answered by the same text.
    function Name_Of (Line, Key : String) return String;
 
+   --  Whether a text, in JSON, is that of a key; so it is where the key is missing, or its text is empty.
+   function Agrees (Line, Key, Text : String) return Boolean;
+
 end Datagrams;

@@ -62,6 +62,7 @@ begin
    Alarms.Keep_Clear (Options.Number ("--clearance", 0.0, Most));
    Slots.Prepare (Plan);
    if Options.Text ("--detections", "") /= "" then
+      Sight.Belong_To (To_String (Plan.Eyes));
       Sight.Open (Natural (Options.Number ("--detections", 0.0, 65_535.0)));
    end if;
    Bus.Open

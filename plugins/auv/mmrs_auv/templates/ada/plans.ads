@@ -100,12 +100,14 @@ package Plans is
    package Move_Lists is new Ada.Containers.Vectors (Positive, Move);
    package Text_Lists is new Ada.Containers.Vectors (Positive, Text);
 
-   --  Robot, Robots (all of the mission) and Slots in JSON; Log: the name of its file. Step: metres of depth in a
-   --  step of goals on the bus; 0: not known. Reserve: part of the battery that must remain. Cruise: metres per
-   --  second on the way back. Surface: height of the water above the mission's origin. Alone: no other robot is
-   --  waited for. Bears: seconds that an event lasts before it is answered; Answer: how.
+   --  Robot, Robots (all of the mission) and Slots in JSON; Eyes: how its cameras name it, in JSON; Log: the name
+   --  of its file. Step: metres of depth in a step of goals on the bus; 0: not known. Reserve: part of the battery
+   --  that must remain. Cruise: metres per second on the way back. Surface: height of the water above the mission's
+   --  origin. Alone: no other robot is waited for. Bears: seconds that an event lasts before it is answered; Answer:
+   --  how.
    type Plan is record
       Robot, Robots : Text;
+      Eyes          : Text;
       Name, Log     : Text;
       Step, Reserve : Long_Float := 0.0;
       Cruise        : Long_Float := 0.0;

@@ -17,7 +17,7 @@ package body Sight is
    Least      : constant := 2;
    Kept       : constant := 9;
    Most       : constant := 1024;
-   Longest    : constant := 1024;
+   Longest    : constant := 4096;
 
    Most_Things : constant := 256;
 
@@ -60,6 +60,7 @@ package body Sight is
    end Listener;
 
    Link      : Socket_Type;
+   Owner     : Unbounded_String;
    Listening : Boolean := False;
    pragma Atomic (Listening);
 
@@ -179,6 +180,8 @@ package body Sight is
    begin
       if Text = "" or else Text (Text'Last) /= '}' then
          return;
+      elsif Length (Owner) > 0 and then not Datagrams.Agrees (Line, "robot", To_String (Owner)) then
+         return;
       elsif Datagrams.Number_Of (Line, "confidence", 0.0, 1.0) >= Confidence then
          Memory.Keep
            ((Name   => Name_In (Line, "name"),
@@ -194,6 +197,11 @@ package body Sight is
       when Constraint_Error =>
          null;
    end Take;
+
+   procedure Belong_To (Robot : String) is
+   begin
+      Owner := To_Unbounded_String (Robot);
+   end Belong_To;
 
    procedure Open (Port : Natural) is
    begin

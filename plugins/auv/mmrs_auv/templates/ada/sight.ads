@@ -7,6 +7,9 @@ package Sight is
    --  Begin to hear. Raises GNAT.Sockets.Socket_Error.
    procedure Open (Port : Natural);
 
+   --  Pass over, from now on, what says that it is of another robot than this one, its name in JSON.
+   procedure Belong_To (Robot : String);
+
    function Is_Open return Boolean;
 
    --  Where an object, its name in JSON, is seen now; Seen: whether it is.
