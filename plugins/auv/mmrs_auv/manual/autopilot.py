@@ -58,7 +58,8 @@ class Autopilot:
         self._link, self._given_up, self._reserve = link, given_up, reserve
         self._texts = Texts(link.clock)
         link.observe(self._texts)
-        self._starts, self._ready_at, self._asked, self._off_since = 0, -inf, -inf, inf
+        self._starts, self._ready_at, self._asked = 0, -inf, -inf
+        self._off_since, self._silent_at = inf, -inf
 
     def get_ready(self) -> None:
         """Go into depth hold and arm.
@@ -84,6 +85,7 @@ class Autopilot:
             patience: seconds of silence after which the link counts as lost.
         """
         if self._link.silent_for() > patience:
+            self._silent_at = self._link.clock.now()
             return faults.Fault(faults.LINK_LOST, f"not heard for {self._link.silent_for():.0f} s")
         if self._link.starts != self._starts:
             return faults.Fault(faults.VEHICLE_RESTARTED, "it has begun anew, with its motors off")
@@ -203,8 +205,10 @@ class Autopilot:
         )
 
     def _stale(self) -> faults.Fault | None:
-        age = max(map(self._link.since, NEEDED))
-        if age <= STALE or self._link.silent_for() >= STALE:
+        now, age = self._link.clock.now(), max(map(self._link.since, NEEDED))
+        if self._link.silent_for() >= STALE:
+            self._silent_at = now
+        if age <= STALE or now - self._silent_at < STALE:
             return None
         return faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
 

@@ -213,6 +213,7 @@ def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if
         driven.pass_by(5.0)
         assert driven.truth[0] == pytest.approx(east, abs=0.2)
         driven.vehicle.faults.speak()
+        until(lambda: driven.backend.reachable(driven.clock.now()))
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
 
