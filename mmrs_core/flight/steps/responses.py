@@ -21,6 +21,8 @@ BLOCKED = (
     " goes back the way it came instead"
 )
 
+NO_ESCAPE = "has no clear way to an emergency area: where it is to go there, it goes home the way it came"
+
 NEEDS_POSITION = frozenset({RETURN, ESCAPE, HOLD})
 """Responses that nobody can carry out who does not know where it is."""
 
@@ -35,6 +37,13 @@ def policy_for(event: str, robot: Robot, first: Sequence[Policy] = ()) -> Policy
     if event == OBJECT_NOT_FOUND and robot.vehicle == "sub":
         return Policy(event, SURFACE)
     return Policy(event, UNDECLARED.get(event, HOLD))
+
+
+def lacks_escape(robot: Robot) -> bool:
+    """Return whether a robot is to go to an emergency area some time, and there is no way to any."""
+    waits = [policy for step in robot.steps if step.then is not None for policy in step.then.policies]
+    flees = any(policy.response == ESCAPE for policy in (*robot.policies, *waits))
+    return flees and not robot.escapes
 
 
 def alone(policy: Policy, robot: Robot) -> Policy:

@@ -28,7 +28,7 @@ from .departures import Departures
 from .energy import Reserve
 from .ground import WATCHED, Ground
 from .motors import DOWN, Motors
-from .responses import CONTINUE, LAND, policy_for
+from .responses import CONTINUE, LAND, NO_ESCAPE, lacks_escape, policy_for
 from .ways import Track
 
 if TYPE_CHECKING:
@@ -112,6 +112,8 @@ class Watch:
         """Tell people before the robot moves what of its policies does not count, or not yet."""
         if policy_for(VEHICLE_RESTARTED, self._robot).response == CONTINUE:
             self.say(GROUND_ONLY.format(DOWN[self._robot.vehicle]))
+        if lacks_escape(self._robot):
+            self.say(NO_ESCAPE)
         if self._watched is not None and (missing := self._watched.ground.missing(self._robot)):
             self.say(missing)
 

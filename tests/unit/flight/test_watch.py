@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from flight_crew import SPEEDUP, in_background, robot_of
+from flight_crew import OVERHEAD, SPEEDUP, in_background, robot_of
 from patience import until
 
 from mmrs_core.flight.clock import Clock
@@ -29,6 +29,22 @@ def test_a_log_that_cannot_be_kept_ends_what_has_no_vehicle_too():
     with pytest.raises(Fault, match="its slots cannot be kept") as fault:
         watch.check()
     assert fault.value.event == "LOG_FAILED"
+
+
+@pytest.mark.parametrize(
+    ("policy", "escapes", "told"),
+    [
+        ("EMERGENCY_AREA", (), True),
+        ("EMERGENCY_AREA", (("out", (OVERHEAD,)),), False),
+        ("RETURN", (), False),
+    ],
+)
+def test_a_robot_that_has_no_way_to_an_emergency_area_says_so_before_it_moves(policy, escapes, told):
+    said = []
+    watch = Watch(robot_of(Policy("OBSTACLE", policy), escapes=escapes), Clock(), threading.Event())
+    watch.say = said.append
+    watch.forewarn()
+    assert any("no clear way to an emergency area" in line for line in said) is told
 
 
 def test_a_robot_that_is_well_is_let_alone(in_the_air):
