@@ -25,6 +25,9 @@ from mmrs_core.scene import Position
 STAYS, RESTS, FINDS = ("HOLD", "CONTINUE"), ("STOP_THRUST", NOTHING), ("RETURN", "EMERGENCY_AREA")
 HINDRANCES = (LINK_LOST, POSITION_LOST, NO_PROGRESS)
 NO_WAY = "no way is known back to where its program was broken off"
+AT_HOME = 5.0
+"""Metres from home that count as at home, where the place is not known better than that."""
+
 UNHEARD = 60.0
 """Seconds of silence after which nobody waits any more for a vehicle to do what it was told; it comes up."""
 
@@ -211,6 +214,12 @@ class CanRobot:
         except UnreachableError as error:
             return f"{NO_WAY}: {error}"
         return ""
+
+    def away(self, now: float) -> str:
+        """Return how far it is from its home; empty at home, or where nobody has heard of it."""
+        state, home = self._craft.state(), self._sheet.home
+        metres = hypot(state.north - home[0], state.east - home[1])
+        return f"it is {metres:.0f} m from home" if state.age < 60.0 and metres > AT_HOME else ""
 
     def moves(self, now: float) -> bool:
         """Return whether the vehicle may move by thrust at any moment."""

@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 from dives import dive, rehearse, swim
 from mmrs_auv.backend.rehearsed import RehearsedRobot
+from mmrs_auv.backend.robot import CanRobot
 
+from mmrs_core.contributions.abilities import Recovering
 from mmrs_core.contributions.execution import Fault
 from mmrs_core.scene import Area, AreaUse
 
@@ -37,6 +39,18 @@ def test_it_goes_round_what_is_in_its_way(tmp_path: Path) -> None:
         track.append((truth.east, truth.north))
     assert track[-1] == pytest.approx((0.0, 0.5), abs=0.6)
     assert not [place for place in track if 2.3 < place[0] < 3.7 and -1.7 < place[1] < 1.0]
+
+
+def test_whoever_runs_behaviours_knows_that_it_can_go_back(tmp_path: Path) -> None:
+    robot, now = dived(tmp_path)
+    assert isinstance(robot, Recovering)
+    assert isinstance(robot, CanRobot)
+    assert robot.away(now) == "it is 6 m from home"
+    robot.recover(("start",), "first", now)
+    while not robot.finished(now):
+        now += 0.5
+        assert now < 300.0
+    assert robot.away(now) == ""
 
 
 @pytest.mark.thorough
