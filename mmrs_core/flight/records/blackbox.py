@@ -27,6 +27,7 @@ import json
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, is_dataclass
@@ -45,7 +46,10 @@ LONGEST_END = 1 << 16
 
 DIGITS = 9
 KEPT_AT_ONCE = frozenset({"start", "decision", "failed", "order"})
-"""Kinds that are on the disk when they have been written."""
+"""Kinds that are on the disk when they have been written, and are written later where that fails."""
+
+OWED = 1000
+"""How many lines are kept until they can be written, at most; then the oldest are given up."""
 
 
 def black_box_path(log: Path) -> Path:
@@ -93,8 +97,9 @@ class BlackBox:
     """Appends lines to a robot's black box; any thread may.
 
     A black box that cannot be written stops no robot: it is said once, and tried again with the next
-    line. A file that has grown large is put aside as ``NAME.blackbox.0001.ndjson``, and so on; the
-    one without a number is the newest.
+    line, before which come the lines that matter most of those that could not be written. A file that
+    has grown large is put aside as ``NAME.blackbox.0001.ndjson``, and so on; the one without a number
+    is the newest.
     """
 
     def __init__(
@@ -126,6 +131,7 @@ class BlackBox:
         self._largest = largest
         self._say = say
         self._said = False
+        self._owed: deque[tuple[bytes, bool]] = deque(maxlen=OWED)
         self._lock = threading.Lock()
         self._file: IO[bytes] | None = None
         self._closed = False
@@ -138,18 +144,25 @@ class BlackBox:
         line = {**self._head, "time": round(self._now(), 3), "wall": wall, "kind": kind}
         data = json.dumps(line | self._mark | {name: plain(value) for name, value in content.items()})
         with self._lock:
-            if self._closed:
-                return
-            try:
-                self._append(data.encode("ascii") + b"\n", kind in KEPT_AT_ONCE)
-            except OSError as error:
-                self._complain(error)
+            if not self._closed:
+                self._owed.append((data.encode("ascii") + b"\n", kind in KEPT_AT_ONCE))
+                self._settle()
 
     def close(self) -> None:
-        """Write no more."""
+        """Write no more than what could not be written before."""
         with self._lock:
             self._closed = True
+            self._settle()
             self._let_go()
+
+    def _settle(self) -> None:
+        try:
+            while self._owed:
+                self._append(*self._owed[0])
+                self._owed.popleft()
+        except OSError as error:
+            self._complain(error)
+            self._owed = deque((each for each in self._owed if each[1]), OWED)
 
     def _append(self, data: bytes, at_once: bool) -> None:
         file = self._file if self._file is not None else self._open()

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import json
+import resource
+from contextlib import contextmanager
 from math import nan
 
 import pytest
@@ -73,6 +75,44 @@ def test_a_box_that_cannot_be_written_is_said_once_and_stops_nothing(path, opene
     box.write("text", text="two")
     (line,) = said
     assert "alpha.blackbox.ndjson: the black box cannot be written" in line
+
+
+@pytest.fixture
+def full_disk():
+    """Return a function that gives a context in which no file of this process grows."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    @contextmanager
+    def full():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    return full
+
+
+def test_what_was_decided_while_the_disk_was_full_is_written_once_it_is_not(path, opened, full_disk):
+    box = opened(say=lambda line: None)
+    box.write("text", text="before")
+    with full_disk():
+        box.write("decision", what="LOG_FAILED")
+        box.write("fix", energy=0.5)
+    box.write("fix", energy=0.4)
+    assert [(each["kind"], each.get("energy")) for each in lines(path)] == [
+        ("text", None),
+        ("decision", None),
+        ("fix", 0.4),
+    ]
+
+
+def test_what_was_decided_while_the_disk_was_full_is_written_when_the_box_is_closed(path, opened, full_disk):
+    box = opened(say=lambda line: None)
+    with full_disk():
+        box.write("decision", what="LOG_FAILED")
+    box.close()
+    assert [each["kind"] for each in lines(path)] == ["decision"]
 
 
 @pytest.mark.parametrize("more", ["", '{"time": 99', "rubbish\n", '{"time": "late"}\n', '{"time": NaN}\n'])
