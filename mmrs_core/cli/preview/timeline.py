@@ -36,7 +36,7 @@ _WHATS = {
 }
 
 KEY = "Tall: works; low: takes off, travels or lands; hatched: waits; framed: stays, recharges or chooses."
-KEY_OF_FLIGHTS = f"{KEY} Red: does what no move says. Beneath, smaller: as planned."
+KEY_OF_FLIGHTS = f"{KEY} Red stripes: does what no move says. Beneath, smaller: as planned."
 
 
 def timeline_markup(picture: Picture) -> str:
@@ -185,9 +185,11 @@ def _defs() -> str:
     size = {"markerWidth": 8, "markerHeight": 8, "refX": 7, "refY": 4, "orient": "auto"}
     hatch = element("path", {"d": "M0 0V6", "stroke": "#777", "stroke-width": 2})
     common = {"width": 6, "height": 6, "patternUnits": "userSpaceOnUse", "patternTransform": "rotate(45)"}
+    stripes = element("path", {"d": "M0 0V6", "stroke": "#b2182b", "stroke-width": 7})
     return element(
         "defs",
         None,
         element("marker", {"id": "arrow", **size}, head),
         element("pattern", {"id": "waiting", **common}, hatch),
+        element("pattern", {"id": "responding", **common}, stripes),
     )

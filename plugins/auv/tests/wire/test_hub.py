@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import socket
@@ -374,3 +375,25 @@ def test_the_log_is_one_that_python_can_plays(tmp_path) -> None:
 )
 def test_addresses_that_only_this_machine_reaches(host: str, expected: bool) -> None:
     assert is_loopback(host) is expected
+
+
+def test_a_client_that_is_going_is_told_no_more(caplog: pytest.LogCaptureFixture) -> None:
+    async def told() -> bool:
+        hub = Hub()
+        port = await hub.start()
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        for word in (b"< open can0 >", b"< rawmode >"):
+            await reader.readuntil(b">")
+            writer.write(word)
+        await reader.readuntil(b">")
+        (client,) = hub._clients
+        while client._held is not None:
+            await asyncio.sleep(0.01)
+        client._transport.abort()
+        missed = [client.tell(b"< frame 1 0.0  >") for _ in range(10)]
+        await hub.stop()
+        writer.close()
+        return all(missed)
+
+    assert asyncio.run(told())
+    assert caplog.messages == []

@@ -237,7 +237,7 @@ class _Client(asyncio.Protocol):
 
     def tell(self, word: bytes) -> bool:
         """Say a frame to the client, if it listens; return False if it must miss it."""
-        if not self._raw or self._transport is None:
+        if not self._raw or self._transport is None or self._transport.is_closing():
             return True
         behind = self._transport.get_write_buffer_size() + len(self._held or b"")
         if behind > MOST_BEHIND:
