@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from mmrs_auv.testing import pool_sheet
 from mmrs_auv.vessel.api import Craft
+from mmrs_auv.vessel.decision.drives import Drives
 from mmrs_auv.vessel.goals import Goal, goal_frames, goal_of, within_rating
 from mmrs_auv.vessel.wire.codec import Codec, Received
 from vessel_rig import Rig
@@ -37,6 +38,18 @@ class Listener:
 
 def values_of(said: list[Received], name: str) -> list[Mapping[str, object]]:
     return [dict(each.values) for each in said if each.name == name]
+
+
+def test_thrusters_that_fail_are_told_once_and_are_no_sign_of_life() -> None:
+    listener = Listener()
+    drives = Drives(listener.craft, listener.sheet)
+    for drive in ("RUNS", "FAULT", "FAULT"):
+        listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive=drive)
+    assert drives.news() == (f"thruster '{listener.sheet.thrusters[2].id}' has failed",)
+    assert drives.news() == ()
+    listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive="RUNS")
+    assert drives.news() == (f"thruster '{listener.sheet.thrusters[2].id}' works again",)
+    assert listener.craft.state().silent == float("inf")
 
 
 @pytest.mark.parametrize("mode", ["IDLE", "HOLD", "GO_TO", "TURN", "SURFACE", "SEARCH"])

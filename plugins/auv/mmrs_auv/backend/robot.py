@@ -8,6 +8,7 @@ from typing import Protocol
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.vessel.api import Craft, State
+from mmrs_auv.vessel.decision.drives import Drives
 from mmrs_auv.vessel.decision.duties import NO_PROGRESS, Duty, FailureError, Ready, Stay, Surface
 from mmrs_auv.vessel.decision.helm import COMES_UP, CRASHED, LINK_LOST, POSITION_LOST, SILENT, Helm, Watch
 from mmrs_auv.vessel.movement.abilities import abilities_of
@@ -64,7 +65,7 @@ class CanRobot:
         self._given, self._sheet, self._craft, self._duties = given, sheet, craft, duties
         self._keeper = keeper
         self._waters = Waters(given.program.frame.surface)
-        self._helm = Helm(craft)
+        self._helm, self._drives = Helm(craft), Drives(craft, sheet)
         self._policies = (*given.robot.policies, *given.policies)
         self._watch = Watch(craft, given.program.reserve, self._after, clearance)
         self._escapes = Escapes(given, kinematics_of(given), given.robot.home or (0.0, 0.0, 0.0))
@@ -259,6 +260,10 @@ class CanRobot:
     def _look(self, now: float) -> None:
         self._now = max(self._now, now)
         self._keeper.seen(self._state(now, self._craft.state()))
+        for words in self._drives.news():
+            self.note("text", {"severity": "ERROR", "text": words})
+            if self._given.live is not None:
+                self._given.live.say(words)
 
     def _state(self, now: float, known: State) -> RobotState:
         if known.age < 60.0:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from math import hypot, inf
 
 from mmrs_auv.vessel.api import Craft
+from mmrs_auv.vessel.decision.drives import Drives
 from mmrs_auv.vessel.decision.duties import (
     Duty,
     Face,
@@ -30,6 +31,7 @@ from mmrs_core.flight.places import ends_of
 from mmrs_core.flight.program import GoTo, Local, Look, Object, Place, Robot
 from mmrs_core.flight.records.blackbox import BlackBox
 from mmrs_core.flight.records.fixes import FIX_SECONDS, fix
+from mmrs_core.flight.screen import say
 from mmrs_core.flight.services.uploads import Uploads
 from mmrs_core.flight.steps.responses import CONTINUE, policy_for
 from mmrs_core.flight.vehicles.modes import GUIDED, HOLD, SURFACE
@@ -84,7 +86,7 @@ class CanVehicle:
         self._guard, self._patience = guard, patience
         self.start = robot.home
         self.about: Mapping[str, object] = {"link": "can", "confirms": True}
-        self._helm = Helm(craft)
+        self._helm, self._drives = Helm(craft), Drives(craft, sheet)
         self._watch = Watch(craft, robot.reserve, self._after, clearance)
         self._afloat = float(abilities_of(sheet).afloat)
         self._mode, self._armed = GUIDED, False
@@ -294,6 +296,9 @@ class CanVehicle:
         if now - self._fixed >= FIX_SECONDS:
             self._fixed = now
             fix(self._box, self.state())
+        for words in self._drives.news():
+            self._box.write("text", severity="ERROR", text=words)
+            say(f"'{self._robot.id}': {words}")
         found = self._helm.failure(now)
         if found is None:
             return

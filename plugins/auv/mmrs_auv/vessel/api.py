@@ -10,7 +10,7 @@ from types import MappingProxyType
 from .goals import GOAL_PERIOD, GOALS, Goal, check_goal, goal_frames
 from .hosting import Pace, Port, serve
 from .sheet import Sheet
-from .wire.catalogue import BEAT_PERIOD, DECISION, MOST_UPTIME, by_id
+from .wire.catalogue import BEAT_PERIOD, DECISION, MOST_UPTIME, STATUS_BASE, by_id
 from .wire.codec import Codec, Received
 from .wire.frame import Frame
 
@@ -38,6 +38,7 @@ class State:
         emergency: why the dive was given up; None: it was not.
         devices: progress of each request.
         silent: seconds since any node of the vehicle was heard.
+        failed: numbers on the bus of the thrusters whose drives say that they have failed.
     """
 
     north: float = 0.0
@@ -64,6 +65,7 @@ class State:
     distance: float = 0.0
     emergency: str | None = None
     devices: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
+    failed: frozenset[int] = frozenset()
 
 
 class Craft:
@@ -86,6 +88,7 @@ class Craft:
             "Progress": self._hear_progress, "Emergency": self._hear_emergency,
             "DeviceStatus": self._hear_device,
         })  # fmt: skip
+        self._drives = {STATUS_BASE + number: number for number in range(len(sheet.thrusters))}
         self._goal = Goal()
         self._aimless = True
         self._state = State()
@@ -224,6 +227,9 @@ class Craft:
 
     def hear(self, frame: Frame, now: float) -> None:
         """Take what the vehicle says."""
+        if frame.id in self._drives:
+            self._hear_drive(self._drives[frame.id], frame)
+            return
         hearer = self._hearers.get(frame.id)
         if hearer is None:
             return
@@ -264,6 +270,13 @@ class Craft:
             self._goal, self._aimless = goal, False
             self._state = replace(self._state, goal=goal.number, progress="NONE", distance=0.0)
             return goal.number
+
+    def _hear_drive(self, number: int, frame: Frame) -> None:
+        """Take note of whether a drive works; drives that talk are no sign that anybody steers."""
+        with self._lock:
+            found = self._codec.decode(frame)
+            if found is not None and (found.values["Drive"] == "FAULT") is not (number in self._state.failed):
+                self._state = replace(self._state, failed=self._state.failed ^ {number})
 
     def _hear_place(self, found: Received, now: float) -> None:
         north, east = _numbers(found, "North", "East")

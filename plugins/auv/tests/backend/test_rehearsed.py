@@ -39,6 +39,14 @@ def at(robot: RehearsedRobot) -> tuple[float, float, float]:
     return truth.east, truth.north, truth.depth
 
 
+def test_a_thruster_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    notes: list[object] = []
+    monkeypatch.setattr(RehearsedRobot, "note", lambda robot, kind, content: notes.append((kind, content)))
+    rehearse(dive(swim("out", 2.0, 0.0, 1.0)), tmp_path, lambda robot: robot.stage.vehicle.faults.dead.add(1))
+    said = {"severity": "ERROR", "text": "thruster 'T2' has failed"}
+    assert notes.count(("text", said)) == 1
+
+
 def test_every_move_and_action_is_carried_out(tmp_path: Path) -> None:
     look = Heading(Target((5.0, 0.0, -1.5)), angle_degrees=90.0)
     out = swim("out", 3.0, 2.0, 1.5, after=(SAMPLE, feedback("there", ("depth", "1.5"))))

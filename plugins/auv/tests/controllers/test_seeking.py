@@ -116,6 +116,15 @@ def test_without_cameras_somebody_else_says_where_it_is(vehicle_of):
     assert vehicle.state().detected == frozenset()
 
 
+def test_a_thruster_that_fails_is_told(vehicle_of, capsys, tmp_path):
+    vehicle, rig = vehicle_of(None)
+    vehicle.prepare(Uploads())
+    rig.vehicle.faults.dead.add(1)
+    vehicle.go_to(Local(1.0, 0.0, -1.0), None, None, through=False)
+    assert capsys.readouterr().err.splitlines() == ["'naiad': thruster 'T2' has failed"]
+    assert (tmp_path / "box").read_text().count("thruster 'T2' has failed") == 1
+
+
 def test_what_sonar_sees_too_near_is_an_obstacle(vehicle_of):
     vehicle, _ = vehicle_of(None, clearance=30.0)
     vehicle.prepare(Uploads())
