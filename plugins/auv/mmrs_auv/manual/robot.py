@@ -42,7 +42,7 @@ OFF = (faults.MOTORS_OFF, faults.VEHICLE_RESTARTED)
 OURS_NO_MORE = (faults.LINK_LOST, faults.TAKEN_OVER, *OFF)
 """What leaves a vehicle without motors; and after what it does not do what it is told."""
 
-UNKNOWN = "nobody knows where it is since it came up: with it at home, --resume goes on"
+UNKNOWN = "nobody knows where it is since it came up: bring it home"
 
 
 class ManualRobot:
