@@ -166,10 +166,11 @@ class _Shown:
         for bar in bars_of_records(self._moves, self._flown.records, self._kinds):
             for begin, end in without((bar.begin, bar.end), self._away):
                 yield replace(bar, begin=begin, end=end)
-        last = self._flown.records[-1].time if self._flown.records else 0.0
+        faults = [record.time for record in self._flown.records[-1:] if record.label == "fault"]
+        until = faults[0] if faults else self._flown.end
         for begin, end in self._away:
-            if begin < last:
-                yield Bar("response", begin, min(end, last))
+            if begin < until:
+                yield Bar("response", begin, min(end, until))
         yield from self._after_fault()
 
     def _after_fault(self) -> Iterator[Bar]:

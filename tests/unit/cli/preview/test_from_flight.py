@@ -128,3 +128,15 @@ def test_a_robot_took_as_long_as_its_program(shown, run):
     later = Entry("r", "alpha", last.time + 500.0, "", "note", {})
     robot = shown(alpha={"entries": (later,)}).robots[0]
     assert dict(robot.summary)["time"] == dict(shown().robots[0].summary)["time"]
+
+
+def test_what_a_robot_does_about_a_low_battery_is_shown_although_its_log_waits(shown, run):
+    records = [record for record in run.records if record.robot == "alpha"]
+    index = next(i for i, record in enumerate(records) if (record.label, record.move) == ("begin", "a3"))
+    last = records[index].time
+    low = Entry("r", "alpha", last + 1.0, "", "decision", {"what": "BATTERY_LOW", "response": "RETURN"})
+    points = [(s.time, *s.position) for s in run.tracks["alpha"] if s.time <= last]
+    home = [(last + 20.0, 0.0, 0.0, 20.0), (last + 30.0, 0.0, 0.0, 0.0)]
+    told = {"records": tuple(records[: index + 1]), "track": track_of([*points, *home]), "entries": (low,)}
+    (away,) = (bar for bar in shown(alpha=told).robots[0].bars if bar.kind == "response")
+    assert (away.begin, away.end) == (last + 1.0, last + 30.0)
