@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import hypot
 
 from mmrs_auv.backend.duties_of import Duties, Waters
 from mmrs_auv.backend.injected import ClosablePort, Faults, faults_of, injected
+from mmrs_auv.backend.keeping import Keeper, keeper_of
 from mmrs_auv.backend.options import Connecting, connecting
 from mmrs_auv.backend.robot import CanRobot
 from mmrs_auv.sheets import sheet_of
@@ -16,54 +17,14 @@ from mmrs_auv.vessel.api import Connection
 from mmrs_auv.vessel.eyes import Detections
 from mmrs_auv.vessel.sheet import Sheet, Vector
 from mmrs_auv.vessel.wire.ports import CHANNEL, open_port
-from mmrs_core.behaviour.log import log_name
 from mmrs_core.contributions.backends import BackendInput, Live
-from mmrs_core.contributions.execution import Fault, RobotState
+from mmrs_core.contributions.execution import Fault
 from mmrs_core.errors import LinkLostError, UnsupportedError
-from mmrs_core.flight.records.blackbox import BlackBox, black_box_path
 from mmrs_core.flight.records.start import PROCESS
 from mmrs_core.runtime.clock import RealClock
 
-FIX = 0.2
-"""Seconds between two places in the black box."""
-
 FAREWELL = 0.5
 """Real seconds in which the last goal is still repeated."""
-
-
-class Keeper:
-    """Keeps a black box, where there is one."""
-
-    def __init__(self, box: BlackBox | None, place: Callable[[RobotState], Mapping[str, float]]) -> None:
-        """Keep what a robot tells; `place`: where it is, as black boxes have it."""
-        self._box, self._place = box, place
-        self._fixed = float("-inf")
-
-    def note(self, kind: str, content: Mapping[str, object]) -> None:
-        """Keep something."""
-        if self._box is not None:
-            self._box.write(kind, **content)
-
-    def seen(self, state: RobotState) -> None:
-        """Keep where the robot is, now and then."""
-        if state.time - self._fixed >= FIX and state.charge is not None:
-            self._fixed = state.time
-            self.note(
-                "fix",
-                {
-                    "place": self._place(state),
-                    "speed": round(state.speed, 3),
-                    "heading": round(state.heading, 2),
-                    "energy": state.charge,
-                    "mode": "",
-                    "armed": None,
-                },
-            )
-
-    def close(self) -> None:
-        """Close the box."""
-        if self._box is not None:
-            self._box.close()
 
 
 class ConnectedRobot(CanRobot):
@@ -189,7 +150,7 @@ def connected(given: BackendInput, live: Live) -> ConnectedRobot:
     paced = options.clock or ("bus" if clock.speedup != 1.0 else "real")
     connection = Connection(sheet, reached, "bus" if paced == "bus" else "real")
     return ConnectedRobot(
-        given, sheet, (reached, connection, faults), duties, _keeper(given, live, clock), options, clock, eyes
+        given, sheet, (reached, connection, faults), duties, keeper_of(given, live), options, clock, eyes
     )
 
 
@@ -211,21 +172,3 @@ def _eyes(given: BackendInput, options: Connecting) -> Detections | None:
         return Detections(port=options.detections, robot=given.robot.id)
     except OSError as error:
         raise LinkLostError(f"robot '{given.robot.id}': {error}") from error
-
-
-def _keeper(given: BackendInput, live: Live, clock: RealClock) -> Keeper:
-    home = given.robot.home or (0.0, 0.0, 0.0)
-    surface = given.program.frame.surface
-
-    def place(state: RobotState) -> Mapping[str, float]:
-        east, north, up = state.position
-        return {
-            "north": round(north - home[1], 3),
-            "east": round(east - home[0], 3),
-            "height": round(up - surface, 3),
-        }
-
-    if live.folder is None:
-        return Keeper(None, place)
-    path = black_box_path(live.folder / log_name(given.robot.id))
-    return Keeper(BlackBox(path, live.run, given.robot.id, clock.now, say=live.say), place)

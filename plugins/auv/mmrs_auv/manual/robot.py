@@ -7,20 +7,21 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from math import inf
 
+from mmrs_auv.backend.keeping import keeper_of
 from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
+from mmrs_auv.manual.equipment import carry_out
 from mmrs_auv.manual.goals import goal_of
 from mmrs_auv.manual.helm import Goal, Helm
 from mmrs_auv.manual.ways import Ways
-from mmrs_auv.targets.moves import seconds_of
 from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
-from mmrs_core.contributions.wiring import Wired
 from mmrs_core.errors import UnreachableError
 from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.policies import NOTHING
+from mmrs_core.flight.records.start import PROCESS
 from mmrs_core.mavlink.actions import DEVICE_ACTION
 from mmrs_core.mavlink.context import RobotContext
 from mmrs_core.scene import Position
@@ -59,6 +60,7 @@ class ManualRobot:
         self._ended = threading.Event()
         self._autopilot = Autopilot(link, self._ended.is_set, given.program.reserve)
         self._patience = patience(faults.LINK_LOST, (*context.robot.policies, *given.policies))
+        self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
         self._thread: threading.Thread | None = None
         self._trouble: Fault | None = None
         self._own: Fault | None = None
@@ -74,6 +76,8 @@ class ManualRobot:
 
     def prepare(self, now: float) -> None:
         """Begin to listen, go into depth hold and arm."""
+        about = {"link": "mavlink", "vehicle": "sub", "confirms": False}
+        self.note("start", {"plan": self._plan, "process": PROCESS, **about})
         self._thread = threading.Thread(target=self._drive, name="sticks", daemon=True)
         self._thread.start()
 
@@ -90,6 +94,7 @@ class ManualRobot:
         if not action.is_a(DEVICE_ACTION):
             said = (action.name, *(f"{key}={value}" for key, value in action.parameters))
             self._live.say(" ".join(filter(None, said)))
+            self.note("reported", {"name": action.name, **dict(action.parameters)})
             return
         with self._lock:
             self._action, self._own = action, None
@@ -241,12 +246,17 @@ class ManualRobot:
             "energy": self._autopilot.charge(),
         }
 
+    def note(self, kind: str, content: Mapping[str, object]) -> None:
+        """Keep something in the black box."""
+        self._keeper.note(kind, content)
+
     def close(self) -> None:
         """Let the sticks go, disarm where nobody else has the vehicle, and fall silent."""
         self._ended.set()
         if self._thread is not None:
             self._thread.join(10.0)
         self._link.close()
+        self._keeper.close()
 
     def _drive(self) -> None:
         try:
@@ -275,6 +285,7 @@ class ManualRobot:
             self._steer(now, which)
             self._see_progress(now)
             changed = before != (self._trouble, self._helm.reached)
+            self._keeper.seen(self.state(now))
         if changed:
             self._live.wake()
 
@@ -305,18 +316,12 @@ class ManualRobot:
             self._come_up(now, self._instead)
 
     def _do(self, action: Action) -> None:
-        wiring = self._context.wiring(action)
         found: Fault | None = None
         seconds = 0.0
         try:
-            if not isinstance(wiring, Wired):
-                raise faults.Refused(f"'{action.device}' is not wired for '{action.name}'")
-            for number, params in ((wiring.command, wiring.params), *wiring.more):
-                self._autopilot.do(number, *params)
+            seconds = carry_out(action, self._context, self._autopilot)
         except faults.Fault as fault:
             found = Fault(faults.DEVICE_SILENT, str(fault))
-        else:
-            seconds = seconds_of(action, self._context.type) if wiring.seconds is None else wiring.seconds
         with self._lock:
             if self._action is action:
                 self._own, self._action = found, None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import socket
 from pathlib import Path
@@ -55,3 +56,6 @@ def test_a_mission_is_carried_out_without_any_position_and_its_log_is_accepted(t
         depths = [-up for _, _, _, up in vehicle.autopilot.track]
         assert max(depths) >= 1.6
     assert "accepted: success" in run_command("replay", project / "behaviour.xmi", logs)
+    box = [json.loads(line) for line in (logs / "Nereid.blackbox.ndjson").read_text().splitlines()]
+    assert box[0]["kind"] == "start"
+    assert min(line["place"]["height"] for line in box if line["kind"] == "fix") <= -1.6

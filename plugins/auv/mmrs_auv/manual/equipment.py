@@ -1,0 +1,24 @@
+"""What devices of an ArduSub do, by the commands that they are wired to."""
+
+from __future__ import annotations
+
+from mmrs_auv.manual.autopilot import Autopilot
+from mmrs_auv.targets.moves import seconds_of
+from mmrs_core.behaviour.program import Action
+from mmrs_core.contributions.wiring import Wired
+from mmrs_core.flight import faults
+from mmrs_core.mavlink.context import RobotContext
+
+
+def carry_out(action: Action, context: RobotContext, autopilot: Autopilot) -> float:
+    """Have a device do something; return the seconds that it takes from then on.
+
+    Raises:
+        faults.Fault: it is not wired for that, does not do it, or does not answer.
+    """
+    wiring = context.wiring(action)
+    if not isinstance(wiring, Wired):
+        raise faults.Refused(f"'{action.device}' is not wired for '{action.name}'")
+    for number, params in ((wiring.command, wiring.params), *wiring.more):
+        autopilot.do(number, *params)
+    return seconds_of(action, context.type) if wiring.seconds is None else wiring.seconds
