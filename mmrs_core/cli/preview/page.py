@@ -134,7 +134,7 @@ def _sample(style: Style) -> str:
 
 
 def _player(picture: Picture) -> str:
-    slider = {"type": "range", "id": "time", "min": 0, "max": picture.makespan, "value": 0, "step": "any"}
+    slider = {"type": "range", "id": "time", "min": 0, "max": picture.shown, "value": 0, "step": "any"}
     return element(
         "div",
         {"class": "player"},
@@ -204,7 +204,7 @@ def _data(picture: Picture) -> str:
     ]
     shown = projection_of(picture)
     projection = {"west": shown.west, "north": shown.north, "scale": shown.scale}
-    axis = {"left": LEFT, "right": WIDTH - RIGHT, "end": picture.makespan}
+    axis = {"left": LEFT, "right": WIDTH - RIGHT, "end": picture.shown}
     dumped = json.dumps({"robots": robots, "axis": axis, "projection": projection})
     safe = dumped.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
     return f'<script type="application/json" id="data">{safe}</script>'

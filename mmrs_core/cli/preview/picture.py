@@ -224,3 +224,10 @@ class Picture:
     notes: tuple[str, ...] = ()
     surface: float | None = None
     flown: bool = False
+
+    @property
+    def shown(self) -> float:
+        """Return the seconds that charts show: until all has ended, as it went and as it was planned."""
+        planned = (time for robot in self.robots for time, _ in robot.planned_heights[-1:])
+        arms = (arm.end for robot in self.robots for arm in robot.arms)
+        return max((self.makespan, *planned, *arms))

@@ -43,7 +43,7 @@ class _Strip:
 
 def profile_markup(picture: Picture) -> str:
     """Return the height profiles, one beneath the other, as an ``svg`` element with its own style."""
-    axis = TimeAxis(picture.makespan or 1.0)
+    axis = TimeAxis(picture.shown or 1.0)
     low, high = _range(picture)
     strips = [_Strip(_TOP + i * (_ROW + _GAP), low, high) for i in range(len(picture.robots))]
     bottom = strips[-1].bottom if strips else _TOP

@@ -41,7 +41,7 @@ KEY_OF_FLIGHTS = f"{KEY} Red stripes: does what no move says. Beneath, smaller: 
 
 def timeline_markup(picture: Picture) -> str:
     """Return the timeline as one ``svg`` element with its own style, readable by itself."""
-    axis = TimeAxis(picture.makespan or 1.0)
+    axis = TimeAxis(picture.shown or 1.0)
     tasks = [task for task in picture.tasks if task.begin is not None and task.end is not None]
     start = _TOP + len(tasks) * _TASK_ROW + (_GAP if tasks else 0)
     heights = (_ROW + len(robot.arms) * _ARM_ROW for robot in picture.robots)

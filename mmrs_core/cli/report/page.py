@@ -112,11 +112,11 @@ def _robot(
     levels, _ = planned_levels(given.planned.run, name)
     samples = given.planned.run.tracks.get(name, ()) if given.planned.run is not None else ()
     planned = np.array([sample.time for sample in samples if sample.energy is not None])
-    charts = [_chart("Metres sideways from the planned way", off_way_chart(pieces, report.duration, colour))]
+    charts = [_chart("Metres sideways from the planned way", off_way_chart(pieces, picture.shown, colour))]
     if np.isfinite(flown.track.energies).any():
         line = (planned[: len(levels)], levels)
         battery = flown.track.times, flown.track.energies
-        drawn = battery_chart(battery, line, given.program.reserve, report.duration, colour)
+        drawn = battery_chart(battery, line, given.program.reserve, picture.shown, colour)
         charts.append(_chart("Battery; dashed grey: as planned; red: the reserve", drawn))
     else:
         charts.append(element("p", {"class": "soft"}, "Its battery was not told."))

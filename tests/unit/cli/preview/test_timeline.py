@@ -1,10 +1,12 @@
 """The timeline and the heights tell when things happen."""
 
+import re
 from dataclasses import replace
 
 from lxml import etree
 
-from mmrs_core.cli.preview.picture import Bar
+from mmrs_core.cli.preview.page import page
+from mmrs_core.cli.preview.picture import Arm, Bar
 from mmrs_core.cli.preview.profile import profile_markup
 from mmrs_core.cli.preview.time_axis import TimeAxis
 from mmrs_core.cli.preview.timeline import stretches, timeline_markup
@@ -114,3 +116,16 @@ def test_the_time_axis_has_a_name(picture):
     for markup in (timeline_markup(picture), profile_markup(picture)):
         (axis,) = with_class(markup, "axis")
         assert axis.findtext(f"{SVG}text") == "time"
+
+
+def test_what_was_planned_to_end_later_is_in_the_chart(picture):
+    late = 2.0 * picture.makespan
+    bar = Bar("transit", 0.0, late)
+    robot = replace(
+        picture.robots[0], arms=(Arm("as planned", 0.0, late, (bar,)),), planned_heights=((late, 5.0),)
+    )
+    flown = replace(picture, robots=(robot, *picture.robots[1:]))
+    frame = with_class(timeline_markup(flown), "arm-frame")[0]
+    right = float(frame.get("x")) + float(frame.get("width"))
+    assert right == TimeAxis(late).at(late)
+    assert re.search(r'<input type="range"[^>]* max="([\d.]+)"', page(flown)).group(1) == f"{late:g}"
