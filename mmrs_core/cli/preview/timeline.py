@@ -35,7 +35,10 @@ _WHATS = {
     "response": "does what no move says",
 }
 
-KEY = "Tall: works; low: takes off, travels or lands; hatched: waits; framed: stays, recharges or chooses."
+KEY = (
+    "Tall: works; low: takes off, travels or lands; hatched: waits; framed: stays, recharges or chooses. "
+    "Arrows: who lets whom go on; dashed: before anybody waits."
+)
 KEY_OF_FLIGHTS = f"{KEY} Red stripes: does what no move says. Beneath, smaller: as planned."
 
 
