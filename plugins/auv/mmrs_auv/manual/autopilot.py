@@ -13,6 +13,7 @@ from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
 from mmrs_core.flight.services.commands import ask, command
 from mmrs_core.flight.vehicles.modes import word_of
+from mmrs_core.flight.vehicles.preparation import VEHICLES, hear_out
 from mmrs_core.flight.vehicles.texts import Texts
 
 DEPTH_HOLD, SURFACE = 2, 9
@@ -46,16 +47,19 @@ class Autopilot:
         rising: whether it is to come up by itself.
     """
 
-    def __init__(self, link: Link, given_up: Callable[[], bool], reserve: float) -> None:
+    def __init__(
+        self, link: Link, given_up: Callable[[], bool], reserve: float, *, under_way: bool = False
+    ) -> None:
         """Listen; nothing is said before it is to get ready.
 
         Args:
             link: to the vehicle.
             given_up: whether nobody waits for it any more.
             reserve: part of the battery with less than which it counts as low.
+            under_way: whether its motors may run at first, as where a run is resumed.
         """
         self.rising = self._rose = False
-        self._link, self._given_up, self._reserve = link, given_up, reserve
+        self._link, self._given_up, self._reserve, self._under_way = link, given_up, reserve, under_way
         self._texts = Texts(link.clock)
         link.observe(self._texts)
         self._starts, self._ready_at, self._asked = 0, -inf, -inf
@@ -65,10 +69,14 @@ class Autopilot:
         """Go into depth hold and arm.
 
         Raises:
+            faults.Strange: it is not the robot's, or somebody else may have it.
             faults.Fault: it is not heard, tells too little, or does not do it; or nobody waits any more.
         """
         if not self._wait(lambda: bool(self._link.component), FIRST_SIGN):
             raise faults.Fault(faults.LINK_LOST, "no vehicle is heard")
+        hear_out(self._link)
+        if why := self._strange():
+            raise faults.Strange(why)
         for number in TOLD:
             command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
         if not self._wait(lambda: None not in (self.heading(), self.depth()), FIRST_SIGN):
@@ -179,6 +187,16 @@ class Autopilot:
         if self.mode != mode and now - self._asked >= ASKED_EVERY:
             self._asked = now
             ask(self._link, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(mode))
+
+    def _strange(self) -> str:
+        """Return why this vehicle must not be told anything; empty where it may."""
+        beat = self._link.latest("HEARTBEAT")
+        ardupilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+        if beat is None or beat.type not in VEHICLES["sub"] or beat.autopilot != ardupilot:
+            return "the vehicle is no ArduSub"
+        if self.armed and not self._under_way:
+            return "the vehicle's motors run already: somebody else has it"
+        return self._link.doubt()
 
     def _disarmed(self) -> faults.Fault | None:
         """Return that its motors are off, unless it may be about to tell that it has begun anew."""

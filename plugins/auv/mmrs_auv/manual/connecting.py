@@ -14,7 +14,7 @@ from mmrs_core.flight.links.radios import Radios
 from mmrs_core.mavlink.backend.connection import FIRST_PORT, PORT_STEP, FollowingClock
 from mmrs_core.mavlink.context import context_of
 
-FULL_SPEED = "full-speed"
+FULL_SPEED, RADIOS = "full-speed", "radios of ardusub-manual"
 
 
 def connect(given: BackendInput) -> ManualRobot:
@@ -52,12 +52,19 @@ def _full_speed(given: BackendInput) -> float:
     return speed
 
 
+def _radios(live: Live) -> Radios:
+    """Return the radios of all robots of the run that are driven by hand: some may share a port."""
+    found = live.shared.setdefault(RADIOS, Radios(FollowingClock(live.clock)))
+    assert isinstance(found, Radios)
+    return found
+
+
 def _link(given: BackendInput, live: Live) -> Link:
     number = [robot.id for robot in given.program.robots].index(given.robot.id)
     usual = f"udpin:127.0.0.1:{FIRST_PORT + PORT_STEP * number}"
     try:
         url, system = split_system(live.links.get(given.robot.id, usual))
-        return Radios(FollowingClock(live.clock)).open(url, system)
+        return _radios(live).open(url, system)
     except ValueError as error:
         raise UnsupportedError(f"link {error}") from error
     except faults.Fault as fault:

@@ -58,7 +58,8 @@ class ManualRobot:
         self._helm = Helm(self._ways.home[0], self._ways.home[1], full_speed)
         self._lock = threading.RLock()
         self._ended = threading.Event()
-        self._autopilot = Autopilot(link, self._ended.is_set, given.program.reserve)
+        reserve, resumed = given.program.reserve, live.resumed
+        self._autopilot = Autopilot(link, self._ended.is_set, reserve, under_way=resumed)
         self._patience = patience(faults.LINK_LOST, (*context.robot.policies, *given.policies))
         self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
         self._thread: threading.Thread | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from math import hypot
 
@@ -351,6 +351,56 @@ def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
         driven.backend._late_at = driven.clock.now()
         until(lambda: driven.fault)
         assert (driven.fault.which, driven.fault.instead) == ("NO_PROGRESS", "SURFACE")
+
+
+def refused(url, *vehicles):
+    """Return why a robot does not get ready; each vehicle is a port, and its settings."""
+    clock = RealClock(SPEEDUP)
+    live = Live(clock, lambda: None, print, "run-0", links={"naiad": url})
+    backend = ARDUSUB_MANUAL.connect(given(live=live))
+    with ExitStack() as stack:
+        there = [stack.enter_context(SimulatedVehicle(*each, speedup=SPEEDUP)) for each in vehicles]
+        backend.prepare(clock.now())
+        until(lambda: backend.fault(clock.now()))
+        assert not any(each.autopilot.armed for each in there)
+        backend.close()
+    return str(backend.fault(clock.now()))
+
+
+def test_what_is_no_submarine_is_told_nothing():
+    port = free_port()
+    assert "no ArduSub" in refused(f"udpin:127.0.0.1:{port}", (port, Settings()))
+
+
+def test_which_of_two_vehicles_is_meant_has_to_be_said():
+    port = free_port()
+    subs = [(port, Settings(kind="sub", system=number)) for number in (1, 2)]
+    assert "say which, as URL@" in refused(f"udpin:127.0.0.1:{port}", *subs)
+
+
+def test_a_vehicle_whose_motors_run_already_is_somebody_elses():
+    port, clock = free_port(), RealClock(SPEEDUP)
+    live = Live(clock, lambda: None, print, "run-0", links={"naiad": f"udpin:127.0.0.1:{port}"})
+    backend = ARDUSUB_MANUAL.connect(given(live=live))
+    with SimulatedVehicle(port, Settings(kind="sub"), speedup=SPEEDUP) as vehicle:
+        vehicle.autopilot.arm()
+        backend.prepare(clock.now())
+        until(lambda: backend.fault(clock.now()))
+        assert "motors run already" in backend.fault(clock.now()).reason
+        backend.close()
+        assert vehicle.autopilot.armed
+
+
+def test_robots_may_share_a_port():
+    port, clock = free_port(), RealClock(SPEEDUP)
+    shared = {}
+    backends = []
+    for number in (1, 2):
+        url = f"udpin:127.0.0.1:{port}@{number}"
+        live = Live(clock, lambda: None, print, "run-0", links={"naiad": url}, shared=shared)
+        backends.append(ARDUSUB_MANUAL.connect(given(live=live)))
+    for backend in backends:
+        backend.close()
 
 
 def test_who_is_told_to_end_while_it_gets_ready_arms_nothing():
