@@ -12,8 +12,8 @@ from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_auv.manual.equipment import carry_out
 from mmrs_auv.manual.goals import goal_of
 from mmrs_auv.manual.helm import Goal, Helm
+from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_auv.manual.ways import Ways
-from mmrs_core.behaviour.policies import patience
 from mmrs_core.behaviour.program import Action, Move
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.contributions.execution import Fault, RobotState
@@ -28,9 +28,6 @@ from mmrs_core.scene import Position
 
 PERIOD = 0.1
 """Seconds from one message of the sticks to the next; ArduSub gives up after three."""
-
-LINK_PATIENCE = 5.0
-"""Seconds of silence after which the link counts as lost, where no policy says."""
 
 UNHEARD = 60.0
 """Seconds of silence after which nobody waits any more for a vehicle to do what it was told."""
@@ -60,12 +57,10 @@ class ManualRobot:
         self._ended = threading.Event()
         reserve, resumed = given.program.reserve, live.resumed
         self._autopilot = Autopilot(link, self._ended.is_set, reserve, under_way=resumed)
-        self._patience = patience(faults.LINK_LOST, (*context.robot.policies, *given.policies))
+        self._troubles = Troubles(self._autopilot, (*context.robot.policies, *given.policies))
         self._keeper, self._plan = keeper_of(given, live), given.program.fingerprint
         self._thread: threading.Thread | None = None
-        self._trouble: Fault | None = None
         self._own: Fault | None = None
-        self._borne: set[str] = set()
         self._ready = self._released = self._lost = False
         self._response = self._instead = ""
         self._goals: deque[Goal] = deque()
@@ -112,19 +107,16 @@ class ManualRobot:
     def fault(self, now: float) -> Fault | None:
         """Return what went wrong."""
         with self._lock:
-            found = self._trouble or self._own
-            if found is None or found.which in self._borne:
-                return None
-            return self._hinders(found) if self._response else found
+            found = self._troubles.told(now) or self._own
+            return self._hinders(found) if self._response and found is not None else found
 
     def bear(self, now: float) -> bool:
         """Go on although something went wrong that policies say to bear."""
         with self._lock:
-            found = self._trouble or self._own
-            if found is not None and found is self._own:
+            if self._troubles.told(now) is not None:
+                self._troubles.bear()
+            else:
                 self._own = None
-            elif found is not None:
-                self._borne.add(found.which)
             return True
 
     def next_event(self, now: float) -> float | None:
@@ -148,7 +140,7 @@ class ManualRobot:
         with self._lock:
             self._action = self._paused = None
             self._response, self._instead = response, ""
-            blind = self._trouble is not None and self._trouble.which == faults.POSITION_LOST
+            blind = self._troubles.event == faults.POSITION_LOST
             if response in RESTS:
                 self._released = response == NOTHING
                 self._ended.set()
@@ -185,19 +177,19 @@ class ManualRobot:
         """Return whether the vehicle does what it was told by `stop`."""
         if self._response in RESTS:
             return self._has_stopped(now)
-        ours = self._trouble is None or self._trouble.which not in OURS_NO_MORE
+        ours = self._troubles.event not in OURS_NO_MORE
         mode = SURFACE if self._autopilot.rising else DEPTH_HOLD
         return self.reachable(now) and ours and self._autopilot.mode == mode
 
     def watched(self, now: float) -> bool:
         """Return whether the vehicle holds by thrust, so that somebody must stay."""
-        off = self._trouble is not None and self._trouble.which in OFF
+        off = self._troubles.event in OFF
         return self._response in STAYS and not off and self._ready and self._autopilot.silent <= UNHEARD
 
     def undone(self, now: float) -> str:
         """Return why it has stopped without doing what it was told."""
-        if self._response not in RESTS and self._trouble is not None and self._trouble.which in OFF:
-            return f"its motors are off ({self._trouble.which}): it comes up if it is buoyant"
+        if self._response not in RESTS and self._troubles.event in OFF:
+            return f"its motors are off ({self._troubles.event}): it comes up if it is buoyant"
         return self._instead
 
     def reachable(self, now: float) -> bool:
@@ -269,23 +261,20 @@ class ManualRobot:
             while not self._ended.wait(self._link.clock.real(PERIOD)):
                 self._tick()
         except faults.Fault as fault:
-            self._trouble = Fault(fault.event, str(fault))
+            self._troubles.begin(Fault(fault.event, str(fault)))
         except faults.FAILURES as error:
-            self._trouble = Fault(faults.REFUSED, f"{type(error).__name__}: {error}")
+            self._troubles.begin(Fault(faults.REFUSED, f"{type(error).__name__}: {error}"))
         finally:
             self._let_go()
             self._live.wake()
 
     def _tick(self) -> None:
         with self._lock:
-            now, before = self._live.clock.now(), (self._trouble, self._helm.reached)
-            found = self._autopilot.trouble(LINK_PATIENCE if self._patience is None else self._patience)
-            which = found.event if found is not None else ""
-            if found is None or self._trouble is None or self._trouble.which != which:
-                self._trouble = None if found is None else Fault(which, str(found), found.instead)
-            self._steer(now, which)
+            now, before = self._live.clock.now(), (self._troubles.event, self._helm.reached)
+            self._troubles.look(now)
+            self._steer(now, self._troubles.event)
             self._see_progress(now)
-            changed = before != (self._trouble, self._helm.reached)
+            changed = before != (self._troubles.event, self._helm.reached)
             self._keeper.seen(self.state(now))
         if changed:
             self._live.wake()
@@ -340,14 +329,14 @@ class ManualRobot:
         return None
 
     def _has_stopped(self, now: float) -> bool:
-        trouble = self._trouble
+        trouble = self._troubles.event
         driven = self._ready and self._thread is not None and self._thread.is_alive()
-        if self._response == NOTHING or not driven or (trouble is not None and trouble.which in OFF):
+        if self._response == NOTHING or not driven or trouble in OFF:
             return True
         if self._autopilot.rising and now > self._late_at:
             self._instead = f"it is not known to have come up: {self._helm.depth:.1f} m deep when last heard"
             return True
-        if trouble is not None and trouble.which == faults.LINK_LOST:
+        if trouble == faults.LINK_LOST:
             return False
         if self._autopilot.rising:
             return self._autopilot.knows_depth and self._helm.depth <= NEAR_THE_SURFACE

@@ -20,7 +20,7 @@ from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.errors import UnsupportedError
 from mmrs_core.flight.services.commands import command
 from mmrs_core.runtime.clock import RealClock
-from mmrs_core.scene import Area, AreaUse, Capability, Device, DeviceAction, Frame, Part, RobotType
+from mmrs_core.scene import Area, AreaUse, Capability, Device, DeviceAction, Frame, Part, Policy, RobotType
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.programs import move, program, robot_program
 
@@ -53,11 +53,11 @@ MOVES = (
 )
 
 
-def given(*moves, live=None, areas=(), **options):
+def given(*moves, live=None, areas=(), policies=(), **options):
     robot = robot_program("naiad", moves or MOVES, home=(0.0, 0.0, 0.0), type_name="Diver")
     kinds = {AUV_MOVEMENT: AUV_KIND}
     behaviour = program(robot, frame=POOL, reserve=0.2)
-    return BackendInput(behaviour, robot, DIVER, kinds, {}, {}, options, areas=areas, live=live)
+    return BackendInput(behaviour, robot, DIVER, kinds, {}, {}, options, policies, areas, live)
 
 
 def free_port():
@@ -107,11 +107,11 @@ class Driven:
 
 
 @contextmanager
-def sub(*, located=False, areas=(), **settings):
+def sub(*, located=False, areas=(), policies=(), **settings):
     """Give a simulated ArduSub that has no position, and its robot, ready."""
     port, clock, said = free_port(), RealClock(SPEEDUP), []
     live = Live(clock, lambda: None, said.append, "run-0", links={"naiad": f"udpin:127.0.0.1:{port}"})
-    backend = ARDUSUB_MANUAL.connect(given(live=live, areas=areas))
+    backend = ARDUSUB_MANUAL.connect(given(live=live, areas=areas, policies=policies))
     with SimulatedVehicle(port, Settings(kind="sub", **settings), speedup=SPEEDUP) as vehicle:
         vehicle.autopilot.located = located
         driven = Driven(backend, clock, vehicle, said)
@@ -242,6 +242,16 @@ def test_water_inside_brings_it_up():
         assert (driven.fault.which, driven.fault.instead) == ("CRASHED", "SURFACE")
         driven.stop("SURFACE")
         assert driven.truth[2] >= -0.4
+
+
+def test_what_a_policy_bears_for_a_while_is_told_after_that():
+    with sub(policies=(Policy("BATTERY_LOW", "SURFACE", 20.0),)) as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.vehicle.faults.set_battery(0.15)
+        begun = driven.clock.now()
+        until(lambda: driven.fault)
+        assert driven.clock.now() - begun >= 19.0
 
 
 def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():

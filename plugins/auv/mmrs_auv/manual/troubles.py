@@ -1,0 +1,65 @@
+"""What is wrong with a vehicle that is driven by hand, and for how long policies bear it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+from mmrs_auv.manual.autopilot import Autopilot
+from mmrs_core.behaviour.policies import patience
+from mmrs_core.contributions.execution import Fault
+from mmrs_core.flight import faults
+from mmrs_core.scene import Policy
+
+LINK_PATIENCE = 5.0
+"""Seconds of silence after which the link counts as lost, where no policy says."""
+
+
+class Troubles:
+    """Looks after a vehicle.
+
+    Attributes:
+        event: what is wrong, in the word of policies; empty: nothing.
+    """
+
+    def __init__(self, autopilot: Autopilot, policies: Sequence[Policy]) -> None:
+        """Know of nothing yet; of two policies for an event the first counts."""
+        self.event = ""
+        self._autopilot, self._policies = autopilot, policies
+        seconds = patience(faults.LINK_LOST, policies)
+        self._silence = LINK_PATIENCE if seconds is None else seconds
+        self._fault: Fault | None = None
+        self._since = -inf
+        self._borne: set[str] = set()
+
+    def look(self, now: float) -> None:
+        """See what is wrong now; what goes on is told in the words in which it began."""
+        found = self._autopilot.trouble(self._silence)
+        if found is None:
+            self.end()
+        elif found.event != self.event:
+            self.begin(Fault(found.event, str(found), found.instead), now)
+
+    def begin(self, found: Fault, now: float = -inf) -> None:
+        """Have something be wrong."""
+        self._fault, self.event, self._since = found, found.which, now
+
+    def end(self) -> None:
+        """Have nothing be wrong."""
+        self._fault, self.event = None, ""
+
+    def told(self, now: float) -> Fault | None:
+        """Return what is wrong, once it has lasted for as long as its policy says, unless it is borne."""
+        found = self._fault
+        if found is None or found.which in self._borne or now < self._since + self._after(found):
+            return None
+        return found
+
+    def bear(self) -> None:
+        """Tell no more of what is wrong now, nor of the like."""
+        self._borne.add(self.event)
+
+    def _after(self, found: Fault) -> float:
+        """Return for how many seconds something is borne; of a lost link it has been already."""
+        at_once = found.which == faults.LINK_LOST or found.instead
+        return 0.0 if at_once else patience(found.which, self._policies) or 0.0
