@@ -81,7 +81,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--speedup", type=float, default=1.0, help="of the vehicle, where it tells time")
     parser.add_argument(
-        "--surroundings", type=Path, help="file that says what is around the simulated vehicle"
+        "--surroundings",
+        type=Path,
+        help="around the simulated vehicle; else still water, 100 m deep",
     )
     parser.add_argument(
         "--drives",
