@@ -48,7 +48,9 @@ def _summary(found: Sequence[Verdict]) -> str:
     if worst is Status.NOT_CHECKED:
         reasons = dict.fromkeys(each.message for each in found if each.status is worst and each.message)
         others = f", and {len(reasons) - 1} more" if len(reasons) > 1 else ""
-        return f"{worst.value}: {next(iter(reasons), 'no reason given')}{others}"
+        told = f"{worst.value}: {next(iter(reasons), 'no reason given')}{others}"
+        checked = [each for each in found if each.status is Status.SAFE]
+        return f"{_summary(checked)}; {told}" if checked else told
     margins = [(each.margin, each) for each in found if each.margin is not None and each.status is worst]
     if not margins:
         return str(worst.value)

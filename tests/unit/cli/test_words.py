@@ -40,6 +40,12 @@ def test_reasons_not_to_check_are_counted():
     assert list(verdict_table(reasons)) == ["  wind  not checked: a: no wind, and 1 more"]
 
 
+def test_what_was_checked_of_some_robots_only_says_both():
+    open_ = Verdict("clearance", Status.NOT_CHECKED, "Cirro", message="Cirro: no context")
+    said = "  clearance  safe, least margin 3.5 m (Alba, near tower); not checked: Cirro: no context"
+    assert list(verdict_table([SAFE, open_])) == [said]
+
+
 def test_a_plan_is_told_robot_by_robot(scene, plan):
     lines = list(plan_lines(scene, plan))
     assert lines[0] == "two drones: 3 tasks, 2 robots at work, done after 1:12"
