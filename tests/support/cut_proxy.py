@@ -40,20 +40,21 @@ class CutProxy:
         while True:
             try:
                 caller, _ = self._listener.accept()
-                self._open.wait()
+            except OSError:
+                return  # it is closed
+            self._open.wait()
+            try:
                 called = socket.create_connection(("127.0.0.1", self._target))
-            except ConnectionRefusedError:
+            except OSError:
                 _shut(caller)
                 continue
-            except OSError:
-                return
             self._sockets += [caller, called]
             for one, other in ((caller, called), (called, caller)):
-                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 threading.Thread(target=self._pass, args=(one, other), daemon=True).start()
 
     def _pass(self, one: socket.socket, other: socket.socket) -> None:
         try:
+            one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             while data := one.recv(65_536):
                 self._open.wait()
                 other.sendall(data)

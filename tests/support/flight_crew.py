@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from patience import until
+from ports import free_port
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.desk import Desk
@@ -45,18 +45,13 @@ from mmrs_core.flight.steps.pilot import Pilot
 from mmrs_core.flight.steps.watch import Watch
 from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 from mmrs_core.sitl import Settings, SimulatedVehicle
+from mmrs_core.sitl.hosting import LONGEST_STEP
 
 HOME = Geographic(42.37, 13.35, 0.0)
 SPEEDUP = 30.0
 OVERHEAD = Geographic(42.37, 13.35, 10.0)
 NORTH = Geographic(42.3702, 13.35, 10.0)
 """22 metres north of home."""
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
@@ -79,8 +74,29 @@ def robot_of(*policies: Policy, id: str = "alpha", **more: object) -> Robot:
     return Robot(id, f"{id}.jsonl", steps=steps, policies=policies, fleet=(id,), **given)
 
 
-class NearClock(Clock):
-    """The clock of a run whose vehicle is in this process: what takes real time anywhere else takes less."""
+class SteadyClock(Clock):
+    """The clock of a run whose vehicle is in this process.
+
+    While a machine that stalls keeps the process from running, it stands still, as the vehicle does. The
+    reader of the link asks it many times a second, so that gaps between two questions are no waits.
+    """
+
+    def __init__(self, speedup: float, start: float = 0.0) -> None:
+        super().__init__(speedup, start)
+        self._asking = threading.Lock()
+        self._asked, self._stalled = time.monotonic(), 0.0
+
+    def now(self) -> float:
+        """Return the seconds since the run began, without those in which nothing ran here."""
+        with self._asking:
+            real = time.monotonic()
+            self._stalled += max(0.0, real - self._asked - LONGEST_STEP)
+            self._asked = real
+            return self._start + (real - self._zero - self._stalled) * self.speedup
+
+
+class NearClock(SteadyClock):
+    """One that knows that what takes real time anywhere else takes less here."""
 
     def patience(self, seconds: float, least: float = 0.5) -> float:
         """Return a time-out in seconds of the run, of half the usual real seconds at least."""

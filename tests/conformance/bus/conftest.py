@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -15,6 +14,7 @@ import pytest
 from bus_walking import RUN, Gone, Walker, logged
 from cut_proxy import CutProxy
 from hub import Hub
+from ports import free_port
 
 from mmrs_core.behaviour.replay import replay
 from mmrs_core.flight.bus import FileJournal, Node
@@ -22,12 +22,6 @@ from mmrs_core.runtime.slots import ProgramBus, members_of, recorded_of
 
 PATIENCE = 60.0
 SCRIPT = Path(bus_walking.__file__)
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Fleet:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import socket
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
+from ports import free_port
 
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys
@@ -21,18 +21,12 @@ RUN = "run-0"
 PATIENCE = 20.0
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class Ends:
     """Ends of the bus, each for one robot whose slot ``go`` all others may set and reset."""
 
     def __init__(self, folder) -> None:
         self.folder = folder
-        self.ports = {robot: _free_port() for robot in NAMES}
+        self.ports = {robot: free_port() for robot in NAMES}
         self.nodes: list[Node] = []
         self.keys = None
         self.tell = print

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import socket
 import subprocess
 import sys
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from types import MappingProxyType
 
 import pytest
 from patience import until
+from ports import free_port
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
@@ -83,18 +83,6 @@ def controllers(tmp_path):
     return lambda program, **options: Controllers(tmp_path / "controllers", program, **options)
 
 
-@pytest.fixture(scope="session")
-def free_port():
-    """Return a function that finds a UDP port that nobody uses."""
-    return _free_port
-
-
-def _free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 @contextmanager
 def _open_hangar():
     """Give a function that switches on a vehicle at each robot's home, and returns the links to them."""
@@ -107,7 +95,7 @@ def _open_hangar():
             latitude, longitude = (42.37, 13.35)
             if not program.frame.is_local:
                 ((latitude, longitude),) = degrees_of([robot.home[:2]], program.frame)
-            port = _free_port()
+            port = free_port()
             kind = vehicle_class(robot, types.get(robot.type_name)).name
             given = Settings(kind, latitude, longitude, **settings)
             vehicle = SimulatedVehicle(port, given, speedup=speedup, loss=loss)

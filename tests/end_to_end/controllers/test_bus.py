@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import signal
-import socket
 import subprocess
 import time
 from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
+from ports import free_endpoint
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Transition
@@ -29,16 +29,16 @@ from mmrs_core.testing.programs import (
 
 @pytest.fixture
 def endpoint():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    return free_endpoint()
 
 
 def start_all(made, stack, endpoint, first, second, *arguments):
-    """Start two controllers, the first of which listens for the other."""
+    """Start two controllers, the first of which listens for the other; they end with the stack."""
     common = ("--dry-run", *arguments)
     listening = stack.enter_context(made.start(first, *common, "--bus-listen", endpoint))
+    stack.callback(listening.kill)
     calling = stack.enter_context(made.start(second, *common, "--bus-connect", endpoint))
+    stack.callback(calling.kill)
     return listening, calling
 
 

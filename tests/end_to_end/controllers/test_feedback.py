@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
+from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.orders.ordering import give
@@ -43,7 +44,7 @@ def read(station, process) -> list:
     return found
 
 
-def test_a_report_is_read_at_a_ground_station(controllers, free_port, looking):
+def test_a_report_is_read_at_a_ground_station(controllers, looking):
     port = free_port()
     with SimulatedVehicle(
         port, Settings(system=7), speedup=20.0, ground=("127.0.0.1", looking.getsockname()[1])

@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fault_table.fleet import free_tcp_port
+from ports import free_endpoint
 
 from mmrs_core.behaviour.program import Target, Transition
 from mmrs_core.behaviour.replay import Outcome
@@ -121,7 +121,7 @@ def test_robots_that_begin_together_know_how_well_they_did(controllers):
 
 def test_nothing_begins_where_the_others_do_not_come_and_it_can_be_tried_again(controllers):
     made = controllers(two_drones())
-    endpoint = f"tcp/127.0.0.1:{free_tcp_port()}"
+    endpoint = free_endpoint()
     alone = ("--dry-run", "--sync", "--sync-patience", "1", "--speedup", "50", "--bus-listen", endpoint)
     code, said = made.run("robot_alpha.py", *alone)
     assert code == 5, said

@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 
 import pytest
+from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.clock import Clock
@@ -124,7 +125,7 @@ def test_frames_that_could_not_be_read_are_told_and_recorded(controllers, hangar
 
 
 @pytest.fixture
-def one_radio(free_port):
+def one_radio():
     """Return a function that switches on vehicles with system ids 1 and 2 behind one port."""
     with ExitStack() as stack:
 
@@ -183,7 +184,7 @@ def test_which_of_two_vehicles_is_meant_must_be_said(controllers, one_radio):
     assert not any(vehicle.autopilot.stores[0] or vehicle.autopilot.armed for vehicle in vehicles)
 
 
-def test_a_vehicle_of_another_kind_is_refused(controllers, free_port):
+def test_a_vehicle_of_another_kind_is_refused(controllers):
     port = free_port()
     with SimulatedVehicle(port, Settings("rover"), speedup=20.0):
         code, said = controllers(UP_AND_DOWN).run(

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from lossy_proxy import LossyProxy
 from peer_lines import said_in
+from ports import free_port
 
 from mmrs_core import flight
 from mmrs_core.flight.clock import Clock
@@ -68,7 +69,7 @@ class Peer:
 
 
 @pytest.fixture
-def link(free_port):
+def link():
     port = free_port()
     made = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock())
     yield made, str(port)
@@ -141,7 +142,7 @@ def test_mavsdk_as_the_autopilot_gets_everything_over_a_bad_network(link, items,
         assert min(network.lost, network.doubled) > 0
 
 
-def test_mavsdk_as_the_ground_uploads_a_plan_over_a_network_that_loses_and_doubles(tmp_path, free_port):
+def test_mavsdk_as_the_ground_uploads_a_plan_over_a_network_that_loses_and_doubles(tmp_path):
     # To a PX4: MAVSDK takes what an ArduPilot answers to a doubled item for the end.
     write(render(QGC_PLAN, target_input(two_drones()), allow_lossy=True), tmp_path)
     port = free_port()

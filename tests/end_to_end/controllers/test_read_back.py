@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from ports import free_port
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.faults import Refused
@@ -20,7 +21,7 @@ MISSION, FENCE, RALLY = 0, 1, 2
 
 
 @pytest.fixture
-def linked(free_port):
+def linked():
     """Return a link, and the simulated vehicle at its end."""
     port = free_port()
     link = Link(open_port(f"udpin:127.0.0.1:{port}"), Clock(20.0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from ports import free_port
 
 from mmrs_core.flight.clock import Clock
 from mmrs_core.flight.links.link import Link
@@ -19,7 +20,7 @@ AGGRESSIVE = Travel("AGGRESSIVE", radius=2.0, margin=0.0)
 
 
 @pytest.fixture
-def told(free_port):
+def told():
     """Return a function that sets a vehicle up, and gives its parameters then, and what was said."""
 
     def after(travel, kind="copter", **settings):

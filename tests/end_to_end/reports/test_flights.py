@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import shutil
-import socket
 import subprocess
 import sys
 
 import pytest
+from ports import free_port
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.cli import run
@@ -21,12 +21,6 @@ ANSWERS = (
     ("conditions.py", ": undecided,", ": lambda state: True,"),
     ("objects.py", ": not_looked_for,", ": where_expected,"),
 )
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,9 @@ import json
 from contextlib import contextmanager
 from dataclasses import replace
 
-from flight_crew import SPEEDUP, free_port
+from flight_crew import SPEEDUP
 from patience import until
+from ports import free_port
 
 from mmrs_core.contributions.backends import BackendInput, Live
 from mmrs_core.mavlink.backend import MAVLINK

@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from fault_table.fleet import free_port
 from fault_table.project import OUT, TOUR, Pad
+from ports import free_endpoint
 from real_runs import PATIENCE, SYNCHRONISED, begun, fly_by_hand, judged, landed, least_distance
 
 from mmrs_core.behaviour.replay import Outcome
@@ -74,7 +74,7 @@ def test_a_full_disk_ends_a_robot_by_its_policy_also_where_what_is_said_goes_the
 
 def test_robots_of_two_processes_meet_on_the_bus_and_begin_together(fleet):
     flown = fleet(*SYNCHRONISED)
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    endpoint = free_endpoint()
     first = flown.start("--bus-listen", endpoint, "--sync", robot="a")
     second = flown.start("--bus-connect", endpoint, "--sync", robot="b")
     assert (first.end(PATIENCE), second.end(PATIENCE)) == (0, 0), first.said + second.said
@@ -88,7 +88,7 @@ def test_robots_of_two_processes_meet_on_the_bus_and_begin_together(fleet):
 
 def test_nothing_begins_where_robots_of_other_processes_do_not_come(fleet):
     flown = fleet(*SYNCHRONISED)
-    listens = ("--bus-listen", f"tcp/127.0.0.1:{free_port()}")
+    listens = ("--bus-listen", free_endpoint())
     process = flown.start(*listens, "--sync", "--sync-patience", "1", robot="a")
     assert process.end(PATIENCE) == 5, process.said
     assert "after 1 s 'b' is not ready; never seen on the bus: 'b'" in process.said[-1]

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from example_flight.fleets import free_port
+from ports import free_port
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import Outcome, replay

@@ -11,7 +11,7 @@ import sys
 import time
 
 import pytest
-from example_flight.fleets import free_port
+from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.resources import shipped

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ import pytest
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.vessel.body.surroundings import from_json
+from ports import free_endpoint, free_port
 
 from mmrs_core.cli.demo import example_folder
 
@@ -26,13 +26,6 @@ SPEED, LONGEST = 2.0, 600.0
 """Times real time; seconds. Under load, the vehicle.s time goes as slowly as its processes."""
 
 FLOAT = (23.5, 27.5)
-
-
-def free_port(kind: int) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 @contextmanager
@@ -72,7 +65,7 @@ def bay(tmp_path: Path) -> Path:
 @pytest.fixture
 def reached(bay: Path, tmp_path: Path) -> Iterator[dict[str, list[str]]]:
     """Return what mmrs run needs to reach a simulated drone, and a simulated vehicle with eyes."""
-    around, port, told = bay / "surroundings.json", free_port(socket.SOCK_DGRAM), free_port(socket.SOCK_DGRAM)
+    around, port, told = bay / "surroundings.json", free_port(), free_port()
     with ExitStack() as stack:
         words = ("mmrs_core", "sitl", str(bay), "--surroundings", str(around), "--port", str(port))
         stack.enter_context(running(tmp_path, "sitl", *words, "--speedup", str(SPEED)))
@@ -95,7 +88,7 @@ def reached(bay: Path, tmp_path: Path) -> Iterator[dict[str, list[str]]]:
 
 @pytest.mark.parametrize("runs", [[["Gull", "Otter"]], [["Gull"], ["Otter"]]], ids=["one run", "over Zenoh"])
 def test_what_the_drone_has_seen_is_found_by_the_vehicle(bay, reached, tmp_path, runs):
-    endpoint = f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+    endpoint = free_endpoint()
     with ExitStack() as stack:
         begun = []
         for number, robots in enumerate(runs):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -20,6 +19,7 @@ from dives_by_code import SPEED, dive_by_code, interpreted
 from mmrs_auv.rehearsal import Berth
 from mmrs_auv.sheets import sheet_of
 from mmrs_auv.vessel.body.surroundings import BUOY, Surroundings, Thing, to_json
+from ports import free_port
 
 from mmrs_core.behaviour.log import LogWriter, read_logs
 from mmrs_core.behaviour.program import Heading, Move, Program, Target, Transition
@@ -76,9 +76,7 @@ def eyes(folder: Path, berth: Berth, port: int) -> Iterator[None]:
 @pytest.fixture
 def seen(tmp_path: Path) -> Iterator[tuple[Berth, int]]:
     """Return a vehicle, and the port at which its eyes tell what they see."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
+    port = free_port()
     sheet = sheet_of(diver(), "naiad", home=(0.0, 0.0, -0.5))
     with ExitStack() as stack:
         berth = stack.enter_context(

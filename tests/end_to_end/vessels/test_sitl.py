@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import queue
-import socket
 import subprocess
 import sys
 import threading
 from contextlib import closing
 from pathlib import Path
 
-import pytest
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.vessel.wire.ports import open_port
+from ports import free_port
 from vessel_processes import Ear, until
 
 POOL = Path(__file__).parents[3] / "examples" / "pool"
@@ -66,16 +65,10 @@ class Sitl:
             continue
 
 
-@pytest.fixture
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
-def test_what_is_typed_happens(free_port):
-    address = f"can0@127.0.0.1:{free_port}"
-    with closing(Sitl(free_port)) as sitl:
+def test_what_is_typed_happens():
+    port = free_port()
+    address = f"can0@127.0.0.1:{port}"
+    with closing(Sitl(port)) as sitl:
         assert f"Naiad={address}" in sitl.first_line()
         with open_port("socketcand", address) as port:
             ear = Ear(sheets_in(POOL)["Naiad"], port)

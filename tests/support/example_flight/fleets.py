@@ -18,6 +18,7 @@ from math import cos, radians, sin
 from pathlib import Path
 
 from peer_lines import said_in
+from ports import free_port
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyproj import Geod
 
@@ -28,12 +29,6 @@ PEERS = Path(__file__).parents[2] / "peers"
 ENERGY = 20_000.0
 ALTITUDE = 720.0
 WGS84 = Geod(ellps="WGS84")
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def links_of(homes: Sequence[Home], ports: Sequence[int]) -> dict[str, str]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import socket
 import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+
+from ports import free_endpoint
 
 from example_flight.mission import Mission
 
@@ -15,9 +16,7 @@ PATIENCE = 280.0
 
 def by_controllers(mission: Mission, links: Mapping[str, str], speedup: float) -> tuple[dict[str, int], str]:
     """Start a controller for each robot, which keep their slots by Zenoh; return exit codes and words."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    endpoint = free_endpoint()
     folder = mission.folder / "controllers"
     processes = {}
     for number, (robot, link) in enumerate(links.items()):

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from itertools import cycle
 from pathlib import Path
-from random import randrange
 from typing import IO
 
 import pytest
+from ports import free_port
 
 from fault_table.process import Process
 from fault_table.project import Pad, home_of, write_project
@@ -164,37 +162,6 @@ def mmrs(*arguments: str) -> str:
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{arguments}: {done.stdout}{done.stderr}"
     return done.stdout
-
-
-def free_port() -> int:
-    """Return a UDP port that nobody uses."""
-    return _free(socket.SOCK_DGRAM)
-
-
-def free_tcp_port() -> int:
-    """Return a TCP port that nobody uses."""
-    return _free(socket.SOCK_STREAM)
-
-
-def _free(kind: socket.SocketKind) -> int:
-    """Return a port below those that systems give to whoever asks for any: nobody takes it meanwhile."""
-    for port in _ports:
-        with socket.socket(socket.AF_INET, kind) as probe:
-            try:
-                probe.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-            return port
-    raise AssertionError("no port is free")
-
-
-def _numbers() -> Iterator[int]:
-    first, last = PORTS
-    yield from cycle([*range(start := randrange(first, last), last), *range(first, start)])
-
-
-PORTS = (10_000, 32_000)
-_ports = _numbers()
 
 
 def wait_for(test: Callable[[], bool], seconds: float) -> bool:

@@ -10,8 +10,9 @@ from dataclasses import replace
 from math import nan
 
 import pytest
-from flight_crew import SPEEDUP, free_port, in_background, robot_of
+from flight_crew import SPEEDUP, SteadyClock, in_background, robot_of
 from patience import until
+from ports import free_port
 
 from mmrs_core.flight.crews import Crews
 from mmrs_core.flight.injection import Rehearsal
@@ -39,6 +40,8 @@ def process(tmp_path):
         vehicle = ["--connect", f"alpha=udpin:127.0.0.1:{port}@1", "--speedup", str(SPEEDUP)]
         arguments = [*(vehicle if port else ["--dry-run"]), "--log", str(tmp_path), *words]
         options = options_of(parser_for(robots), robots, arguments)
+        if port:
+            options = replace(options, clock=SteadyClock(SPEEDUP, options.clock.now()))
         judgement = Judgement({}, {})
         return Shared(
             options=options,

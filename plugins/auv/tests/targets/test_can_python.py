@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,6 +12,7 @@ from mmrs_auv.controllers.main import main
 from mmrs_auv.kinds import AUV_KIND
 from mmrs_auv.targets.can_python.target import CAN_PYTHON
 from mmrs_auv.vessel.sheet import from_json
+from ports import free_endpoint
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.program import Program, Target, Transition
@@ -174,12 +174,6 @@ def test_what_controllers_cannot_do_is_refused() -> None:
         with pytest.raises(UnsupportedError) as refused:
             render(CAN_PYTHON, given(behaviour))
         assert said in f"{refused.value} {refused.value.elements}"
-
-
-def free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 def test_robots_in_separate_programs_meet_by_zenoh(tmp_path: Path) -> None:
