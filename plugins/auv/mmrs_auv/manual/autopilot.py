@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import degrees, inf
 from typing import Any
 
@@ -11,9 +11,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_auv.manual.helm import Sticks
 from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
+from mmrs_core.flight.services import parameters
 from mmrs_core.flight.services.commands import ask, command
 from mmrs_core.flight.vehicles.modes import word_of
 from mmrs_core.flight.vehicles.preparation import VEHICLES, hear_out
+from mmrs_core.flight.vehicles.safeguards import Safeguard, report
 from mmrs_core.flight.vehicles.texts import Texts
 
 DEPTH_HOLD, SURFACE = 2, 9
@@ -34,6 +36,13 @@ ASKED_EVERY = 1.0
 
 OFF_FOR = 2.0
 """Seconds without motors after which no news of a new start is waited for."""
+
+STICKS_LOST = Safeguard(
+    "FS_PILOT_INPUT",
+    "no sticks any more",
+    {0: "nothing", 1: "warn", 2: "disarm"},
+    dict.fromkeys((0, 1), "nothing stops its motors when this program, or its link, ends"),
+)
 
 LEAK = "leak detected"
 COMES_UP = "SURFACE"
@@ -65,8 +74,11 @@ class Autopilot:
         self._starts, self._ready_at, self._asked = 0, -inf, -inf
         self._off_since, self._silent_at = inf, -inf
 
-    def get_ready(self) -> None:
+    def get_ready(self, say: Callable[[str], None]) -> None:
         """Go into depth hold and arm.
+
+        Args:
+            say: is told what it does by itself when something goes wrong.
 
         Raises:
             faults.Strange: it is not the robot's, or somebody else may have it.
@@ -77,6 +89,8 @@ class Autopilot:
         hear_out(self._link)
         if why := self._strange():
             raise faults.Strange(why)
+        for line in self.safeguards():
+            say(line)
         for number in TOLD:
             command(self._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), float(TOLD_EVERY))
         if not self._wait(lambda: None not in (self.heading(), self.depth()), FIRST_SIGN):
@@ -85,6 +99,12 @@ class Autopilot:
         self.move(Sticks())
         self._insist(lambda: self.armed, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)
         self._starts, self._ready_at = self._link.starts, self._link.clock.now()
+
+    def safeguards(self) -> Iterator[str]:
+        """Yield what it does by itself when something goes wrong, as its parameters tell."""
+        yield from report(self._link, "sub")
+        found = parameters.read(self._link, [STICKS_LOST.name])
+        yield from (STICKS_LOST.told(value) for value in found.values())
 
     def trouble(self, patience: float) -> faults.Fault | None:
         """Return what is wrong; what leaves the vehicle to itself, or to others, goes first.

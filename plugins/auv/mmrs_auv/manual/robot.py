@@ -253,7 +253,7 @@ class ManualRobot:
 
     def _drive(self) -> None:
         try:
-            self._autopilot.get_ready()
+            self._autopilot.get_ready(self._live.say)
             with self._lock:
                 self._helm.depth = self._depth = self._autopilot.depth() or 0.0
                 self._ready = True
@@ -320,6 +320,8 @@ class ManualRobot:
 
     def _hinders(self, found: Fault) -> Fault | None:
         """Return what keeps the vehicle from what it was told to do instead of its program."""
+        if self._response == NOTHING:
+            return None
         if found.which == faults.TAKEN_OVER or (found.which == faults.LINK_LOST and self._silent()):
             return found
         if found.which == faults.CRASHED and self._response != "SURFACE":

@@ -107,13 +107,14 @@ class Driven:
 
 
 @contextmanager
-def sub(*, located=False, areas=(), policies=(), **settings):
+def sub(*, located=False, areas=(), policies=(), parameters=None, **settings):
     """Give a simulated ArduSub that has no position, and its robot, ready."""
     port, clock, said = free_port(), RealClock(SPEEDUP), []
     live = Live(clock, lambda: None, said.append, "run-0", links={"naiad": f"udpin:127.0.0.1:{port}"})
     backend = ARDUSUB_MANUAL.connect(given(live=live, areas=areas, policies=policies))
     with SimulatedVehicle(port, Settings(kind="sub", **settings), speedup=SPEEDUP) as vehicle:
         vehicle.autopilot.located = located
+        vehicle.autopilot.parameters.update(parameters or {})
         driven = Driven(backend, clock, vehicle, said)
         try:
             backend.prepare(clock.now())
@@ -147,6 +148,15 @@ def test_where_the_robot_is_is_reckoned():
         east, north, up = driven.backend.state(driven.clock.now()).position
         assert (east, north) == pytest.approx((6.0, 0.0), abs=0.5)
         assert up == pytest.approx(-2.0, abs=0.4)
+
+
+def test_what_it_does_by_itself_is_told():
+    with sub(parameters={"FS_PILOT_INPUT": 1.0}) as driven:
+        assert "FS_LEAK_ENABLE = 1: water inside: warn" in driven.said
+        (line,) = (each for each in driven.said if each.startswith("FS_PILOT_INPUT"))
+        assert line.startswith(
+            "FS_PILOT_INPUT = 1: no sticks any more: warn (beware: nothing stops its motors"
+        )
 
 
 @pytest.mark.parametrize("number", TOLD)
@@ -190,6 +200,7 @@ def test_who_takes_the_stick_has_the_vehicle():
         until(lambda: driven.fault is not None)
         assert driven.fault.which == "TAKEN_OVER"
         driven.stop("NOTHING")
+        assert driven.fault is None
         assert driven.vehicle.autopilot.armed
 
 
