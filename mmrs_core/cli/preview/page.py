@@ -12,7 +12,7 @@ from mmrs_core.cli.preview.map_ways import leg_tip
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import Style, style_of
 from mmrs_core.cli.preview.picture import Leg, Picture, RobotPicture, Thing
-from mmrs_core.cli.preview.profile import BARS, profile_markup
+from mmrs_core.cli.preview.profile import BARS, BARS_OF_FLIGHTS, profile_markup
 from mmrs_core.cli.preview.projection import projection_of
 from mmrs_core.cli.preview.time_axis import LEFT, RIGHT, WIDTH
 from mmrs_core.cli.preview.timeline import KEY, KEY_OF_FLIGHTS, timeline_markup
@@ -63,7 +63,7 @@ def page(picture: Picture) -> str:
             "section",
             None,
             element("h2", None, "Heights above the origin"),
-            element("p", {"class": "soft"}, BARS),
+            element("p", {"class": "soft"}, BARS_OF_FLIGHTS if picture.flown else BARS),
             element("div", {"class": "wide"}, profile_markup(picture)),
         ),
         element("section", None, element("h2", None, "Robots"), _table(picture)),

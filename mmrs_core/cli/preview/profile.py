@@ -21,6 +21,7 @@ _SMALLEST_RANGE = 4.0
 _NAMES = 40
 
 BARS = "Grey and red bars: obstacles and forbidden areas on the way as seen from above, from foot to top."
+BARS_OF_FLIGHTS = f"{BARS} Dashed grey: as planned."
 
 
 @dataclass(frozen=True, slots=True)

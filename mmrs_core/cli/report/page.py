@@ -14,7 +14,7 @@ from mmrs_core.cli.preview.map_drawing import map_markup
 from mmrs_core.cli.preview.markup import element, style_sheet, text
 from mmrs_core.cli.preview.palette import style_of
 from mmrs_core.cli.preview.picture import Picture
-from mmrs_core.cli.preview.profile import BARS, profile_markup
+from mmrs_core.cli.preview.profile import BARS_OF_FLIGHTS, profile_markup
 from mmrs_core.cli.preview.timeline import KEY_OF_FLIGHTS, timeline_markup
 from mmrs_core.cli.report import measures, sections
 from mmrs_core.cli.report.charts import battery_chart, off_way_chart
@@ -87,8 +87,7 @@ def _sections(report: Report, given: Given, picture: Picture) -> Iterator[str]:
     yield sections.events(report)
     shown = _wide(timeline_markup(picture))
     yield section("Who did what, and who waited for whom", shown, note=KEY_OF_FLIGHTS)
-    words = f"{BARS} Dashed grey: as planned."
-    yield section("Heights above the origin", _wide(profile_markup(picture)), note=words)
+    yield section("Heights above the origin", _wide(profile_markup(picture)), note=BARS_OF_FLIGHTS)
     yield measures.deviations(report)
     yield measures.approaches(report)
     yield measures.separations(report)
