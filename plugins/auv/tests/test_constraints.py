@@ -278,3 +278,8 @@ def test_a_misspelt_property_of_a_sensor_is_told_with_the_nearest_name(registry)
     assert said == (
         "property 'sonar.aparture' of device 'sonar' is read by nobody; did you mean sonar.aperture?"
     )
+
+
+def test_the_weight_in_water_is_told_once_where_nothing_can_be_dropped(registry):
+    (told,) = found("AUV019", vehicle(registry, size=size(registry, weightInWater=0.4)))
+    assert told.endswith("weightInWater is 0.4 kg: it does not come up by itself")

@@ -26,10 +26,8 @@ OURS = ("sonar.", "dvl.")
 def _stays_down(size: Element, models: ModelSet) -> Iterator[Finding]:
     wet, drop = number(size, "weightInWater"), number(size, "dropWeight") or 0.0
     if wet is not None and wet - drop > 0.0:
-        without = f" without its drop weight of {drop:g} kg" if drop > 0.0 else ""
-        yield Finding(
-            size, f"weightInWater is {wet:g} kg, {wet - drop:g} kg{without}: it does not come up by itself"
-        )
+        without = f", {wet - drop:g} kg without its drop weight of {drop:g} kg" if drop > 0.0 else ""
+        yield Finding(size, f"weightInWater is {wet:g} kg{without}: it does not come up by itself")
 
 
 def _no_ballast(size: Element, models: ModelSet) -> Iterator[Finding]:
