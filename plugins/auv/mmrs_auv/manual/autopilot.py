@@ -69,7 +69,7 @@ class Autopilot:
         """
         self.rising = self._rose = False
         self._link, self._given_up, self._reserve, self._under_way = link, given_up, reserve, under_way
-        self._texts = Texts(link.clock)
+        self._texts, self._stale_after = Texts(link.clock), link.clock.patience(STALE)
         link.observe(self._texts)
         self._starts, self._ready_at, self._asked = 0, -inf, -inf
         self._off_since, self._silent_at = inf, -inf
@@ -112,7 +112,7 @@ class Autopilot:
         Args:
             patience: seconds of silence after which the link counts as lost.
         """
-        if self._link.silent_for() > patience:
+        if self.is_silent(patience):
             self._silent_at = self._link.clock.now()
             return faults.Fault(faults.LINK_LOST, f"not heard for {self._link.silent_for():.0f} s")
         if self._link.starts != self._starts:
@@ -125,12 +125,12 @@ class Autopilot:
     @property
     def knows(self) -> bool:
         """Return whether heading and depth were told just now."""
-        return max(map(self._link.since, NEEDED)) <= STALE
+        return max(map(self._link.since, NEEDED)) <= self._stale_after
 
     @property
     def knows_depth(self) -> bool:
         """Return whether its depth was told just now."""
-        return self._link.since(NEEDED[1]) <= STALE
+        return self._link.since(NEEDED[1]) <= self._stale_after
 
     def heading(self) -> float | None:
         """Return degrees clockwise from north, as told last."""
@@ -164,6 +164,10 @@ class Autopilot:
     def silent(self) -> float:
         """Return for how many seconds it has not been heard."""
         return self._link.silent_for()
+
+    def is_silent(self, seconds: float) -> bool:
+        """Return whether it has not been heard for so long, and for a real second."""
+        return self.silent > self._link.clock.patience(seconds, 1.0)
 
     def word(self) -> str:
         """Return its mode in words."""
@@ -221,7 +225,7 @@ class Autopilot:
     def _disarmed(self) -> faults.Fault | None:
         """Return that its motors are off, unless it may be about to tell that it has begun anew."""
         self._off_since = min(self._off_since, self._link.clock.now())
-        if self._link.clock.now() - self._off_since < OFF_FOR:
+        if self._link.clock.now() - self._off_since < self._link.clock.patience(OFF_FOR):
             return None
         return faults.Fault(faults.MOTORS_OFF, "somebody, or the vehicle itself, has disarmed it")
 
@@ -244,9 +248,9 @@ class Autopilot:
 
     def _stale(self) -> faults.Fault | None:
         now, age = self._link.clock.now(), max(map(self._link.since, NEEDED))
-        if self._link.silent_for() >= STALE:
+        if self._link.silent_for() >= self._stale_after:
             self._silent_at = now
-        if age <= STALE or now - self._silent_at < STALE:
+        if age <= self._stale_after or now - self._silent_at < self._stale_after:
             return None
         return faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
 

@@ -194,7 +194,7 @@ class ManualRobot:
 
     def reachable(self, now: float) -> bool:
         """Return whether the vehicle was heard of lately."""
-        return self._autopilot.silent <= LINK_PATIENCE
+        return not self._autopilot.is_silent(LINK_PATIENCE)
 
     def recover(self, passed: Sequence[str], begun: str, now: float) -> None:
         """Go back to where the last of the moves ended, round forbidden areas and obstacles."""
