@@ -45,10 +45,10 @@ def test_thrusters_that_fail_are_told_once_and_are_no_sign_of_life() -> None:
     drives = Drives(listener.craft, listener.sheet)
     for drive in ("RUNS", "FAULT", "FAULT"):
         listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive=drive)
-    assert drives.news() == (f"thruster '{listener.sheet.thrusters[2].id}' has failed",)
+    assert drives.news() == (("ERROR", f"thruster '{listener.sheet.thrusters[2].id}' has failed"),)
     assert drives.news() == ()
     listener.tell("Thruster2Status", Thrust=0.0, Power=0.0, Drive="RUNS")
-    assert drives.news() == (f"thruster '{listener.sheet.thrusters[2].id}' works again",)
+    assert drives.news() == (("NOTICE", f"thruster '{listener.sheet.thrusters[2].id}' works again"),)
     assert listener.craft.state().silent == float("inf")
 
 

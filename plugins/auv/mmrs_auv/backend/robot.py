@@ -260,8 +260,8 @@ class CanRobot:
     def _look(self, now: float) -> None:
         self._now = max(self._now, now)
         self._keeper.seen(self._state(now, self._craft.state()))
-        for words in self._drives.news():
-            self.note("text", {"severity": "ERROR", "text": words})
+        for grave, words in self._drives.news():
+            self.note("text", {"severity": grave, "text": words})
             if self._given.live is not None:
                 self._given.live.say(words)
 

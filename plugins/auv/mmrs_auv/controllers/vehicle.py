@@ -296,8 +296,8 @@ class CanVehicle:
         if now - self._fixed >= FIX_SECONDS:
             self._fixed = now
             fix(self._box, self.state())
-        for words in self._drives.news():
-            self._box.write("text", severity="ERROR", text=words)
+        for grave, words in self._drives.news():
+            self._box.write("text", severity=grave, text=words)
             say(f"'{self._robot.id}': {words}")
         found = self._helm.failure(now)
         if found is None:

@@ -14,11 +14,15 @@ class Drives:
         self._craft, self._thrusters = craft, sheet.thrusters
         self._failed: frozenset[int] = frozenset()
 
-    def news(self) -> tuple[str, ...]:
-        """Return a sentence for each."""
+    def news(self) -> tuple[tuple[str, str], ...]:
+        """Return for each how grave it is, in a word of MAVLink's, and a sentence."""
         failed, before = self._craft.state().failed, self._failed
         self._failed = failed
         return tuple(
-            f"thruster '{self._thrusters[number].id}' {'has failed' if number in failed else 'works again'}"
-            for number in sorted(failed ^ before)
+            _told(self._thrusters[number].id, number in failed) for number in sorted(failed ^ before)
         )
+
+
+def _told(thruster: str, failed: bool) -> tuple[str, str]:
+    grave, what = ("ERROR", "has failed") if failed else ("NOTICE", "works again")
+    return grave, f"thruster '{thruster}' {what}"
