@@ -28,9 +28,16 @@ def _emergencies(models: ModelSet) -> Iterator[DrawnArea]:
 
 def _forbidden_emergency(context: Element, models: ModelSet) -> Iterator[Finding]:
     for area in _emergencies(models):
-        for other in sketch_of(models).kept_from:
-            if _stands(other) and area.shape.within(other.shape.buffer(other.safety_distance)):
-                yield finding(area.element, f"lies inside {called(other.element)}")
+        for other in _around(area, models):
+            yield finding(area.element, f"lies inside {called(other.element)}")
+
+
+def _around(area: DrawnArea, models: ModelSet) -> list[DrawnArea]:
+    return [
+        other
+        for other in sketch_of(models).kept_from
+        if _stands(other) and area.shape.within(other.shape.buffer(other.safety_distance))
+    ]
 
 
 def _stands(area: DrawnArea) -> bool:
@@ -51,6 +58,21 @@ def _narrow_emergency(context: Element, models: ModelSet) -> Iterator[Finding]:
                 area.element,
                 f"has room for a robot within {room:.2f} m of its sides, but {needed:.2f} m are needed",
             )
+        elif not _around(area, models):
+            yield from _crowded(area, needed, min(known), models)
+
+
+def _crowded(area: DrawnArea, inwards: float, clearance: float, models: ModelSet) -> Iterator[Finding]:
+    """Tell of an emergency area where a robot is nowhere so far from its sides and clear of the others."""
+    barred = [
+        (other, other.shape.buffer(other.safety_distance + clearance))
+        for other in sketch_of(models).kept_from
+        if _stands(other)
+    ]
+    inside = area.shape.buffer(0.01 - inwards)
+    if inside.difference(shapely.union_all([shape for _, shape in barred])).is_empty:
+        near = " and ".join(called(other.element) for other, shape in barred if shape.intersects(inside))
+        yield finding(area.element, f"has no room for a robot that keeps from {near}")
 
 
 def _too_cold_or_hot(environment: Element, models: ModelSet) -> Iterator[Finding]:
@@ -85,7 +107,7 @@ CONSTRAINTS = (
         "An emergency area has room for a robot.",
         (CONTEXT, "Context"),
         _narrow_emergency,
-        "draw it larger, or make its safetyDistance smaller",
+        "draw it larger or farther from what robots keep from, or make its safetyDistance smaller",
         Severity.WARNING,
     ),
     Constraint(
