@@ -63,11 +63,11 @@ def test_a_policy_may_carry_on_with_what_was_charged(controllers, hangar):
 
 def test_charging_goes_on_until_the_battery_is_full(controllers, hangar):
     made = controllers(two_sorties(charge=30.0))
-    vehicles, links = hangar(made.program, recharge=60.0, falls=False)
+    vehicles, links = hangar(made.program, speedup=15.0, recharge=50.0, falls=False)
     code, said = run_and_empty(made, vehicles["alpha"], links)
     assert code == 0, said
     begun, ended, *_ = (step["time"] for step in made.steps("alpha") if step["move"] == "charge")
-    assert ended - begun > 50.0
+    assert ended - begun > 40.0
 
 
 @pytest.mark.thorough

@@ -7,6 +7,7 @@ import time
 from collections.abc import Container
 
 import pytest
+from stalls import Stalls
 
 from mmrs_core.flight.bus import Incomplete, Member, Node, Owned, begin_together
 from mmrs_core.flight.bus.carriers.carrier import NoCarrier
@@ -77,17 +78,17 @@ def tired_after(seconds: float):
 
 
 def test_waiting_for_an_answer_that_does_not_come_can_be_ended_at_once(begin):
-    begun = time.monotonic()
+    stalls, begun = Stalls(), time.monotonic()
     with pytest.raises(Tired):
         begin(Losing(ALL), tired_after(0.2))
-    assert time.monotonic() - begun < AT_ONCE
+    assert time.monotonic() - begun < AT_ONCE + stalls.seconds
 
 
 def test_taking_leave_of_a_robot_that_answers_no_more_can_be_ended_at_once(begin):
-    begun = time.monotonic()
+    stalls, begun = Stalls(), time.monotonic()
     with pytest.raises(Tired):
         begin(Losing(ALL[1:]), tired_after(0.2), patience=0.01)
-    assert time.monotonic() - begun < AT_ONCE
+    assert time.monotonic() - begun < AT_ONCE + stalls.seconds
 
 
 def test_an_order_is_obeyed_while_an_answer_does_not_come(begin):
@@ -95,10 +96,10 @@ def test_an_order_is_obeyed_while_an_answer_does_not_come(begin):
     obedience = Obedience(inbox, clock, threading.Event(), print)
     obedience.begin(DryVehicle(clock, None, obedience.check))
     threading.Timer(0.2, inbox.give, [Order("return")]).start()
-    begun = time.monotonic()
+    stalls, begun = Stalls(), time.monotonic()
     with pytest.raises(Ordered, match="return was ordered"):
         begin(Losing(ALL), lambda why: obedience.check())
-    assert time.monotonic() - begun < AT_ONCE
+    assert time.monotonic() - begun < AT_ONCE + stalls.seconds
 
 
 def test_a_robot_that_has_heard_no_answer_is_no_longer_listed_once_it_waits_no_more(begin):
