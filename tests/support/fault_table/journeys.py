@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from math import dist
 from pathlib import Path
 
-from fault_table.fleet import Fleet, free_tcp_port, wait_for
+from ports import free_endpoint
+
+from fault_table.fleet import Fleet, wait_for
 from fault_table.project import OUT, TOUR, Pad
 from fault_table.record import MOMENTS, answered, ending, story, struck
 from fault_table.row import Outcome, within
@@ -104,7 +106,7 @@ def peer(execution: str, folder: Path, number: int, response: str, ends: str) ->
         Pad("g0", "give", (), 200.0, gives="r0"),
     ]
     with Fleet(folder, pads, execution) as fleet:
-        vehicle, endpoint = fleet.vehicles["r0"], f"tcp/127.0.0.1:{free_tcp_port()}"
+        vehicle, endpoint = fleet.vehicles["r0"], free_endpoint()
         waiting = fleet.start("--bus-listen", endpoint, robot="r0")
         giving = fleet.start("--bus-connect", endpoint, robot="g0")
         _reached(fleet, "r0", AT)
@@ -141,7 +143,7 @@ def split_network(execution: str, folder: Path, faults: str, after: float, event
         Pad("g0", "give", (("PEER_LOST", "RETURN", after),), 60.0, gives="r0"),
     ]
     with Fleet(folder, pads, execution) as fleet:
-        vehicle, endpoint = fleet.vehicles["r0"], f"tcp/127.0.0.1:{free_tcp_port()}"
+        vehicle, endpoint = fleet.vehicles["r0"], free_endpoint()
         waiting = fleet.start("--bus-listen", endpoint, "--inject", faults, robot="r0")
         giving = fleet.start("--bus-connect", endpoint, robot="g0")
         _reached(fleet, "r0", AT)
