@@ -6,11 +6,11 @@ import os
 import shutil
 import sys
 import tempfile
-from pathlib import Path
+from functools import cache
+from pathlib import Path, PurePosixPath
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
 IN_REAL_TIME = {
     "controllers": ("tests/end_to_end/controllers",),
     "runs and buses": ("tests/conformance/bus", "tests/end_to_end/bus", "tests/end_to_end/run"),
@@ -25,20 +25,20 @@ IN_REAL_TIME = {
     ),
 }
 """Tests that keep to the wall clock, by group: they mostly wait; those of a group go one after another."""
-SHARING = (
-    "plugins/auv/tests/targets/test_ada_frames.py",
-    "plugins/auv/tests/vision/test_detecting.py",
-    "tests/conformance/emf/test_dates.py",
-    "tests/documentation/test_diagnostics_page.py",
+TOGETHER = ("tests/conformance/emf",)
+"""Folders whose tests share what is long in the making; those of other folders do so within a file."""
+LONG = (
+    *TOGETHER,
+    "plugins/auv/tests/backend/test_rehearsed.py",
+    "plugins/auv/tests/control/test_failsafe.py",
+    "plugins/auv/tests/movement/test_closed_loop.py",
+    "plugins/auv/tests/test_guard.py",
+    "tests/documentation/test_pages.py",
+    "tests/documentation/test_readme.py",
     "tests/documentation/test_tutorial.py",
     "tests/end_to_end/new_plugins/test_new_plugins.py",
-    "tests/end_to_end/reports/test_flights.py",
-    "tests/installed/test_wheels.py",
-    "tests/unit/analysis/test_derived_behaviours.py",
-    "tests/unit/generation/test_capabilities.py",
 )
-"""Modules whose tests share what is long in the making, so that one worker makes it once."""
-SHARED = {str(ROOT / module) for module in SHARING}
+"""What begins early, lest others wait for its end."""
 AT_WORK_WITH_OTHERS = "PYTEST_XDIST_WORKER" in os.environ
 GIVING_WAY = 10
 """Niceness of workers, and of the processes that they start, once they have no tests in real time left."""
@@ -91,7 +91,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def rank_of(group: str) -> int:
     """Return when a group of tests begins: those in real time, those that take long, all others."""
-    return 0 if group in IN_REAL_TIME else 1 if group in SHARED else 2
+    return 0 if group in IN_REAL_TIME else 1 if group in LONG else 2
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -118,12 +118,18 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log):
 
 
 def group_of(nodeid: str) -> str:
-    """Return the group of a test; of one that needs none, its own name."""
-    path = ROOT / nodeid.partition("::")[0]
-    for group, folders in IN_REAL_TIME.items():
-        if any(path.is_relative_to(ROOT / folder) for folder in folders):
+    """Return the group of a test, whose tests one worker runs."""
+    return group_of_file(nodeid.partition("::")[0])
+
+
+@cache
+def group_of_file(name: str) -> str:
+    """Return the group of the tests of a file: their folder's, or their own."""
+    path = PurePosixPath(name)
+    for group, folders in (*IN_REAL_TIME.items(), *((folder, (folder,)) for folder in TOGETHER)):
+        if any(path.is_relative_to(folder) for folder in folders):
             return group
-    return str(path) if str(path) in SHARED else nodeid
+    return name
 
 
 @pytest.fixture

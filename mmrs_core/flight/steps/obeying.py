@@ -8,8 +8,9 @@ from ..policies import CAME_DOWN_AWAY
 from ..program import Robot
 from ..vehicles.footing import aside, misplaced
 from ..vehicles.vehicle import Vehicle
+from .motors import TOUCHING
 from .responding import OFF, course_of
-from .responses import RETURN
+from .responses import HOLD, RETURN
 from .ways import Track
 
 
@@ -32,11 +33,16 @@ def obeying(response: str, robot: Robot, vehicle: Vehicle, track: Track) -> Call
 def undone(response: str, robot: Robot, vehicle: Vehicle, tolerance: float) -> str:
     """Return why a vehicle has not done what it was told to, although nothing is left to do; or nothing.
 
-    One whose motors are off further from home than `tolerance`, metres, does not return.
+    One whose motors are off further from home than `tolerance`, metres, does not return; a submarine
+    whose motors are off below does not hold.
     """
-    away = aside(robot.home, vehicle.state().place)
-    stays = response == RETURN and not vehicle.state().armed and away > tolerance
-    return f"it stands {away:.0f} m from its home" if stays else ""
+    state = vehicle.state()
+    away = aside(robot.home, state.place)
+    if response == RETURN and not state.armed and away > tolerance:
+        return f"it stands {away:.0f} m from its home"
+    if response == HOLD and robot.vehicle == "sub" and not state.armed and state.place.height < -TOUCHING:
+        return "its motors are off, below the surface"
+    return ""
 
 
 def away(robot: Robot, vehicle: Vehicle, tolerance: float) -> str:

@@ -8,6 +8,7 @@ from flight_crew import manned, robot_of
 from mmrs_core.flight.faults import MOTORS_OFF, Refused
 from mmrs_core.flight.program import Geographic
 from mmrs_core.flight.services.uploads import Uploads
+from mmrs_core.flight.steps.obeying import undone
 
 BELOW = Geographic(42.37, 13.35, -4.0)
 
@@ -35,6 +36,16 @@ def test_a_submarine_whose_motors_are_off_below_has_not_surfaced(below):
     assert below.crew.link.wait(lambda: not below.crew.vehicle.state().armed, 60.0)
     with pytest.raises(Refused, match="its motors are off: it comes up only if it is buoyant"):
         below.crew.vehicle.surface()
+
+
+def test_a_submarine_whose_motors_are_off_below_does_not_hold(below):
+    crew = below.crew
+    assert undone("HOLD", crew.robot, crew.vehicle, crew.near_home) == ""
+    with below.simulated.lock:
+        below.simulated.autopilot.disarm()
+    crew.watch.moving = False
+    assert crew.link.wait(lambda: not crew.vehicle.state().armed, 60.0)
+    assert undone("HOLD", crew.robot, crew.vehicle, crew.near_home) == "its motors are off, below the surface"
 
 
 def test_motors_that_stop_below_are_noticed(below):
