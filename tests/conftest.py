@@ -55,6 +55,9 @@ def pytest_configure(config: pytest.Config) -> None:
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in os.environ:
         keep_bytecode_elsewhere(config)
     draw_the_same_examples_everywhere()
+    take_time_for_examples()
+    if AT_WORK_WITH_OTHERS and hasattr(os, "nice"):
+        config.pluginmanager.register(Courtesy())
 
 
 def keep_bytecode_elsewhere(config: pytest.Config) -> None:
@@ -80,6 +83,14 @@ def draw_the_same_examples_everywhere() -> None:
     providers._get_local_constants = lambda: providers._local_constants
 
 
+def take_time_for_examples() -> None:
+    """Let an example take as long as it does where the machine is busy."""
+    from hypothesis import settings
+
+    settings.register_profile("unhurried", deadline=None)
+    settings.load_profile("unhurried")
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Give tests with full counts time enough; have workers begin with what keeps to the wall clock."""
     for item in items:
@@ -94,11 +105,13 @@ def rank_of(group: str) -> int:
     return 0 if group in IN_REAL_TIME else 1 if group in LONG else 2
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Have tests that only compute give way to those that keep to the wall clock."""
-    if AT_WORK_WITH_OTHERS and hasattr(os, "nice") and group_of(item.nodeid) not in IN_REAL_TIME:
-        os.nice(GIVING_WAY - os.nice(0))
+class Courtesy:
+    """Has tests that only compute, those of plug-ins, too, give way to those that keep to the wall clock."""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        if group_of(item.nodeid) not in IN_REAL_TIME:
+            os.nice(GIVING_WAY - os.nice(0))
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -26,7 +26,7 @@ def unhurried():
     settings.register_profile("pages", deadline=None, suppress_health_check=[HealthCheck.too_slow])
     settings.load_profile("pages")
     yield
-    settings.load_profile("default")
+    settings.load_profile("unhurried")
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if BLOCKS[page]])

@@ -145,21 +145,13 @@ def test_a_hub_that_takes_nothing_any_more_holds_nobody_up_for_long() -> None:
 def test_a_hub_that_comes_late_is_waited_for() -> None:
     with running() as other:
         pass
-    started = []
-
-    def start() -> None:
-        from mmrs_auv.vessel.wire.hub import Hub
-
-        hub = Hub()
-        original = hub.start
-        hub.start = lambda: original(port=other.port)  # type: ignore[method-assign]
-        started.append(running(hub))
-        started[0].__enter__()
-
-    threading.Timer(0.3, start).start()
+    late = running(port=other.port)
+    timer = threading.Timer(0.3, late.__enter__)
+    timer.start()
     with open_port("socketcand", "can0", port=other.port, patience=10) as port:
         port.send(FRAMES[0])
-    started[0].__exit__(None, None, None)
+    timer.join()
+    late.__exit__(None, None, None)
 
 
 def test_where_no_hub_is_that_is_told_in_time() -> None:
