@@ -21,6 +21,10 @@ NEAR_METRES = 4.0
 JUDGED_AFTER = 2
 """How many positions that were sent after it said that it has left an item behind must have come."""
 
+SET_BACK_AFTER = 3
+"""How many must have come since it said that it has gone back: one that starts anew says so, too, and its
+positions tell that by their times."""
+
 
 class Following:
     """Keeps how near the vehicle has come to each place of a run.
@@ -56,6 +60,7 @@ class Following:
         self._corridor = Corridor(() if width is None else corners, width or 0.0)
         self._missed: dict[int, float] = {}
         self._since: dict[int, int] = {}
+        self._back: set[int] = set()
         self._approach(self._here)
 
     def look(self) -> int:
@@ -80,7 +85,11 @@ class Following:
             Fault: it has gone back.
         """
         if 0 <= now < self._claimed:
-            raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
+            self._back.add(self._trail.place_order())
+            if len(self._back) > SET_BACK_AFTER:
+                raise Fault(NO_PROGRESS, f"the mission was set back from item {self._claimed} to {now}")
+            return
+        self._back.clear()
         if now > self._claimed:
             self._claimed, self._claimed_order = now, self._trail.item_order()
 

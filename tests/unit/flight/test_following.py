@@ -71,8 +71,21 @@ def test_a_mission_that_was_set_ahead_is_a_fault_before_anything_is_believed(fli
 
 def test_a_mission_that_was_set_back_is_a_fault(flight):
     assert flight(51.0, 0.0, 3) == 3
+    for north in (52.0, 51.0, 50.0):
+        flight(north, 0.0, 1)
     with pytest.raises(Fault, match="set back from item 3 to 1"):
-        flight(52.0, 0.0, 1)
+        flight(49.0, 0.0, 1)
+
+
+def test_a_vehicle_that_starts_anew_has_time_to_tell_so_before_its_mission_counts_as_set_back(flight):
+    assert flight(51.0, 0.0, 3) == 3
+    assert [flight(north, 0.0, 0) for north in (52.0, 52.1, 52.2)] == [3, 3, 3]
+
+
+def test_a_mission_that_was_set_back_for_a_moment_is_none(flight):
+    assert flight(51.0, 0.0, 3) == 3
+    for north in (52.0, 53.0, 54.0, 55.0):
+        assert flight(north, 0.0, 1) == flight(north + 0.5, 0.0, 3) == 3
 
 
 def test_an_item_that_is_not_known_for_a_moment_is_none(flight):
