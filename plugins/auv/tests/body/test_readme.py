@@ -12,6 +12,7 @@ from mmrs_auv.vessel.body.surroundings import Surroundings
 from mmrs_auv.vessel.body.vehicle import Vehicle
 from mmrs_auv.vessel.sheet import Sheet
 from mmrs_auv.vessel.wire.codec import Codec
+from vessel_sheets import Asked
 
 PAGE = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 TABLE = PAGE[PAGE.index("## The vehicle in simulation") :]
@@ -25,20 +26,8 @@ def said_keys() -> list[str]:
     return keys
 
 
-class Watched(dict):
-    """Values of a sheet that remember which of them somebody asked for."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.asked: set[str] = set()
-
-    def get(self, key, default=None):
-        self.asked.add(key)
-        return super().get(key, default)
-
-
 def test_the_page_names_all_that_a_sheet_may_say_of_the_body():
-    extra = Watched()
+    extra = Asked()
     sheet: Sheet = replace(pool_sheet(), extra=extra)
     vehicle = Vehicle(sheet, Codec(sheet), Surroundings())
     command = Codec(sheet).encode("DeviceCommand", Device=0, Action=0, Parameter=0.0, Request=1)
@@ -46,7 +35,7 @@ def test_the_page_names_all_that_a_sheet_may_say_of_the_body():
     vehicle.hear(Codec(sheet).encode("DeviceCommand", Device=1, Action=0, Parameter=0.0, Request=1), 0.0)
     instruments = ("pressure.", "rates.", "attitude.", "heading.", "acceleration.", "log.", "fix.", "start.")
 
-    asked = {key for key in extra.asked if not key.startswith(instruments)}
+    asked = {key for key in extra.keys_asked if not key.startswith(instruments)}
 
     spread = {"linear_drag.sway", "linear_drag.heave", "linear_drag.roll", "linear_drag.pitch"}
     assert asked == set(said_keys()) | spread

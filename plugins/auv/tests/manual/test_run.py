@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
-import socket
 from pathlib import Path
+
+from ports import free_port
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
 from mmrs_core.testing.conformance.missions import run_command
@@ -34,12 +35,6 @@ MISSION = """<?xml version="1.0" encoding="UTF-8"?>
   <acceptedUnknowns>clearance</acceptedUnknowns>
 </mission:Mission>
 """
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def test_a_mission_is_carried_out_without_any_position_and_its_log_is_accepted(tmp_path):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import signal
 import subprocess
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -228,6 +229,22 @@ def program(tmp_path_factory) -> Path:
     return made / "drives"
 
 
+@contextmanager
+def started(program, port):
+    """Start the program at a hub's port; end it if it does not end by itself."""
+    with subprocess.Popen([program, "127.0.0.1", str(port)], stderr=subprocess.PIPE) as drives:
+        try:
+            yield drives
+        finally:
+            drives.kill()
+
+
+def stop(drives):
+    """Tell the program to end, and return its exit code."""
+    drives.send_signal(signal.SIGTERM)
+    return drives.wait(10)
+
+
 def statuses(client, codec, wanted):
     """Hear until a status of the first thruster is as wanted; return it."""
     for _ in range(2000):
@@ -250,53 +267,37 @@ def say(client, frame):
 
 def test_the_program_is_a_node_of_the_bus(program):
     codec = Codec(sheet(2))
-    with running() as hub, Raw(hub.port) as client:
-        drives = subprocess.Popen([program, "127.0.0.1", str(hub.port)])
-        try:
-            statuses(client, codec, lambda status: status["Drive"] == "OFF")
-            for _ in range(3):
-                say(client, codec.encode("Thruster0Command", Thrust=12.5, Enable=True))
-            found = statuses(client, codec, lambda status: status["Drive"] == "RUNS")
-            assert (found["Thrust"], found["Power"] > 0.0) == (pytest.approx(12.5), True)
-            found = statuses(client, codec, lambda status: status["Drive"] == "WATCHDOG")
-            assert (found["Thrust"], found["Power"]) == (0.0, 0.0)
-            assert not codec.faults
-            drives.send_signal(signal.SIGTERM)
-            assert drives.wait(10) == 0
-        finally:
-            drives.kill()
-            drives.wait()
+    with running() as hub, Raw(hub.port) as client, started(program, hub.port) as drives:
+        statuses(client, codec, lambda status: status["Drive"] == "OFF")
+        for _ in range(3):
+            say(client, codec.encode("Thruster0Command", Thrust=12.5, Enable=True))
+        found = statuses(client, codec, lambda status: status["Drive"] == "RUNS")
+        assert (found["Thrust"], found["Power"] > 0.0) == (pytest.approx(12.5), True)
+        found = statuses(client, codec, lambda status: status["Drive"] == "WATCHDOG")
+        assert (found["Thrust"], found["Power"]) == (0.0, 0.0)
+        assert not codec.faults
+        assert stop(drives) == 0
 
 
 def test_the_program_ends_with_the_bus(program):
-    with running() as hub:
-        drives = subprocess.Popen([program, "127.0.0.1", str(hub.port)], stderr=subprocess.PIPE)
-        try:
-            with Raw(hub.port) as client:
-                statuses(client, Codec(sheet(2)), lambda status: True)
-            hub.stop()
-            _, said = drives.communicate(timeout=10)
-            assert (drives.returncode, said) == (
-                3, f"drives: the bus at 127.0.0.1, port {hub.port}, is gone\n".encode()
-            )  # fmt: skip
-        finally:
-            drives.kill()
+    with running() as hub, started(program, hub.port) as drives:
+        with Raw(hub.port) as client:
+            statuses(client, Codec(sheet(2)), lambda status: True)
+        hub.stop()
+        _, said = drives.communicate(timeout=10)
+        assert said == f"drives: the bus at 127.0.0.1, port {hub.port}, is gone\n".encode()
+        assert drives.returncode == 3
 
 
 def test_the_program_waits_for_the_hub_a_while(program):
     with running() as hub:
         port = hub.port
-    drives = subprocess.Popen([program, "127.0.0.1", str(port)])
-    try:
+    with started(program, port) as drives:
         with pytest.raises(subprocess.TimeoutExpired):
             drives.wait(0.3)
         with running(port=port), Raw(port) as client:
             statuses(client, Codec(sheet(2)), lambda status: True)
-            drives.send_signal(signal.SIGTERM)
-            assert drives.wait(10) == 0
-    finally:
-        drives.kill()
-        drives.wait()
+            assert stop(drives) == 0
 
 
 def test_the_program_says_that_there_is_no_hub(program):

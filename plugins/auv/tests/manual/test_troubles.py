@@ -1,0 +1,151 @@
+"""What goes wrong with a vehicle that is driven by hand is told, and nobody is driven on."""
+
+from __future__ import annotations
+
+import pytest
+from dives_by_hand import DEVICE_ACTION, sub
+from mmrs_auv.manual.autopilot import TOLD
+from patience import until
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.behaviour.program import Action
+from mmrs_core.flight.services.commands import command
+from mmrs_core.scene import Policy
+
+
+@pytest.mark.parametrize("number", TOLD)
+def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), -1.0)
+        until(lambda: driven.fault)
+        assert driven.fault.which == "POSITION_LOST"
+        here = driven.truth
+        driven.pass_by(5.0)
+        assert driven.truth == pytest.approx(here, abs=0.2)
+    assert not driven.vehicle.autopilot.armed
+
+
+def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        command(driven.backend._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
+        until(lambda: driven.fault or driven.backend.finished(driven.clock.now()))
+        assert driven.fault.which == "MOTORS_OFF"
+
+
+def test_a_vehicle_that_hears_no_sticks_any_more_stops():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        driven.backend._ended.set()
+        driven.backend._released = True
+        until(lambda: not driven.vehicle.autopilot.armed)
+        assert any("manual control" in text for _, _, text in driven.vehicle.autopilot.said)
+
+
+def test_who_takes_the_stick_has_the_vehicle():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        driven.vehicle.faults.take_stick("manual")
+        until(lambda: driven.fault is not None)
+        assert driven.fault.which == "TAKEN_OVER"
+        driven.stop("NOTHING")
+        assert driven.fault is None
+        assert driven.vehicle.autopilot.armed
+
+
+def test_a_link_that_is_lost_is_told():
+    with sub() as driven:
+        driven.begin("out")
+        driven.vehicle.mute()
+        until(lambda: driven.fault is not None)
+        assert driven.fault.which == "LINK_LOST"
+
+
+def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[0] > 1.0)
+        driven.vehicle.faults.fall_dumb()
+        until(lambda: driven.fault)
+        assert driven.backend.bear(driven.clock.now())
+        assert driven.fault is None
+        east = driven.truth[0]
+        driven.pass_by(5.0)
+        assert driven.truth[0] == pytest.approx(east, abs=0.2)
+        driven.vehicle.faults.speak()
+        until(lambda: driven.backend.reachable(driven.clock.now()))
+        driven.finish()
+        assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
+
+
+def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.vehicle.faults.set_battery(0.15)
+        until(lambda: driven.fault)
+        assert driven.fault.which == "BATTERY_LOW"
+        driven.stop("SURFACE")
+        assert driven.vehicle.autopilot.mode_name == "surface"
+        assert driven.truth[2] >= -0.4
+        assert not driven.undone
+        assert not driven.backend.watched(driven.clock.now())
+        assert "nobody knows where it is" in driven.backend.hindrance((), "out", driven.clock.now())
+
+
+def test_water_inside_brings_it_up():
+    with sub() as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.vehicle.autopilot.say(4, "Leak Detected")
+        until(lambda: driven.fault)
+        assert (driven.fault.which, driven.fault.instead) == ("CRASHED", "SURFACE")
+        driven.stop("SURFACE")
+        assert driven.truth[2] >= -0.4
+
+
+def test_what_a_policy_bears_for_a_while_is_told_after_that():
+    with sub(policies=(Policy("BATTERY_LOW", "SURFACE", 20.0),)) as driven:
+        driven.begin("out")
+        until(lambda: driven.truth[2] < -1.0)
+        driven.vehicle.faults.set_battery(0.15)
+        begun = driven.clock.now()
+        until(lambda: driven.fault)
+        assert driven.clock.now() - begun >= 19.0
+
+
+def test_an_autopilot_that_begins_anew_is_told_and_not_taken_for_a_pilot():
+    with sub() as driven:
+        driven.begin("out")
+        driven.pass_by(15.0)
+        driven.vehicle.faults.restart()
+        until(lambda: driven.fault and driven.fault.which == "VEHICLE_RESTARTED")
+        driven.stop("SURFACE")
+        assert "its motors are off" in driven.undone
+        assert not driven.vehicle.autopilot.armed
+
+
+def test_a_device_that_does_not_answer_is_told_while_the_vehicle_is_steered_on():
+    with sub() as driven:
+        driven.begin("out")
+        driven.finish()
+        driven.vehicle.faults.silence(mavlink.MAV_CMD_DO_SET_RELAY)
+        driven.backend.act(Action(DEVICE_ACTION, "on", "lamp"), driven.clock.now())
+        until(lambda: driven.fault)
+        assert driven.fault.which == "DEVICE_SILENT"
+        assert driven.vehicle.autopilot.armed
+        assert driven.backend.bear(driven.clock.now())
+        driven.finish()
+
+
+def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
+    with sub() as driven:
+        driven.begin("out")
+        driven.backend._late_at = driven.clock.now()
+        until(lambda: driven.fault)
+        assert (driven.fault.which, driven.fault.instead) == ("NO_PROGRESS", "SURFACE")
