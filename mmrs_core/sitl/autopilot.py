@@ -18,6 +18,7 @@ from mmrs_core.sitl import parameters
 from mmrs_core.sitl.battery import Battery
 from mmrs_core.sitl.body import Body, Vector, wind_of
 from mmrs_core.sitl.camera import Camera
+from mmrs_core.sitl.fences import Zone, zones_of
 from mmrs_core.sitl.gusts import Gusts
 from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
@@ -64,6 +65,7 @@ class Autopilot:
         home: latitude, longitude and metres above the sea. settled: whether somebody has told it its home.
         heard: when the ground station that it knows was last heard; None: never.
         steered: when the last set-points came, oldest first.
+        aimed: whether one was heeded since it went into its mode, or took off.
         sticks: of the pilot, where somebody has moved them.
     """
 
@@ -107,6 +109,7 @@ class Autopilot:
         self.crumbs: list[Vector] = [(0.0, 0.0, 0.0)]
         self.heard: float | None = None
         self.steered: list[float] = []
+        self.aimed = False
         self.sticks: Sticks | None = None
         self.grounded_since = self.time
         self.home = self._here()
@@ -192,6 +195,11 @@ class Autopilot:
             return (*self.body.position[:2], up)
         return self.local(item.x * 1e-7, item.y * 1e-7, up)
 
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """Return the polygons and circles of its fence."""
+        return zones_of([(item, self.place_of(item)[:2]) for item in self.stores[FENCE]])
+
     def set_mode(self, number: int) -> int:
         """Change the mode; return a MAV_RESULT."""
         name = next((name for name, its in self.numbers.items() if its == number), None)
@@ -203,8 +211,8 @@ class Autopilot:
             self._take_up_mission(name)
         self.mode, self.mode_name = number, name
         self.body.target = self.body.onward = self.body.origin = None
-        self.body.speed = self._usual_speed()
-        self.body.adrift = False
+        self.body.speed = self.usual_speed()
+        self.body.adrift = self.aimed = False
         self.held, self.returning = 0.0, []
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
@@ -274,7 +282,8 @@ class Autopilot:
             self.item, self.finished = self.first_item, False
             self.loops.clear()
 
-    def _usual_speed(self) -> float:
+    def usual_speed(self) -> float:
+        """Return the metres per second at which it goes unless it is told another speed."""
         for name, part in (("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0)):
             if name in self.parameters:
                 return self.parameters[name] * part

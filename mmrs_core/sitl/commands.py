@@ -20,6 +20,7 @@ FAILED = int(mavlink.MAV_RESULT_FAILED)
 UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 
 FORCE_DISARM = 21_196
+ON_ITS_WAY = frozenset({"auto", "return", "smart_return"})
 DEVICES = frozenset(
     {181, 182, 183, 184, 203, 204, 205, 206, 211, 530, 531, 1000, 1001, 2000, 2001, 2500, 2501, 42600}
 )
@@ -40,9 +41,15 @@ def obey(pilot: Autopilot, number: int, params: Params) -> int:
 
 
 def steer(pilot: Autopilot, target: Vector, heading: float | None) -> None:
-    """Go to a position, if in a mode that is steered and, for what flies, in the air."""
+    """Go to a position, if in a mode that is steered and, for what flies, in the air.
+
+    With the first position ArduCopter's GUIDED goes back to its usual speed.
+    """
     pilot.steered = [*pilot.steered[-20:], pilot.time]
     if pilot.mode_name == "guided" and pilot.armed and (pilot.airborne or not pilot.flies):
+        if not pilot.aimed and pilot.settings.firmware != PX4 and pilot.flies:
+            pilot.body.speed = pilot.usual_speed()
+        pilot.aimed = True
         pilot.body.target, pilot.body.onward, pilot.body.origin = target, None, None
         if heading is not None:
             pilot.body.wanted_heading = heading
@@ -85,6 +92,7 @@ def _take_off(pilot: Autopilot, params: Params) -> int:
         pilot.enter("take_off")
     elif pilot.mode_name != "guided":
         return FAILED
+    pilot.aimed = False
     pilot.body.target = (*pilot.body.position[:2], height)
     return ACCEPTED
 
@@ -102,12 +110,19 @@ def _return(pilot: Autopilot, params: Params) -> int:
 def _speed(pilot: Autopilot, params: Params) -> int:
     if params[1] <= 0.0:
         return DENIED
+    if pilot.settings.kind == "rover" and not _heeds_speeds(pilot):
+        return FAILED
     if params[0] in (2.0, 3.0):
         pilot.body.climb = params[1] if params[0] == 2.0 else pilot.body.climb
         pilot.body.descent = params[1] if params[0] == 3.0 else pilot.body.descent
     else:
         pilot.body.speed = params[1]
     return ACCEPTED
+
+
+def _heeds_speeds(pilot: Autopilot) -> bool:
+    """Return whether a rover goes anywhere by itself; in GUIDED it does not before it has a target."""
+    return pilot.aimed if pilot.mode_name == "guided" else pilot.mode_name in ON_ITS_WAY
 
 
 def _yaw(pilot: Autopilot, params: Params) -> int:

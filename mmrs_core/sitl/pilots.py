@@ -21,6 +21,8 @@ LEAST_DESCENT = 1.0
 """Slowest descent, metres per second: as slow as a real one would only make rehearsals longer."""
 
 GROUND = 0.05
+OTHER_THAN_HOME = 1
+"""RTL_TYPE by which a PX4 goes to a rally point rather than home."""
 
 
 def decide(pilot: Autopilot, seconds: float) -> None:
@@ -48,7 +50,12 @@ def _hold(pilot: Autopilot, seconds: float) -> None:
 
 
 def _guided(pilot: Autopilot, seconds: float) -> None:
-    """Go where commands say; PX4 stops to when they no longer come."""
+    """Go where commands say; a rover stops as soon as it is within WP_RADIUS of that."""
+    target = pilot.body.target
+    if target is None or pilot.settings.kind != "rover":
+        return
+    if _aside(target, pilot.body.position) <= pilot.parameters["WP_RADIUS"]:
+        pilot.body.target = None
 
 
 def _take_off(pilot: Autopilot, seconds: float) -> None:
@@ -100,16 +107,14 @@ def face(pilot: Autopilot, place: Vector) -> None:
 
 
 def _haven(pilot: Autopilot) -> Vector:
-    """Return the nearest of home and the rally points, which ArduPilot goes back to."""
+    """Return where it goes back to: the nearest of home and the rally points, as its parameters have it."""
     latitude, longitude, altitude = pilot.home
     home = pilot.local(latitude, longitude, altitude - pilot.settings.altitude)
-    if pilot.settings.firmware == PX4:
-        return home
     here = pilot.body.position
-    limit = pilot.parameters["RALLY_LIMIT_KM"] * 1000.0
+    limit = pilot.parameters.get("RALLY_LIMIT_KM", 0.0) * 1000.0
     points = [pilot.place_of(item) for item in pilot.stores[RALLY]]
     points = [point for point in points if not limit or _aside(point, here) <= limit]
-    if pilot.parameters["RALLY_INCL_HOME"] or not points:
+    if pilot.parameters.get("RALLY_INCL_HOME", pilot.parameters.get("RTL_TYPE") != OTHER_THAN_HOME) or not points:
         points.append(home)
     nearest = min(points, key=lambda point: _aside(point, here))
     return (nearest[0], nearest[1], home[2])

@@ -26,6 +26,9 @@ ARM_TRIES = 3
 WORDS_SECONDS = 0.5
 """After which a vehicle that refuses has said why."""
 
+PACE_TELLINGS = 3
+"""Behind how many targets a speed is told: all of them are hardly ever lost."""
+
 AFRESH_SECONDS = 3.0
 """After which at least one new heartbeat should have come, even over a poor link."""
 
@@ -50,6 +53,7 @@ class Helm:
         self._accepted: frozenset[int] = frozenset()
         self._mode: str | None = None
         self._speed: float | None = None
+        self._told = 0
         self._habits: Habits | None = None
         self._requests = Requests(link)
         self._asked_again = -inf
@@ -275,10 +279,29 @@ class Helm:
         return True
 
     def pace(self, speed: float | None) -> None:
-        """Go at a speed in metres per second from now on; None: as before."""
-        if speed is not None and speed != self._speed and self.habits.paces():
+        """Go at a speed in metres per second to the target that was just sent and on; None: as before.
+
+        With the first target that it hears in a mode, or after a take-off, an ArduCopter goes back to its
+        usual speed (``ModeGuided::pva_control_start``), and a Rover heeds no speed before one
+        (``ModeGuided::set_desired_speed``). As any target may be lost, the speed is told behind several.
+
+        Raises:
+            Refused: the vehicle takes no such speed.
+        """
+        if speed is None or not self.habits.paces():
+            return
+        if speed != self._speed:
+            self._speed, self._told = speed, 0
+        if self._told == PACE_TELLINGS:
+            return
+        self._told += 1
+        try:
             command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
-            self._speed = speed
+        except Unanswered:
+            raise
+        except Refused:
+            if self._told == PACE_TELLINGS:
+                raise
 
     def _be_in(self, mode: str) -> None:
         """Be in a mode, whatever anybody has chosen while nobody here cared."""

@@ -75,7 +75,9 @@ class MavlinkVehicle:
         self._telemetry = Telemetry(link, home)
         self._helm = Helm(link, self._telemetry, kind)
         self._acceptance = travel.acceptance if acceptance is None else acceptance
-        self._steering = Steering(link, self._telemetry, self._helm, self._acceptance)
+        self._steering = Steering(
+            link, self._telemetry, self._helm, self._acceptance, grounded=kind == "rover"
+        )
         self._travel = travel
         self._kind = kind
         self._home = home
@@ -107,7 +109,7 @@ class MavlinkVehicle:
             self._tell(changed)
         for line in safeguards.report(self._link, self._kind):
             self._tell(line)
-        for line in set_up(self._link, self._kind, self._travel):
+        for line in set_up(self._link, self._kind, self._travel, self._acceptance):
             self._tell(line)
         preparation.await_ready(self._link, self._telemetry)
         if fenced:

@@ -11,6 +11,7 @@ from ..links.link import Link
 from ..places import bearing, distance, offset
 from ..program import Geographic, Local, Look, Object, Place
 from ..services.commands import command, command_at
+from .footing import aside
 from .helm import Helm
 from .telemetry import Telemetry
 
@@ -26,12 +27,23 @@ ABREAST_METRES = 0.1
 class Steering:
     """Steers a vehicle by position targets, which are sent again until it is there."""
 
-    def __init__(self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float) -> None:
-        """Steer a vehicle by the habits of its helm; places within `acceptance` metres count as reached."""
+    def __init__(
+        self, link: Link, telemetry: Telemetry, helm: Helm, acceptance: float, *, grounded: bool = False
+    ) -> None:
+        """Steer a vehicle by the habits of its helm.
+
+        Args:
+            link: to the vehicle.
+            telemetry: of the vehicle.
+            helm: of the vehicle.
+            acceptance: metres from a place at which it counts as reached.
+            grounded: whether it is as high as the ground takes it, so that heights say nothing.
+        """
         self._link = link
         self._telemetry = telemetry
         self._helm = helm
         self._acceptance = acceptance
+        self._away = aside if grounded else distance
         self._yaw: float | None = None
         self._speed: float | None = None
 
@@ -42,7 +54,6 @@ class Steering:
             Fault: it does not get there.
         """
         self._helm.arm()
-        self._helm.pace(speed)
         self._speed = speed
         self._point(look)
         begun = self._telemetry.here()
@@ -50,6 +61,7 @@ class Steering:
         limit = self._link.clock.now() + PATIENCE_SECONDS + PATIENCE_FACTOR * way / max(0.2, speed or 1.0)
         while True:
             self._steer(place, look)
+            self._helm.pace(speed)
             if look is not None and isinstance(look.at, Local):
                 self._point(look)
             if self._link.wait(lambda: self._arrived(place, begun if through else None), RESEND_SECONDS):
@@ -58,7 +70,7 @@ class Steering:
             limit += RESEND_SECONDS if self._link.unheard() else 0.0
             if self._link.clock.now() > limit:
                 raise Fault(
-                    NO_PROGRESS, f"still {distance(self._telemetry.here(), place):.1f} m from {place}"
+                    NO_PROGRESS, f"still {self._away(self._telemetry.here(), place):.1f} m from {place}"
                 )
         self._unpoint(look)
 
@@ -133,7 +145,7 @@ class Steering:
     def _arrived(self, place: Place, begun: Place | None) -> bool:
         """Return whether the vehicle is there, and still; or, on a leg to be gone through, abreast of it."""
         here = self._telemetry.here()
-        away = distance(here, place)
+        away = self._away(here, place)
         if away > self._acceptance:
             return False
         if self._telemetry.speed() <= STILL:

@@ -2,15 +2,17 @@
 
 The places of a mission count as passed within a radius (WPNAV_RADIUS in centimetres, WP_RADIUS_M
 since ArduPilot 4.7, Rover's WP_RADIUS, PX4's NAV_ACC_RAD): it is made smaller where the mode asks for
-that. What the vehicle perceives itself it keeps away from by AVOID_MARGIN, and where it also plans its
-own way round by OA_MARGIN_MAX: these are made larger. Whether it avoids anything at all
-(AVOID_ENABLE, OA_TYPE) is its owner's business, since a vehicle that leaves its way leaves what was
-checked.
+that. A Rover stops as soon as it is within that radius of where it is steered, so that it is never more
+than what counts as there. What the vehicle perceives itself it keeps away from by AVOID_MARGIN, and
+where it also plans its own way round by OA_MARGIN_MAX: these are made larger. Whether it avoids anything
+at all (AVOID_ENABLE, OA_TYPE) is its owner's business, since a vehicle that leaves its way leaves what
+was checked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import inf
 
 from ..links.autopilots import is_px4
 from ..links.link import Link
@@ -30,13 +32,21 @@ PX4_RADIUS = "NAV_ACC_RAD"
 MARGINS = ("AVOID_MARGIN", "OA_MARGIN_MAX")
 
 
-def set_up(link: Link, kind: str, travel: Travel) -> Iterator[str]:
-    """Set a vehicle up for a way of travelling; yield what was changed, and what was not confirmed."""
+def set_up(link: Link, kind: str, travel: Travel, acceptance: float = inf) -> Iterator[str]:
+    """Set a vehicle up for a way of travelling; yield what was changed, and what was not confirmed.
+
+    Args:
+        link: to the vehicle.
+        kind: ``copter``, ``sub`` or ``rover``.
+        travel: how carefully it is to go.
+        acceptance: metres from a place at which it counts as reached.
+    """
+    radius = min(travel.radius, acceptance) if kind == "rover" else travel.radius
     radii = {PX4_RADIUS: 1.0} if is_px4(link) else RADII[kind]
     margins = () if is_px4(link) else MARGINS
     found = parameters.read(link, [*radii, *margins])
     for name, value in found.items():
-        if name in radii and value > (wanted := travel.radius * radii[name]):
+        if name in radii and value > (wanted := radius * radii[name]):
             yield _changed(link, name, value, wanted, travel)
         elif name in margins and value < travel.margin:
             yield _changed(link, name, value, travel.margin, travel)

@@ -11,6 +11,7 @@ from mmrs_core.flight.vehicles.mavlink_vehicle import MavlinkVehicle
 
 ROI, ROI_NONE, GIMBAL, SPEED = 195, 197, 1000, 178
 RELATIVE = 3
+TARGETS = ("SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED")
 HOME = Geographic(42.37, 13.35, 0.0)
 
 
@@ -85,12 +86,17 @@ def test_a_gimbal_is_turned_to_a_place_near_home_by_its_angles(driven):
     assert (sent.param5, sent.param7) == (mavlink.GIMBAL_MANAGER_FLAGS_YAW_LOCK, 3.0)
 
 
-def test_a_speed_is_commanded_once(driven):
+def test_a_speed_is_commanded_behind_three_targets_and_then_no_more(driven):
     vehicle, wire = driven(HOME, on_the_earth())
-    for latitude in (42.3705, 42.371):
+    for latitude in (42.3705, 42.371, 42.3715, 42.372):
         vehicle.go_to(Geographic(latitude, 13.35, 20.0), 5.0, None, False)
-    (sent,) = commands(wire, SPEED)
-    assert (sent.param1, sent.param2, sent.param3) == (1.0, 5.0, -1.0)
+    sent = commands(wire, SPEED)
+    assert {(each.param1, each.param2, each.param3) for each in sent} == {(1.0, 5.0, -1.0)}
+    assert len(sent) == 3
+    names = [
+        message.get_type() for message, _ in wire.sent if message.get_type() in TARGETS or message in sent
+    ]
+    assert names[0] in TARGETS
 
 
 def test_targets_are_heights_above_home_and_the_vehicle_looks_where_it_goes(driven):

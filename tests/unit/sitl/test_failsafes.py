@@ -16,7 +16,9 @@ def out(place=(30.0, 0.0, 12.0), **settings) -> Bench:
         bench.mode("guided")
         bench.command(400, 1)
     steer(bench.pilot, place, None)
-    assert bench.wait_for(lambda: bench.pilot.body.distance_to(place) < 0.1)
+    assert bench.wait_for(
+        lambda: bench.pilot.body.distance_to(place) < bench.pilot.parameters.get("WP_RADIUS", 0.1)
+    )
     return bench
 
 
