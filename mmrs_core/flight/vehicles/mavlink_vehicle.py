@@ -24,6 +24,7 @@ from ..services.uploads import Uploads
 from . import modes, preparation, safeguards
 from .enclosure import enclose
 from .evidence import LinkEvidence
+from .exemptions import end_exemption
 from .helm import MODE_SECONDS, Helm
 from .listening import check_listening
 from .mission import Mission
@@ -130,8 +131,9 @@ class MavlinkVehicle:
             Refused: it cannot respond so, does not say that it will, or does not listen to this program.
         """
         if response != "CONTINUE" and not self._listens:
-            if unknown := check_listening(self._link):
-                self._tell(unknown)
+            for said in (check_listening(self._link), end_exemption(self._link, self._kind)):
+                if said:
+                    self._tell(said)
             self._listens = True
         told = modes.lost_link_answers(self._link, self._kind).get(response, {})
         alone = modes.alone(self._link, self._kind, told)
