@@ -18,7 +18,6 @@ from mmrs_core.sitl import parameters
 from mmrs_core.sitl.battery import Battery
 from mmrs_core.sitl.body import Body, Vector, wind_of
 from mmrs_core.sitl.camera import Camera
-from mmrs_core.sitl.fences import Zone, zones_of
 from mmrs_core.sitl.gusts import Gusts
 from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
@@ -194,11 +193,6 @@ class Autopilot:
         if not (item.x or item.y):
             return (*self.body.position[:2], up)
         return self.local(item.x * 1e-7, item.y * 1e-7, up)
-
-    @property
-    def zones(self) -> tuple[Zone, ...]:
-        """Return the polygons and circles of its fence."""
-        return zones_of([(item, self.place_of(item)[:2]) for item in self.stores[FENCE]])
 
     def set_mode(self, number: int) -> int:
         """Change the mode; return a MAV_RESULT."""

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mmrs_core.sitl import px4_failsafes
 from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.fences import Zone, zones_of
-from mmrs_core.sitl.items import FENCE
+from mmrs_core.sitl.fences import fence_of
 from mmrs_core.sitl.modes import BLIND
 from mmrs_core.sitl.settings import PX4
 
@@ -56,21 +56,13 @@ ON_BREACH: Answers = {
     4: ("brake", "land"),
     5: ("smart_return", "land", "brake"),
 }
-ON_PX4: Answers = {1: ("loiter",), 2: ("return", "land"), 3: ("land",), 5: (DISARM,), 6: (DISARM,)}
-"""What NAV_DLL_ACT, GF_ACTION and, with its own numbers, COM_LOW_BAT_ACT mean."""
-
-OFFBOARD_LOST: Answers = {
-    0: ("poshold",),
-    1: ("alt_hold",),
-    2: ("manual",),
-    3: ("return", "land"),
-    4: ("land",),
-    5: ("loiter",),
-}
 
 
 def watch(pilot: Autopilot, seconds: float) -> None:
     """Look for what is wrong, and answer it once."""
+    if pilot.settings.firmware == PX4:
+        px4_failsafes.watch(pilot, seconds)
+        return
     _watch_position(pilot, seconds)
     _watch_fence(pilot)
     if not pilot.armed:
@@ -78,8 +70,6 @@ def watch(pilot: Autopilot, seconds: float) -> None:
         return
     _watch_link(pilot)
     _watch_battery(pilot)
-    if pilot.settings.firmware == PX4:
-        _watch_stream(pilot)
 
 
 def _watch_position(pilot: Autopilot, seconds: float) -> None:
@@ -91,24 +81,21 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
     if not pilot.armed or pilot.mode_name in BLIND or lost <= EKF_SECONDS or "ekf" in pilot.failed:
         return
     pilot.failed["ekf"] = pilot.time
-    px4 = pilot.settings.firmware == PX4
-    action = 1.0 if px4 else pilot.parameters["FS_EKF_ACTION"]
+    action = pilot.parameters["FS_EKF_ACTION"]
     if action:
-        names = ("alt_hold",) if action == 2.0 or px4 else ("land", "surface", "brake", "manual")
+        names = ("alt_hold",) if action == 2.0 else ("land", "surface", "brake", "manual")
         pilot.enter(*names)
         pilot.say(CRITICAL, f"EKF Failsafe: changed to {pilot.mode_name.upper()} Mode")
 
 
 def _watch_link(pilot: Autopilot) -> None:
-    px4 = pilot.settings.firmware == PX4
     if pilot.heard is None:
         return
-    limit = pilot.parameters["COM_DL_LOSS_T" if px4 else "FS_GCS_TIMEOUT"]
-    if pilot.time - pilot.heard < max(limit, pilot.patience):
+    if pilot.time - pilot.heard < max(pilot.parameters["FS_GCS_TIMEOUT"], pilot.patience):
         if pilot.failed.pop("gcs", None) is not None:
             pilot.say(WARNING, "GCS Failsafe Cleared")
         return
-    enabled = pilot.parameters["NAV_DLL_ACT" if px4 else "FS_GCS_ENABLE"]
+    enabled = pilot.parameters["FS_GCS_ENABLE"]
     if not enabled or "gcs" in pilot.failed:
         return
     pilot.failed["gcs"] = pilot.time
@@ -117,8 +104,6 @@ def _watch_link(pilot: Autopilot) -> None:
 
 
 def _on_silence(pilot: Autopilot, enabled: int) -> tuple[str, ...]:
-    if pilot.settings.firmware == PX4:
-        return ON_PX4.get(enabled, ())
     if pilot.settings.kind == "rover":
         if enabled == 2 and pilot.mode_name == "auto":
             return ()
@@ -128,9 +113,6 @@ def _on_silence(pilot: Autopilot, enabled: int) -> tuple[str, ...]:
 
 def _watch_battery(pilot: Autopilot) -> None:
     if not pilot.settings.tells_battery:
-        return
-    if pilot.settings.firmware == PX4:
-        _watch_px4_battery(pilot)
         return
     for name, action in (("CRT", "BATT_FS_CRT_ACT"), ("LOW", "BATT_FS_LOW_ACT")):
         volts, reserve = pilot.parameters[f"BATT_{name}_VOLT"], pilot.parameters[f"BATT_{name}_MAH"]
@@ -147,40 +129,8 @@ def _watch_battery(pilot: Autopilot) -> None:
             _answer(pilot, ON_BATTERY.get(int(pilot.parameters[action]), ()))
 
 
-def _watch_px4_battery(pilot: Autopilot) -> None:
-    action = int(pilot.parameters["COM_LOW_BAT_ACT"])
-    for name, level, answer in (
-        ("BAT_LOW_THR", 0, ()),
-        ("BAT_CRIT_THR", 2, ("land",)),
-        ("BAT_CRIT_THR", 3, ("return", "land")),
-        ("BAT_EMERGEN_THR", 3, ("land",)),
-    ):
-        if pilot.battery.level < pilot.parameters[name] and level in (0, action):
-            key = f"{name} {level}"
-            if key not in pilot.failed:
-                pilot.failed[key] = pilot.time
-                pilot.say(CRITICAL, f"{name.split('_')[1].title()} battery level")
-                _answer(pilot, answer)
-
-
-def _watch_stream(pilot: Autopilot) -> None:
-    """PX4 leaves offboard where set-points stay away, by COM_OBL_RC_ACT after COM_OF_LOSS_T."""
-    if pilot.mode_name != "guided" or not pilot.steered:
-        return
-    limit = max(OFFBOARD_GAP, pilot.patience)
-    gap = pilot.time - pilot.steered[-1]
-    if gap > limit:
-        pilot.body.target = None
-    if gap > limit + pilot.parameters["COM_OF_LOSS_T"]:
-        pilot.say(CRITICAL, "Offboard control lost")
-        pilot.enter(*OFFBOARD_LOST.get(int(pilot.parameters["COM_OBL_RC_ACT"]), ("loiter",)), "loiter")
-
-
-OFFBOARD_GAP = 0.5
-
-
 def _watch_fence(pilot: Autopilot) -> None:
-    if pilot.settings.firmware == PX4 or pilot.time < pilot.fence_due:
+    if pilot.time < pilot.fence_due:
         return
     pilot.fence_due = pilot.time + FENCE_SECONDS
     outside = bool(pilot.parameters["FENCE_ENABLE"]) and pilot.located and outside_fence(pilot)
@@ -191,13 +141,14 @@ def _watch_fence(pilot: Autopilot) -> None:
 
 
 def breach(pilot: Autopilot) -> None:
-    """Be out of the fence, say so, and do what FENCE_ACTION says."""
+    """Be out of the fence, say so, and do what FENCE_ACTION, or a PX4's GF_ACTION, says."""
+    if pilot.settings.firmware == PX4:
+        px4_failsafes.breach(pilot)
+        return
     pilot.breached = True
     pilot.breaches += 1
     pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
-    if pilot.settings.firmware == PX4:
-        _answer(pilot, ON_PX4.get(int(pilot.parameters["GF_ACTION"]), ()))
-    elif pilot.armed and pilot.parameters["FENCE_ENABLE"]:
+    if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
         _answer(pilot, ON_BREACH.get(int(pilot.parameters["FENCE_ACTION"]), ()))
 
 
@@ -209,11 +160,7 @@ def outside_fence(pilot: Autopilot) -> bool:
         return True
     if heeded & 2 and (north**2 + east**2) ** 0.5 > pilot.parameters["FENCE_RADIUS"]:
         return True
-    return bool(heeded & 4) and not all(zone.allows((north, east)) for zone in _zones(pilot))
-
-
-def _zones(pilot: Autopilot) -> tuple[Zone, ...]:
-    return zones_of([(item, pilot.place_of(item)[:2]) for item in pilot.stores[FENCE]])
+    return bool(heeded & 4) and not all(zone.allows((north, east)) for zone in fence_of(pilot))
 
 
 def _answer(pilot: Autopilot, names: tuple[str, ...]) -> None:

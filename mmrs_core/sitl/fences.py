@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl.items import FENCE
+
+if TYPE_CHECKING:
+    from mmrs_core.sitl.autopilot import Autopilot
 
 Point = tuple[float, float]
 
@@ -52,6 +57,11 @@ class Zone:
             return hypot(place[0] - self.points[0][0], place[1] - self.points[0][1]) <= self.radius
         crossings = sum(_crosses(place, a, b) for a, b in _edges(self.points))
         return crossings % 2 == 1
+
+
+def fence_of(pilot: Autopilot) -> tuple[Zone, ...]:
+    """Return the zones of the fence that a vehicle has."""
+    return zones_of([(item, pilot.place_of(item)[:2]) for item in pilot.stores[FENCE]])
 
 
 def zones_of(items: Sequence[tuple[Vertex, Point]]) -> tuple[Zone, ...]:

@@ -109,6 +109,8 @@ _PX4: Mapping[str, float] = {
     "GF_MAX_VER_DIST": 0.0,
     "COM_OF_LOSS_T": 1.0,
     "COM_OBL_RC_ACT": 0,
+    "COM_FAIL_ACT_T": 5.0,
+    "COM_TAKEOFF_ACT": 0,
     "COM_RCL_EXCEPT": 0,
     "COM_RC_IN_MODE": 1,
     "COM_DISARM_PRFLT": 10.0,

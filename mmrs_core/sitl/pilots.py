@@ -10,7 +10,6 @@ from mmrs_core.sitl.body import Vector
 from mmrs_core.sitl.items import RALLY
 from mmrs_core.sitl.missions import fly_mission
 from mmrs_core.sitl.modes import MANUAL
-from mmrs_core.sitl.settings import PX4
 from mmrs_core.sitl.sticks import go_by_hand
 
 NEAR, CLIMBED = 1.0, 0.3
@@ -61,7 +60,7 @@ def _guided(pilot: Autopilot, seconds: float) -> None:
 def _take_off(pilot: Autopilot, seconds: float) -> None:
     target = pilot.body.target
     if target is not None and pilot.body.distance_to(target) < CLIMBED:
-        pilot.enter("loiter")
+        pilot.enter(*(("auto",) if pilot.parameters["COM_TAKEOFF_ACT"] == 1 else ()), "loiter")
 
 
 def _land(pilot: Autopilot, seconds: float) -> None:
@@ -114,7 +113,8 @@ def _haven(pilot: Autopilot) -> Vector:
     limit = pilot.parameters.get("RALLY_LIMIT_KM", 0.0) * 1000.0
     points = [pilot.place_of(item) for item in pilot.stores[RALLY]]
     points = [point for point in points if not limit or _aside(point, here) <= limit]
-    if pilot.parameters.get("RALLY_INCL_HOME", pilot.parameters.get("RTL_TYPE") != OTHER_THAN_HOME) or not points:
+    elsewhere = pilot.parameters.get("RTL_TYPE") == OTHER_THAN_HOME
+    if pilot.parameters.get("RALLY_INCL_HOME", not elsewhere) or not points:
         points.append(home)
     nearest = min(points, key=lambda point: _aside(point, here))
     return (nearest[0], nearest[1], home[2])

@@ -13,6 +13,7 @@ from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.camera import Photo
 from mmrs_core.sitl.commands import complaint
 from mmrs_core.sitl.items import MISSION
+from mmrs_core.sitl.px4_failsafes import FAILSAFE
 from mmrs_core.sitl.settings import PX4, Settings
 
 Message = Any
@@ -53,12 +54,13 @@ def heartbeat(pilot: Autopilot) -> Message:
     """Return kind, mode, and whether it is armed."""
     px4 = pilot.settings.firmware == PX4
     armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED if pilot.armed else 0
+    active = mavlink.MAV_STATE_CRITICAL if FAILSAFE in pilot.failed else mavlink.MAV_STATE_ACTIVE
     return mavlink.MAVLink_heartbeat_message(
         TYPES[pilot.settings.kind],
         mavlink.MAV_AUTOPILOT_PX4 if px4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
         mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | armed,
         pilot.mode,
-        mavlink.MAV_STATE_ACTIVE if pilot.armed else mavlink.MAV_STATE_STANDBY,
+        active if pilot.armed else mavlink.MAV_STATE_STANDBY,
         3,
     )
 
@@ -101,9 +103,13 @@ def local_position(pilot: Autopilot) -> Message | None:
 
 
 def global_target(pilot: Autopilot) -> Message | None:
-    """Return the place on Earth that it steers to; None where it steers to none."""
+    """Return the place on Earth that it steers to; None where it steers to none.
+
+    A PX4 tells that of its own modes only, and nothing in OFFBOARD (``POSITION_TARGET_GLOBAL_INT.hpp``).
+    """
     target = pilot.body.target
-    if target is None or pilot.mode_name not in STEERED:
+    offboard = pilot.settings.firmware == PX4 and pilot.mode_name == "guided"
+    if target is None or offboard or pilot.mode_name not in STEERED:
         return None
     latitude, longitude = pilot.degrees_at(target)
     return mavlink.MAVLink_position_target_global_int_message(
@@ -149,7 +155,7 @@ def hud(pilot: Autopilot) -> Message:
 
 def mission_current(pilot: Autopilot) -> Message:
     """Return the item that it is at, or flies to."""
-    total = max(0, len(pilot.stores[MISSION]) - 1)
+    total = max(0, len(pilot.stores[MISSION]) - pilot.first_item)
     state = 4 if pilot.finished else 3 if pilot.mode_name == "auto" else 2
     return mavlink.MAVLink_mission_current_message(pilot.told_item, total, state if total else 1)
 
@@ -358,7 +364,7 @@ NUMBERS: Mapping[int, str] = {getattr(mavlink, f"MAVLINK_MSG_ID_{name}"): name f
 ON_REQUEST = frozenset({"AUTOPILOT_VERSION", "POSITION_TARGET_GLOBAL_INT", "POSITION_TARGET_LOCAL_NED"})
 SLOW = {"HEARTBEAT": 1.0, "SYSTEM_TIME": 1.0, "BATTERY_STATUS": 1.0, "HOME_POSITION": 0.5}
 FIRMWARE = {
-    PX4: frozenset({"EKF_STATUS_REPORT", "WIND"}),
+    PX4: frozenset({"EKF_STATUS_REPORT", "WIND", "FENCE_STATUS"}),
     "ardupilot": frozenset({"ESTIMATOR_STATUS", "WIND_COV"}),
 }
 """Messages that a firmware does not have."""

@@ -19,11 +19,18 @@ ABOUT_BATTERIES = (
     "critical battery",
     "battery level",
 )
+ABOUT_LINKS = (
+    "gcs failsafe",
+    "gcs connection lost",
+    "gcs connection regained",
+    "connection to ground station lost",
+    "data link lost",
+)
 WORDS = (
     (POSITION_LOST, ("ekf failsafe", "gps failsafe", "position lost", "no valid position", "no position")),
     (FENCE_BREACHED, ("fence breach", "geofence")),
     (BATTERY_LOW, ABOUT_BATTERIES),
-    (LINK_LOST, ("gcs failsafe", "gcs connection lost", "data link lost")),
+    (LINK_LOST, ABOUT_LINKS),
 )
 """What ArduPilot and PX4 say when they answer something by themselves, in small letters."""
 

@@ -224,10 +224,26 @@ ALONE: Mapping[str, tuple[str, Mapping[int, frozenset[int]]]] = {
 With what it does where the first of them is not possible; in other modes it stays as it is, or disarms.
 """
 
-PX4_ALONE: tuple[str, Mapping[int, tuple[tuple[int, int], ...]]] = (
-    "NAV_DLL_ACT",
-    {1: ((4, 3),), 2: ((4, 5), (4, 6)), 3: ((4, 6),)},
-)
+PX4_ON_SILENCE, PX4_ON_STILLNESS = "NAV_DLL_ACT", "COM_OBL_RC_ACT"
+"""What a PX4 does when it hears no ground station, and, in OFFBOARD, when set-points stay away."""
+
+PX4_RETURNS_TO = "RTL_TYPE"
+"""Whether a PX4 returns to home or a rally point (0 at first), or to a rally point rather than home (1)."""
+
+PX4_HOLDS, PX4_RETURNS, PX4_LANDS = (4, 3), (4, 5), (4, 6)
+PX4_ALONE: Mapping[str, Mapping[int, tuple[tuple[int, int], ...]]] = {
+    PX4_ON_SILENCE: {
+        1: (PX4_HOLDS,),
+        2: (PX4_HOLDS, PX4_RETURNS, PX4_LANDS),
+        3: (PX4_HOLDS, PX4_LANDS),
+    },
+    PX4_ON_STILLNESS: {3: (PX4_RETURNS, PX4_LANDS), 4: (PX4_LANDS,), 5: (PX4_HOLDS,)},
+}
+"""Modes into which a PX4 goes then, by parameter and value, with those where the first is not possible.
+
+Before it returns or lands since it hears no station it holds for COM_FAIL_ACT_T, five seconds at first
+(``failsafe/framework.cpp``, ``getSelectedAction``); when set-points stay away it does so at once.
+"""
 
 BREACH: Mapping[str, Answers] = {
     "copter": {
@@ -249,26 +265,38 @@ BREACH: Mapping[str, Answers] = {
 """What an ArduPilot does by itself when it breaks its fence."""
 
 PX4_LINK_LOST: Answers = {
-    "CONTINUE": {"NAV_DLL_ACT": 0},
-    "HOLD": {"NAV_DLL_ACT": 1},
-    "RETURN": {"NAV_DLL_ACT": 2},
-    "EMERGENCY_AREA": {"NAV_DLL_ACT": 2},
-    "LAND": {"NAV_DLL_ACT": 3},
-    "STOP_THRUST": {"NAV_DLL_ACT": 6},
+    "CONTINUE": {PX4_ON_STILLNESS: 5, PX4_ON_SILENCE: 0},
+    "HOLD": {PX4_ON_STILLNESS: 5, PX4_ON_SILENCE: 1},
+    "RETURN": {PX4_ON_STILLNESS: 3, PX4_ON_SILENCE: 2},
+    "EMERGENCY_AREA": {PX4_RETURNS_TO: 1, PX4_ON_STILLNESS: 3, PX4_ON_SILENCE: 2},
+    "LAND": {PX4_ON_STILLNESS: 4, PX4_ON_SILENCE: 3},
+    "STOP_THRUST": {PX4_ON_STILLNESS: 7, PX4_ON_SILENCE: 6},
 }
+"""A PX4 in OFFBOARD misses set-points before it misses heartbeats, and does then what it was told for that:
+at first, to let the pilot have it. It cannot go on without set-points: where it is to, it holds.
+"""
+
 PX4_BREACH: Answers = {
     "CONTINUE": {"GF_ACTION": 1},
     "HOLD": {"GF_ACTION": 2},
     "RETURN": {"GF_ACTION": 3},
-    "EMERGENCY_AREA": {"GF_ACTION": 3},
+    "EMERGENCY_AREA": {PX4_RETURNS_TO: 1, "GF_ACTION": 3},
     "LAND": {"GF_ACTION": 5},
 }
 PATIENCE = {"copter": ("FS_GCS_TIMEOUT", 2.0, 120.0), "rover": ("FS_GCS_TIMEOUT", 2.0, 120.0)}
 PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
 """The parameter for the seconds until a link counts as lost, with its least and largest value."""
 
+OFFBOARD_PATIENCE = ("COM_OF_LOSS_T", 5.0, 60.0)
+"""The same for set-points. A PX4 misses them after one second at first, in which poor links and busy
+computers lose some now and then; until then it goes to the last one, and stays there.
+"""
+
 MAV_PARAM_TYPE_INT32 = 6
-PARAMETER_KINDS = dict.fromkeys(("NAV_DLL_ACT", "GF_ACTION", "COM_DL_LOSS_T"), MAV_PARAM_TYPE_INT32)
+PARAMETER_KINDS = dict.fromkeys(
+    (PX4_ON_SILENCE, PX4_ON_STILLNESS, PX4_RETURNS_TO, "GF_ACTION", "COM_DL_LOSS_T", "COM_TAKEOFF_ACT"),
+    MAV_PARAM_TYPE_INT32,
+)
 """Types of parameters that are not of single precision."""
 
 
@@ -280,7 +308,7 @@ def lost_link_answers(link: Link, kind: str) -> Answers:
 def decides_alone(link: Link, kind: str) -> tuple[str, ...]:
     """Return the parameters by which the vehicle at a link acts when it no longer hears the ground."""
     if is_px4(link):
-        return PX4_ALONE[:1]
+        return tuple(PX4_ALONE)
     return (ON_LOST_LINK, ON_ANY_LOSS) if kind == "rover" else (ON_LOST_LINK,)
 
 
@@ -293,8 +321,8 @@ def alone(link: Link, kind: str, values: Mapping[str, float]) -> frozenset[int]:
         values: of the parameters by which it does; of those that are not known, nothing is expected.
     """
     if is_px4(link):
-        name, modes = PX4_ALONE
-        return frozenset(px4_number(*each) for each in modes.get(round(values.get(name, 0.0)), ()))
+        told = (known.get(round(values.get(name, 0.0)), ()) for name, known in PX4_ALONE.items())
+        return frozenset(px4_number(*mode) for modes in told for mode in modes)
     name, known = ALONE[kind]
     if not values.get(ON_LOST_LINK):
         return frozenset()
@@ -304,6 +332,11 @@ def alone(link: Link, kind: str, values: Mapping[str, float]) -> frozenset[int]:
 def patience(link: Link, kind: str) -> tuple[str, float, float] | None:
     """Return the parameter for the seconds until a link counts as lost: name, least, largest."""
     return PX4_PATIENCE if is_px4(link) else PATIENCE.get(kind)
+
+
+def set_point_patience(link: Link) -> tuple[str, float, float] | None:
+    """Return the parameter for the seconds until set-points count as lost: name, least, largest."""
+    return OFFBOARD_PATIENCE if is_px4(link) else None
 
 
 def breach_answers(link: Link, kind: str) -> Answers:

@@ -22,6 +22,9 @@ HEARING_SECONDS = 2.5
 """Vehicles tell their heartbeats once a second; one of them may get lost."""
 
 READY_SECONDS = 120.0
+OFFBOARD_SECONDS = 5.0
+"""For how long a PX4 waits for set-points, where the policy does not say."""
+
 STREAMED = {
     "GLOBAL_POSITION_INT": 5.0,
     "EXTENDED_SYS_STATE": 2.0,
@@ -160,18 +163,30 @@ def answer_lost_link(link: Link, kind: str, response: str, after: float | None =
         Refused: it cannot respond so, or does not say that it will.
     """
     _answer(link, "a lost link", modes.lost_link_answers(link, kind), response, kind)
-    found = modes.patience(link, kind)
-    if after is None or found is None:
+    told = [_wait_for(link, modes.set_point_patience(link), after, OFFBOARD_SECONDS)]
+    if after is not None:
+        told.append(_wait_for(link, modes.patience(link, kind), after, after))
+    return "; ".join(dict.fromkeys(filter(None, told)))
+
+
+def _wait_for(link: Link, known: tuple[str, float, float] | None, wanted: float | None, usual: float) -> str:
+    """Have the vehicle respond after some seconds; return what it does otherwise, empty if nothing.
+
+    Args:
+        link: to the vehicle.
+        known: a parameter for that, with its least and largest value; None: it has none.
+        wanted: seconds; None: `usual`.
+        usual: seconds.
+    """
+    if known is None:
         return ""
-    name, least, largest = found
-    seconds = min(max(after, least), largest)
+    name, least, largest = known
+    seconds = min(max(usual if wanted is None else wanted, least), largest)
     if not parameters.write(link, name, seconds, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
         return f"the vehicle does not confirm {name} = {seconds:g}: it may respond sooner or later than that"
-    return (
-        ""
-        if seconds == after
-        else f"the vehicle responds to a lost link after {seconds:g} s, not {after:g} s"
-    )
+    if wanted is None or seconds == wanted:
+        return ""
+    return f"the vehicle responds to a lost link after {seconds:g} s, not {wanted:g} s"
 
 
 def answer_breach(link: Link, kind: str, response: str) -> None:

@@ -4,8 +4,9 @@ An ArduPilot that is not in AUTO goes on from the item that it is told to the ne
 and tells the number of that one; what stands before it is done when AUTO begins (``AP_Mission.cpp``,
 ``set_current_cmd``; ``GCS_Common.cpp``, ``MSG_CURRENT_WAYPOINT``). With MIS_RESTART = 1 it begins with
 the first item whatever it was told (``start_or_resume``). A PX4 tells the item that it was told
-(``mission.cpp``, ``set_current_mission_index``), and has no such parameter. Both forget the speed of a
-mission when AUTO is entered.
+(``mission.cpp``, ``set_current_mission_index``), and has no such parameter; but with COM_TAKEOFF_ACT = 1 it
+begins its mission as soon as it has taken off (``Commander.cpp``, ``checkForMissionUpdate``), of whichever
+run. Both forget the speed of a mission when AUTO is entered.
 """
 
 from __future__ import annotations
@@ -19,12 +20,19 @@ from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters
 from ..services.items import Item
+from . import modes
 
 LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
 """Items with higher commands are carried out on the way; the vehicle goes nowhere for them."""
 
-RESTART = "MIS_RESTART"
-FROM_THE_FIRST = 1
+RESTART, AFTER_TAKE_OFF = "MIS_RESTART", "COM_TAKEOFF_ACT"
+AT_ONCE = 1
+"""The value of either by which a vehicle begins a run that it was not told to begin."""
+
+TROUBLE = {
+    RESTART: "the vehicle would begin every run with the first item of its mission",
+    AFTER_TAKE_OFF: "the vehicle would begin its mission by itself after take-off",
+}
 
 
 def first_flown(mission: Sequence[Item], seq: int) -> int:
@@ -49,13 +57,11 @@ def keep_place(link: Link) -> str:
         What was changed, for people; empty where nothing was.
 
     Raises:
-        Refused: it would begin every run with the first item of its mission.
+        Refused: it would begin runs elsewhere, or by itself.
     """
-    if is_px4(link) or round(parameters.read(link, [RESTART]).get(RESTART, 0)) != FROM_THE_FIRST:
+    name = AFTER_TAKE_OFF if is_px4(link) else RESTART
+    if round(parameters.read(link, [name]).get(name, 0)) != AT_ONCE:
         return ""
-    if not parameters.write(link, RESTART, 0.0):
-        raise Refused(
-            f"{RESTART} = 1: the vehicle would begin every run with the first item of its mission, "
-            "and does not confirm 0"
-        )
-    return f"{RESTART} = 0, which was 1: each run begins with its own first place"
+    if not parameters.write(link, name, 0.0, modes.PARAMETER_KINDS.get(name, parameters.REAL)):
+        raise Refused(f"{name} = 1: {TROUBLE[name]}, and does not confirm 0")
+    return f"{name} = 0, which was 1: each run begins with its own first place"

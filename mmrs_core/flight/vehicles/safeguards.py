@@ -150,8 +150,12 @@ PX4 = (
     Safeguard(
         "COM_OBL_RC_ACT",
         "set-points end",
-        {0: "hold by hand", 1: "by hand", 2: "by hand", 3: "return", 4: "land", 5: "hold"},
+        {0: "hold by hand", 1: "by hand", 2: "by hand", 3: "return", 4: "land", 5: "hold"}
+        | {6: "terminate", 7: "stop the motors"},
+        {6: "it falls", 7: "it falls"},
     ),
+    Safeguard("COM_OF_LOSS_T", "seconds until set-points count as ended", unit=" s"),
+    Safeguard("COM_FAIL_ACT_T", "seconds that it holds before it returns or lands by itself", unit=" s"),
     Safeguard("COM_POS_FS_DELAY", "seconds until a lost position counts", unit=" s"),
     Safeguard("RTL_RETURN_ALT", "height at which it returns", unit=" m"),
     Safeguard(

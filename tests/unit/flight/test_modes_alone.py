@@ -6,7 +6,7 @@ import pytest
 from mavlink_peer import PX4, linked
 
 from mmrs_core.flight.vehicles import modes
-from mmrs_core.sitl import failsafes
+from mmrs_core.sitl import failsafes, px4_failsafes
 from mmrs_core.sitl.modes import MODES
 
 CASES = [
@@ -35,11 +35,23 @@ def test_an_ardupilot_goes_into_the_modes_that_are_expected_of_it(kind, values, 
     assert expected - CONTINUING == numbered(kind, names)
 
 
-@pytest.mark.parametrize(("action", "names"), failsafes.ON_PX4.items())
-def test_a_px4_does_too(action, names):
+@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_SILENCE.items())
+def test_a_px4_does_too_and_may_hold_before(action, names):
     with linked(autopilot=PX4) as (link, _):
         expected = modes.alone(link, "copter", {"NAV_DLL_ACT": float(action)})
-    assert expected == numbered("px4", names)
+    before = {"loiter"} if {"return", "land"} & {*names} else set()
+    assert expected == numbered("px4", {*names} | before)
+
+
+BY_HAND = {"poshold", "alt_hold", "stabilize"}
+"""Modes that a PX4 leaves the vehicle in for its pilot: nobody takes that for the vehicle's own doing."""
+
+
+@pytest.mark.parametrize(("action", "names"), px4_failsafes.ON_STILLNESS.items())
+def test_a_px4_that_misses_set_points_does_too(action, names):
+    with linked(autopilot=PX4) as (link, _):
+        expected = modes.alone(link, "copter", {"COM_OBL_RC_ACT": float(action)})
+    assert expected == numbered("px4", {*names} - BY_HAND)
 
 
 @pytest.mark.parametrize("kind", ["copter", "sub", "rover"])

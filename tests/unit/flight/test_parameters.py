@@ -50,7 +50,8 @@ def test_all_are_asked_for_at_once_and_those_that_are_not_there_are_left_out():
 
 
 def test_what_has_not_come_before_a_parameter_that_was_asked_for_last_is_not_waited_for():
-    with linked(Values(FIRST=7.0, SECOND=8.0, A=1.0)) as (link, _):
+    first = {f"FIRST_{number}": 7.0 for number in range(parameters.MARKS)}
+    with linked(Values(**first, A=1.0)) as (link, _):
         link.retries = Retries(answer=10.0)
         begun = time.monotonic()
         assert parameters.read(link, ["A", "NONE"]) == {"A": 1.0}
@@ -163,7 +164,16 @@ def test_a_vehicle_that_tells_no_failsafes_is_told():
             "EMERGENCY_AREA",
             {"RALLY_INCL_HOME": 0.0, "RALLY_LIMIT_KM": 0.0, "FS_GCS_ENABLE": 1.0, "FS_GCS_TIMEOUT": 20.0},
         ),
-        (PX4, "LAND", {"NAV_DLL_ACT": bytewise(3), "COM_DL_LOSS_T": bytewise(20)}),
+        (
+            PX4,
+            "LAND",
+            {
+                "COM_OBL_RC_ACT": bytewise(4),
+                "NAV_DLL_ACT": bytewise(3),
+                "COM_OF_LOSS_T": 20.0,
+                "COM_DL_LOSS_T": bytewise(20),
+            },
+        ),
     ],
 )
 def test_a_lost_link_is_answered_by_parameters(autopilot, response, expected):

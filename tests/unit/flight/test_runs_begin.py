@@ -100,6 +100,18 @@ def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_
         assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
+def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path):
+    with manned(tmp_path, ROBOT, firmware="px4", parameters={"COM_TAKEOFF_ACT": 1}) as made:
+        told = []
+        made.crew.vehicle._tell = told.append
+        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        assert made.simulated.autopilot.parameters["COM_TAKEOFF_ACT"] == 0.0
+        assert "COM_TAKEOFF_ACT = 0, which was 1: each run begins with its own first place" in told
+        made.crew.watch.renew()
+        made.crew.vehicle.take_off(10.0)
+        assert made.mode == "loiter"
+
+
 def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(tmp_path, monkeypatch):
     monkeypatch.setattr(parameters, "write", lambda *given: False)
     with (

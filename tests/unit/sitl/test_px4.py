@@ -60,10 +60,66 @@ def test_offboard_follows_a_stream_of_set_points(bench):
 def test_offboard_is_left_when_the_stream_ends(bench):
     stream(bench, (0.0, 0.0, 10.0), 1.5)
     switch(bench, OFFBOARD)
-    bench.wait(1.3)
+    bench.wait(0.8)
     assert bench.pilot.mode_name == "guided"
     bench.wait(0.5)
     assert bench.pilot.mode_name == "poshold"
+
+
+def test_offboard_comes_back_by_itself_with_the_stream(bench):
+    stream(bench, (0.0, 0.0, 10.0), 1.5)
+    switch(bench, OFFBOARD)
+    bench.wait(1.3)
+    assert bench.pilot.mode_name == "poshold"
+    stream(bench, (0.0, 0.0, 10.0), 1.5)
+    assert bench.pilot.mode_name == "guided"
+
+
+def unheard(bench: Bench, seconds: float) -> str:
+    """Let time pass in which no ground station is heard; return the mode then."""
+    bench.wait_for(lambda: False, seconds, heard=False)
+    return bench.pilot.mode_name
+
+
+def test_it_holds_for_a_while_before_it_returns_since_nobody_is_heard(bench):
+    bench.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0}
+    stream(bench, (0.0, 0.0, 10.0), 1.5)
+    switch(bench, OFFBOARD)
+    assert unheard(bench, 9.5) == "guided"
+    assert unheard(bench, 1.0) == "loiter"
+    assert unheard(bench, 4.0) == "loiter"
+    assert unheard(bench, 1.0) == "return"
+    assert [text for _, _, text in bench.pilot.said[-3:]] == [
+        "Connection to ground station lost",
+        "Failsafe activated, entering Hold for 5 seconds",
+        "Failsafe activated",
+    ]
+
+
+def test_whoever_gives_it_another_mode_while_it_holds_has_it(bench):
+    bench.pilot.parameters["NAV_DLL_ACT"] = 2
+    switch(bench, (3, 0))
+    assert unheard(bench, 10.5) == "loiter"
+    switch(bench, (3, 0))
+    assert unheard(bench, 10.0) == "poshold"
+
+
+def test_out_of_its_fence_it_does_what_it_is_told_for_that(bench):
+    bench.pilot.parameters |= {"GF_ACTION": 5, "GF_MAX_HOR_DIST": 15.0, "COM_FAIL_ACT_T": 0.0}
+    stream(bench, (0.0, 0.0, 10.0), 1.5)
+    switch(bench, OFFBOARD)
+    stream(bench, (0.0, 30.0, 10.0), 8.0)
+    assert bench.pilot.mode_name == "land"
+    assert "Geofence: approaching or outside geofence" in [text for _, _, text in bench.pilot.said]
+
+
+@pytest.mark.parametrize(("kind", "east"), [(0, 0.0), (1, 30.0)])
+def test_it_returns_to_a_rally_point_where_it_is_told_to_rather_than_home(bench, kind, east):
+    bench.pilot.parameters |= {"RTL_TYPE": kind, "RTL_RETURN_ALT": 10.0}
+    bench.pilot.stores[2] = [bench.item(5100, (0.0, 30.0, 0.0))]
+    switch(bench, (4, 5))
+    assert bench.wait_for(lambda: not bench.pilot.armed, 120.0)
+    assert bench.pilot.body.position[1] == pytest.approx(east, abs=1.0)
 
 
 def test_a_mission_begins_with_its_first_item(bench):

@@ -1,0 +1,184 @@
+"""What a PX4 watches by itself, and does by its parameters, as its ``commander/failsafe`` has it.
+
+Before it returns or lands it holds for COM_FAIL_ACT_T, so that a pilot may intervene, but not where its
+mode cannot go on: without set-points or a position. Whoever gives it another mode meanwhile has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import hypot
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.fences import fence_of
+from mmrs_core.sitl.modes import BLIND
+
+CRITICAL, INFO = mavlink.MAV_SEVERITY_CRITICAL, mavlink.MAV_SEVERITY_INFO
+DISARM = "disarm"
+FENCE_SECONDS = 1.0
+
+FAILSAFE, HOLDS_UNTIL, IN_MODE = "failsafe", "holds until", "in mode"
+"""Of what is wrong: since when something is; until when it holds first; which mode it chose."""
+
+Answers = Mapping[int, tuple[str, ...]]
+
+ON_SILENCE: Answers = {1: ("loiter",), 2: ("return", "land"), 3: ("land",), 5: (DISARM,), 6: (DISARM,)}
+"""By NAV_DLL_ACT."""
+
+ON_BREACH: Answers = {2: ("loiter",), 3: ("return", "land"), 4: (DISARM,), 5: ("land",)}
+"""By GF_ACTION; 1: it only says so."""
+
+ON_CRITICAL: Answers = {1: ("return", "land"), 2: ("land",), 3: ("return", "land")}
+ON_EMERGENCY: Answers = {1: ("return", "land"), 2: ("land",), 3: ("land",)}
+"""By COM_LOW_BAT_ACT, where the battery is critical, and nearly empty."""
+
+ON_STILLNESS: Answers = {
+    0: ("poshold",),
+    1: ("alt_hold",),
+    2: ("stabilize",),
+    3: ("return", "land"),
+    4: ("land",),
+    5: ("loiter",),
+    6: (DISARM,),
+    7: (DISARM,),
+}
+"""By COM_OBL_RC_ACT, where set-points stay away."""
+
+
+def watch(pilot: Autopilot, seconds: float) -> None:
+    """Look for what is wrong, and answer it."""
+    _watch_position(pilot, seconds)
+    _watch_fence(pilot)
+    if not pilot.armed:
+        for name in ("gcs", "stream", FAILSAFE, HOLDS_UNTIL, IN_MODE):
+            pilot.failed.pop(name, None)
+        return
+    _watch_link(pilot)
+    _watch_battery(pilot)
+    _watch_stream(pilot)
+    _go_on(pilot)
+
+
+def breach(pilot: Autopilot) -> None:
+    """Be out of the fence, say so, and do what GF_ACTION says."""
+    pilot.breached = True
+    pilot.breaches += 1
+    pilot.say(CRITICAL, "Geofence: approaching or outside geofence")
+    action = int(pilot.parameters["GF_ACTION"])
+    _answer(pilot, ON_BREACH.get(action, ()), at_once=action == 2)
+
+
+def _watch_position(pilot: Autopilot, seconds: float) -> None:
+    if pilot.located:
+        pilot.failed.pop("position", None)
+        return
+    before = pilot.failed.get("position", 0.0)
+    lost = pilot.failed["position"] = before + seconds
+    if pilot.armed and pilot.mode_name not in BLIND and before <= pilot.parameters["COM_POS_FS_DELAY"] < lost:
+        _answer(pilot, ("return", "land"), at_once=True)
+
+
+def _watch_fence(pilot: Autopilot) -> None:
+    if pilot.time < pilot.fence_due:
+        return
+    pilot.fence_due = pilot.time + FENCE_SECONDS
+    outside = bool(pilot.parameters["GF_ACTION"]) and pilot.located and _outside(pilot)
+    if outside and not pilot.breached and pilot.armed:
+        breach(pilot)
+    elif not outside and not pilot.told_out:
+        pilot.breached = False
+
+
+def _outside(pilot: Autopilot) -> bool:
+    north, east, up = pilot.body.position
+    far, high = pilot.parameters["GF_MAX_HOR_DIST"], pilot.parameters["GF_MAX_VER_DIST"]
+    if 0.0 < far < hypot(north, east) or 0.0 < high < up:
+        return True
+    return not all(zone.allows((north, east)) for zone in fence_of(pilot))
+
+
+def _watch_link(pilot: Autopilot) -> None:
+    if pilot.heard is None:
+        return
+    if pilot.time - pilot.heard < max(pilot.parameters["COM_DL_LOSS_T"], pilot.patience):
+        if pilot.failed.pop("gcs", None) is not None:
+            pilot.say(INFO, "GCS connection regained")
+    elif "gcs" not in pilot.failed:
+        pilot.failed["gcs"] = pilot.time
+        pilot.say(INFO, "Connection to ground station lost")
+        if pilot.mode_name != "land":
+            _answer(pilot, ON_SILENCE.get(int(pilot.parameters["NAV_DLL_ACT"]), ()))
+
+
+def _watch_battery(pilot: Autopilot) -> None:
+    if not pilot.settings.tells_battery:
+        return
+    action = int(pilot.parameters["COM_LOW_BAT_ACT"])
+    for name, text, answers in (
+        ("BAT_LOW_THR", "Low battery", {}),
+        ("BAT_CRIT_THR", "Critical battery", ON_CRITICAL),
+        ("BAT_EMERGEN_THR", "Emergency battery level", ON_EMERGENCY),
+    ):
+        if pilot.battery.level < pilot.parameters[name] and name not in pilot.failed:
+            pilot.failed[name] = pilot.time
+            pilot.say(CRITICAL, text)
+            _answer(pilot, answers.get(action, ()), warns=True)
+
+
+def _watch_stream(pilot: Autopilot) -> None:
+    """Leave OFFBOARD where set-points stay away, and go back by itself when they come again."""
+    if pilot.mode_name == "guided" and pilot.steered:
+        if pilot.time - pilot.steered[-1] > max(pilot.parameters["COM_OF_LOSS_T"], pilot.patience):
+            _answer(pilot, ON_STILLNESS.get(int(pilot.parameters["COM_OBL_RC_ACT"]), ()), at_once=True)
+            pilot.failed["stream"] = pilot.time
+    elif "stream" in pilot.failed:
+        if pilot.mode != pilot.failed.get(IN_MODE) or "gcs" in pilot.failed:
+            del pilot.failed["stream"]
+        elif pilot.is_steered():
+            del pilot.failed["stream"]
+            pilot.enter("guided")
+
+
+def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False, warns: bool = False) -> None:
+    """Go into the first of these modes that it may go into, or hold before that for a while.
+
+    Args:
+        pilot: of the vehicle.
+        names: of modes, or `DISARM`; none: it goes on.
+        at_once: whether it does not hold before.
+        warns: whether it counts as a failsafe, too, where it goes on.
+    """
+    if names or warns:
+        pilot.failed[FAILSAFE] = pilot.time
+    if not names:
+        return
+    if names == (DISARM,) or (pilot.flies and not pilot.airborne):
+        pilot.disarm()
+        return
+    holds = 0.0 if at_once or names[0] == "loiter" else pilot.parameters["COM_FAIL_ACT_T"]
+    if holds and pilot.mode_name not in ("return", "land"):
+        pilot.say(CRITICAL, f"Failsafe activated, entering Hold for {holds:.0f} seconds")
+        pilot.failed |= {HOLDS_UNTIL: pilot.time + holds, f"then {' '.join(names)}": pilot.time}
+        _choose(pilot, "loiter")
+    else:
+        pilot.say(CRITICAL, "Failsafe activated")
+        _choose(pilot, *names)
+
+
+def _choose(pilot: Autopilot, *names: str) -> None:
+    pilot.enter(*names)
+    pilot.failed[IN_MODE] = float(pilot.mode)
+
+
+def _go_on(pilot: Autopilot) -> None:
+    """Do what it has held for, unless somebody has given it another mode meanwhile."""
+    waiting = [name for name in pilot.failed if name.startswith("then ")]
+    if not waiting or (pilot.time < pilot.failed[HOLDS_UNTIL] and pilot.mode == pilot.failed[IN_MODE]):
+        return
+    for name in waiting:
+        del pilot.failed[name]
+    if pilot.mode == pilot.failed[IN_MODE]:
+        pilot.say(CRITICAL, "Failsafe activated")
+        _choose(pilot, *waiting[-1].split()[1:])
