@@ -21,6 +21,7 @@ from mmrs_core.sitl.camera import Camera
 from mmrs_core.sitl.gusts import Gusts
 from mmrs_core.sitl.items import FENCE, MISSION, MOVING, RALLY, Item
 from mmrs_core.sitl.modes import BLIND, first_mode, numbers
+from mmrs_core.sitl.px4_missions import is_feasible
 from mmrs_core.sitl.settings import PX4, Settings
 
 if TYPE_CHECKING:
@@ -289,7 +290,7 @@ class Autopilot:
             self.say(mavlink.MAV_SEVERITY_WARNING, f"Mode change to {name.upper()} failed: requires position")
             return False
         if name == "auto":
-            return self._has_a_mission()
+            return is_feasible(self) if self.settings.firmware == PX4 else self._has_a_mission()
         if self.settings.firmware == PX4 and name == "guided":
             return self.is_steered()
         return True
@@ -305,7 +306,7 @@ class Autopilot:
     def _has_a_mission(self) -> bool:
         items = self.stores[MISSION]
         moves = [item.command for item in items[1:] if item.command in MOVING]
-        climbs = moves[:1] == [mavlink.MAV_CMD_NAV_TAKEOFF] or self.settings.firmware == PX4
+        climbs = moves[:1] == [mavlink.MAV_CMD_NAV_TAKEOFF]
         if self.armed and self.flies and not self.airborne and not climbs:
             self.say(mavlink.MAV_SEVERITY_CRITICAL, "Auto: Missing Takeoff Cmd")
             return False

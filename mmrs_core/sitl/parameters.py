@@ -119,6 +119,7 @@ _PX4: Mapping[str, float] = {
     "COM_POS_FS_DELAY": 1,
     "NAV_ACC_RAD": 2.0,
     "MIS_TAKEOFF_ALT": 2.5,
+    "MIS_DIST_1WP": 900.0,
     "RTL_RETURN_ALT": 15.0,
     "RTL_TYPE": 0,
     "MPC_XY_CRUISE": 5.0,

@@ -14,6 +14,7 @@ from mmrs_core.sitl.camera import Photo
 from mmrs_core.sitl.commands import complaint
 from mmrs_core.sitl.items import MISSION
 from mmrs_core.sitl.px4_failsafes import FAILSAFE
+from mmrs_core.sitl.px4_missions import is_feasible
 from mmrs_core.sitl.settings import PX4, Settings
 
 Message = Any
@@ -156,8 +157,9 @@ def hud(pilot: Autopilot) -> Message:
 def mission_current(pilot: Autopilot) -> Message:
     """Return the item that it is at, or flies to."""
     total = max(0, len(pilot.stores[MISSION]) - pilot.first_item)
+    has_one = is_feasible(pilot) if pilot.settings.firmware == PX4 else bool(total)
     state = 4 if pilot.finished else 3 if pilot.mode_name == "auto" else 2
-    return mavlink.MAVLink_mission_current_message(pilot.told_item, total, state if total else 1)
+    return mavlink.MAVLink_mission_current_message(pilot.told_item, total, state if has_one else 1)
 
 
 def status(pilot: Autopilot) -> Message:
@@ -165,7 +167,7 @@ def status(pilot: Autopilot) -> Message:
     health = SENSORS if pilot.located else SENSORS & ~GPS
     health |= BATTERY | (0 if pilot.breached else FENCE_BIT)
     health |= 0 if complaint(pilot) else PREARM
-    present = SENSORS | BATTERY | FENCE_BIT | PREARM
+    present = SENSORS | BATTERY | FENCE_BIT | (0 if pilot.settings.firmware == PX4 else PREARM)
     tells = pilot.settings.tells_battery
     return mavlink.MAVLink_sys_status_message(
         present,

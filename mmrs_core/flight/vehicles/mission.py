@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from ..faults import NO_PROGRESS, Fault, Refused
+from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..program import Geographic, Place
 from ..services.commands import command
@@ -15,6 +16,7 @@ from ..services.items import Item
 from ..services.uploads import Uploads
 from . import modes, preparation
 from .corridor import width_for
+from .feasibility import check_feasible
 from .following import Following
 from .helm import MODE_SECONDS, Helm
 from .runs import first_flown, keep_place, speed_before
@@ -44,9 +46,11 @@ class Mission:
         Raises:
             Refused: something is not accepted, or read back differently, or runs would begin elsewhere.
         """
-        self._items = uploads.mission
+        self._items, begun = uploads.mission, self._link.clock.now()
         items = self._helm.habits.mission(uploads.mission)
         self._id = preparation.replace_all(self._link, items, uploads.fence, uploads.rally)
+        if items and is_px4(self._link):
+            check_feasible(self._link, self._telemetry, begun)
         self._width = width_for(self._link, kind)
         return keep_place(self._link) if self._items else ""
 

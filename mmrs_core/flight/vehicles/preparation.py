@@ -11,7 +11,7 @@ from ..faults import Refused
 from ..links.link import Link
 from ..program import Place
 from ..services import parameters
-from ..services.commands import command
+from ..services.commands import ask, command
 from ..services.items import FENCE, MISSION, RALLY, Item
 from ..services.missions import upload, verify
 from . import modes
@@ -22,6 +22,9 @@ HEARING_SECONDS = 2.5
 """Vehicles tell their heartbeats once a second; one of them may get lost."""
 
 READY_SECONDS = 120.0
+WORDS_SECONDS = 0.5
+"""After which a vehicle that is asked for what fails has said it."""
+
 OFFBOARD_SECONDS = 5.0
 """For how long a PX4 waits for set-points, where the policy does not say."""
 
@@ -144,6 +147,9 @@ def await_ready(link: Link, telemetry: Telemetry) -> None:
         Refused: it does not get ready.
     """
     if not link.wait(telemetry.ready, READY_SECONDS, heard=True):
+        # A PX4 has said why once only, and perhaps before anybody listened.
+        ask(link, mavlink.MAV_CMD_RUN_PREARM_CHECKS)
+        link.wait(lambda: None, WORDS_SECONDS)
         raise Refused(f"the vehicle does not become ready: {'; '.join(telemetry.lacks())}")
 
 

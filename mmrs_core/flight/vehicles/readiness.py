@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from ..links.link import Link
+from ..links.link import Link, Message
 from ..links.messages import tells_place
+from . import modes
 from .texts import Texts
 
 PREARM = mavlink.MAV_SYS_STATUS_PREARM_CHECK
@@ -113,13 +114,28 @@ def _fix_trouble(link: Link, geographic: bool) -> Iterator[str]:
 
 
 def _checks_fail(link: Link, status: object) -> bool:
-    """Return whether the vehicle's own checks fail; only ArduPilot must say that they pass."""
+    """Return whether the vehicle's own checks fail; only ArduPilot and PX4 must say that they pass.
+
+    A PX4 says whether it may be armed in the mode that it is in (``SYS_STATUS.hpp``), since 1.14 without
+    saying that it has such a check: that counts in the mode that it is to be armed in.
+    """
     health, present = (
         int(getattr(status, f"onboard_control_sensors_{word}")) for word in ("health", "present")
     )
     beat = link.latest("HEARTBEAT")
-    obliged = beat is None or beat.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    return not health & PREARM and (obliged or bool(present & PREARM))
+    if health & PREARM:
+        return False
+    if beat is None or beat.autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA:
+        return True
+    if beat.autopilot == mavlink.MAV_AUTOPILOT_PX4 and _may_arm_here(beat):
+        return True
+    return bool(present & PREARM)
+
+
+def _may_arm_here(beat: Message) -> bool:
+    """Return whether a PX4 is in the mode that it is to be armed in, and is not yet."""
+    armed = beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+    return not armed and bool(beat.custom_mode == modes.px4_number(*modes.PX4_MODES[modes.HOLD]))
 
 
 def _why(status: object, texts: Texts) -> str:

@@ -11,7 +11,10 @@ from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.places import distance
 from mmrs_core.flight.program import Geographic, GoTo, Land, Run, Start, Step, Stop, TakeOff, Then
 from mmrs_core.flight.services import parameters
+from mmrs_core.flight.services.missions import upload
 from mmrs_core.flight.services.uploads import mission_of, uploads_of
+from mmrs_core.flight.vehicles import px4
+from mmrs_core.flight.vehicles.feasibility import check_feasible
 from mmrs_core.flight.vehicles.runs import first_flown, keep_place, speed_before
 
 WAYS = {
@@ -110,6 +113,24 @@ def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path
         made.crew.watch.renew()
         made.crew.vehicle.take_off(10.0)
         assert made.mode == "loiter"
+
+
+def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_ground(tmp_path):
+    with (
+        manned(tmp_path, ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made,
+        pytest.raises(Refused, match="mission: the vehicle has accepted it, and would not fly it"),
+    ):
+        made.crew.vehicle.prepare(uploads_of(ROBOT))
+
+
+def test_what_a_px4_says_against_a_mission_is_told(tmp_path):
+    with manned(tmp_path, ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made:
+        link, telemetry = made.crew.link, made.crew.vehicle.telemetry
+        upload(link, px4.Px4(link, telemetry).mission(MISSION))
+        with made.simulated.lock:
+            made.simulated.autopilot.say(2, "First waypoint too far away: 10m, 5 max")
+        with pytest.raises(Refused, match=r"would not fly it; it says 'First waypoint too far away"):
+            check_feasible(link, telemetry, 0.0)
 
 
 def test_a_vehicle_that_keeps_beginning_its_missions_anew_is_not_flown(tmp_path, monkeypatch):

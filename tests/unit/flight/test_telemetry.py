@@ -52,13 +52,15 @@ def told():
     """Return a function that has a vehicle say things, and gives what is known then."""
     contexts = []
 
-    def tell(*messages, home=HOME, autopilot: int = 3) -> Telemetry:
+    def tell(*messages, home=HOME, autopilot: int = 3, beat=None) -> Telemetry:
         context = linked(autopilot=autopilot)
         link, wire = context.__enter__()
         contexts.append(context)
         telemetry = Telemetry(link, home)
         for message in messages:
             wire.say(message)
+        if beat is not None:
+            wire.beat(**beat)
         wire.say(mavlink.MAVLink_ping_message(0, 0, 0, 0))
         eventually(lambda: link.latest("PING"))
         return telemetry
@@ -103,6 +105,13 @@ def test_a_vehicle_that_has_told_nothing_of_itself_lacks_that(told):
 def test_only_an_ardupilot_must_say_that_its_checks_pass(told):
     assert told(*READY[1:], status(0, 0), autopilot=PX4).lacks() == ()
     assert told(*READY[1:], status(0, PREARM), autopilot=PX4).lacks() == ("its own checks fail",)
+
+
+def test_a_px4_that_holds_must_say_so_too_until_it_is_armed(told):
+    holds = {"autopilot": PX4, "mode": 3 << 24 | 4 << 16}
+    assert told(*READY[1:], status(0, 0), beat=holds).lacks() == ("its own checks fail",)
+    assert told(*READY[1:], status(PREARM, 0), beat=holds).lacks() == ()
+    assert told(*READY[1:], status(0, 0), beat={**holds, "armed": True}).lacks() == ()
 
 
 def test_a_local_program_needs_no_place_on_the_earth(told):
