@@ -52,6 +52,8 @@ def resumed_steps(program: Program, wishes: Wishes, here: tuple[str, ...]) -> tu
         raise InvalidModelError(f"{wishes.folder}: {error}") from error
     for robot, why in over.items():
         tell(f"'{robot}': {f'its program has ended by {why}' if why else 'has come to its end'}")
+    if all(record.label == "fault" and record.seq == 0 for record in records):
+        raise typer.BadParameter("--resume: nothing had begun; begin anew, with another --log")
     if set(over) >= set(here):
         raise typer.BadParameter(f"--resume: nothing is left to do for {', '.join(here)}")
     tell(f"goes on after {counted(len(records), 'step')} and {clock(result.duration)}")

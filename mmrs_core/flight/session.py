@@ -21,6 +21,7 @@ from .judgement import Judgement
 from .options import Options
 from .orders.obedience import Obedience, Ordered
 from .orders.orders import RESUME, RETURN
+from .policies import NOTHING
 from .program import Place, Robot
 from .records.blackbox import BlackBox, black_box_path
 from .records.log import Log
@@ -240,6 +241,10 @@ def _open(robot: Robot, shared: Shared, stack: ExitStack) -> Session | None:
         crew = _crew(robot, shared, log, box, stack)
     except Ordered as order:
         _end_unmanned(robot, shared, log, box, order)
+        raise
+    except Fault as fault:
+        box.write("start", **start_of(robot, options.reach.urls.get(robot.id, ""), None))
+        box.write("decision", what=fault.event, why=str(fault), response=NOTHING, move=robot.start)
         raise
     shared.crews.man(robot.id, crew.vehicle.state, crew.pilot.journal)
     return Session(crew, shared)

@@ -29,6 +29,7 @@ from mmrs_core.runtime.robot import RunningRobot
 from mmrs_core.runtime.rules import Rules, refuse_unknown
 from mmrs_core.runtime.stopping import Stopping
 from mmrs_core.runtime.terms import TO_THE_END, Ending, Terms
+from mmrs_core.runtime.unready import note, reason_of
 from mmrs_core.scene import Policy
 
 PACE = 0.05
@@ -241,7 +242,8 @@ class _Run:
         if not robot.absent:
             self._stopping.answer(robot, found)
             return
-        self._terms.say(f"'{robot.id}': does not get ready: {found.reason or found.which}")
+        self._terms.say(f"'{robot.id}': does not get ready: {reason_of(found)}")
+        note(robot.backend, found.which, reason_of(found))
         self._dismiss(robot, failed=True)
 
     def _retire(self, robot: RunningRobot) -> None:

@@ -15,8 +15,8 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.abilities import Closing, Noting, Preparing, Telling
 from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInput, Live
 from mmrs_core.contributions.buses import Bus
-from mmrs_core.contributions.execution import Condition, Fault
-from mmrs_core.errors import LinkLostError, MmrsError
+from mmrs_core.contributions.execution import Condition
+from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.runtime.attention import Attention
 from mmrs_core.runtime.clock import RealClock
@@ -25,6 +25,7 @@ from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order,
 from mmrs_core.runtime.resuming import over_by
 from mmrs_core.runtime.standing import Standing
 from mmrs_core.runtime.terms import Ending, Terms
+from mmrs_core.runtime.unready import Unready, note_alone, record, unready
 
 GATHERING_SECONDS = 0.5
 """Real seconds for which more is waited for, once something keeps a robot from getting ready."""
@@ -69,6 +70,16 @@ class Venture:
     say: Callable[[str], None] = print
     standing: Standing = field(default_factory=Standing)
 
+    def fail(self, robot: str, which: str) -> None:
+        """Have a robot's log say that its program has ended before its first step; tell if it cannot."""
+        program = self.program.robot(robot)
+        start, time = program.moves[program.start].id, round(self.clock.now(), 6)
+        try:
+            if self.observe is not None:
+                self.observe(StepRecord(self.run, robot, 0, 1, time, "fault", start, which))
+        except OSError as error:
+            self.say(f"'{robot}': the fault is not in the log: {error.strerror or error}")
+
 
 def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord, None, Ending]:
     """Yield the steps of the robots; return how the run ended.
@@ -101,9 +112,12 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
             venture.standing.connect(robots)
             if early is not None:
                 _get_ready(robots, venture, early)
-        except BaseException:
+        except BaseException as error:
             if early is not None:
                 early.give_up("the run has ended")
+            if isinstance(error, Unready):
+                record(robots, error.faults, venture.fail)
+                raise unready(error.faults) from None
             raise
         steps = interpret(
             venture.program,
@@ -129,7 +143,7 @@ def run_live(venture: Venture, backend: BackendFactory) -> Generator[StepRecord,
         stack.callback(steps.close)
         ending = yield from steps
         if robots and set(ending.absent) == set(robots):
-            raise _unready({id: ending.faults[id] for id in ending.absent})
+            raise unready({id: ending.faults[id] for id in ending.absent})
         return ending
 
 
@@ -219,7 +233,7 @@ def _await_ready(robots: Mapping[str, Backend], clock: RealClock, early: _EarlyO
         faults = {id: found for id, robot in robots.items() if (found := robot.fault(now)) is not None}
         told_at = min(told_at, now + GATHERING_SECONDS * clock.speedup) if faults else inf
         if faults and (now >= told_at or faults.keys() >= unready):
-            raise _unready(faults)
+            raise Unready(faults)
         unready = {id for id in unready if id in faults or not robots[id].finished(now)}
         early.look(unready)
         if unready:
@@ -232,12 +246,17 @@ def _meet(robots: Mapping[str, Backend], venture: Venture, early: _EarlyOrders) 
             early.look(())
             for id, robot in robots.items():
                 if (found := robot.fault(venture.clock.now())) is not None:
-                    raise _unready({id: found})
+                    raise Unready({id: found})
             if not early.held:
                 return
             venture.clock.sleep_until(venture.clock.now() + PACE)
 
-    for id, why in venture.meet(look).items():
+    try:
+        met = venture.meet(look)
+    except LinkLostError as error:
+        note_alone(robots.values(), str(error))
+        raise
+    for id, why in met.items():
         if isinstance(robot := robots[id], Noting):
             robot.note("decision", {"what": "TOGETHER", "why": why, "response": "begins"})
 
@@ -282,16 +301,9 @@ class _EarlyOrders:
 
     def _record_ends(self) -> None:
         """Have the logs say that orders have ended the programs; of an interrupted run, nothing is left."""
-        venture = self._venture
         for id, order in self._ended.items():
-            if id not in venture.inputs or order.interrupt or venture.observe is None:
-                continue
-            robot = venture.program.robot(id)
-            which = STOPPED if order.kind == STOP else ORDERED
-            time = round(venture.clock.now(), 6)
-            venture.observe(
-                StepRecord(venture.run, id, 0, 1, time, "fault", robot.moves[robot.start].id, which)
-            )
+            if id in self._venture.inputs and not order.interrupt:
+                self._venture.fail(id, STOPPED if order.kind == STOP else ORDERED)
 
     def pass_on(self) -> None:
         """Have the interpreter obey what was ordered, and know the answers, before what was ordered since."""
@@ -340,12 +352,3 @@ class _EarlyOrders:
         for order in self._open:
             for id in set(robots) & set(order.open) if order.kind == HOLD else ():
                 order.refuse(id, why)
-
-
-def _unready(faults: Mapping[str, Fault]) -> MmrsError:
-    """Return what keeps robots from beginning: all of it, whatever is lost first."""
-    lines = (
-        f"robot '{id}': does not get ready: {found.reason or found.which}" for id, found in faults.items()
-    )
-    lost = any(found.which == "LINK_LOST" for found in faults.values())
-    return (LinkLostError if lost else MmrsError)("; ".join(lines))

@@ -53,6 +53,7 @@ class Walker(Idle):
         self.recovered, self.astray, self.heard, self.armed = None, "", True, True
         self.elsewhere = ""
         self.recognised = False
+        self.noted = []
         script.robots[given.robot.id] = self
 
     @property
@@ -134,6 +135,9 @@ class Walker(Idle):
     def recover(self, passed, begun, now):
         self.recovered = (tuple(passed), begun)
         self._go("recovered")
+
+    def note(self, kind, content):
+        self.noted.append((kind, dict(content)))
 
     def close(self):
         self.closed = True

@@ -119,7 +119,7 @@ def _robot(robot: RobotProgram, given: Given, judged: ReplayResult) -> RobotRepo
 
 def _ending(robot: RobotProgram, flown: Flown, judged: ReplayResult) -> str:
     if not flown.records:
-        return "no log"
+        return f"not begun: {flown.given_up[-1].content.get('what')}" if flown.given_up else "no log"
     last = flown.records[-1]
     if last.label == "fault":
         return last.detail.partition(":")[0]
@@ -166,7 +166,7 @@ def _photos(given: Given, places: Places) -> Iterator[PhotoReport]:
 
 def _unknown(given: Given) -> Iterator[str]:
     for robot, flown in given.flight.robots.items():
-        if not flown.records:
+        if not flown.records and not flown.given_up:
             yield f"{robot}: there is no log; what it did is not known"
         if not len(flown.track.times):
             yield f"{robot}: there is no black box with places; where it was is not known"

@@ -265,7 +265,8 @@ class MavlinkBackend:
     def note(self, kind: str, content: Mapping[str, object]) -> None:
         """Write a line into the black box."""
         if self._with.box is not None:
-            self._with.box.write(kind, **{"move": self._move, **content})
+            move = self._move or self._with.begun or self._robot.start
+            self._with.box.write(kind, **{"move": move, **content})
 
     def close(self) -> None:
         """End the worker and the link; the vehicle keeps whatever it does."""

@@ -50,7 +50,10 @@ class Setup:
         """
         patience = self._options.patience * self._with.clock.speedup
         self._with.say(f"waits for a vehicle at {self._with.url}")
-        self._with.radios.meet(self._with.link, self._with.url, patience)
+        try:
+            self._with.radios.meet(self._with.link, self._with.url, patience)
+        finally:
+            self._note("start", start_of(self._robot, self._with.url, self._with.link))
 
     def set_up(self) -> None:
         """Have the vehicle know what it must, once it is known to be the robot's.
@@ -65,7 +68,6 @@ class Setup:
             vehicle.hold()
         self._lost_link.tell()
         equip(self._robot, vehicle, self._uploads, self._with.say)
-        self._note("start", start_of(self._robot, self._with.url, self._with.link))
         self.is_done = True
         if vehicle.state().energy is None:
             self._with.say("does not tell its battery: nobody will notice when it is low")

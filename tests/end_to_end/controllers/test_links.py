@@ -88,10 +88,16 @@ def test_a_controller_says_that_its_peer_has_hung_up(controllers):
     assert "the vehicle's side has closed the connection" in said
 
 
-def test_a_port_that_cannot_be_opened_is_a_lost_link(controllers):
-    code, said = controllers(UP_AND_DOWN).run("fleet.py", "--connect", "tcp:127.0.0.1:1")
+def test_a_port_that_cannot_be_opened_is_a_lost_link_that_the_black_box_tells_of(controllers):
+    made = controllers(UP_AND_DOWN)
+    code, said = made.run("fleet.py", "--connect", "tcp:127.0.0.1:1")
     assert code == 5
     assert "'alpha': tcp:127.0.0.1:1: Connection refused" in said
+    start, decision = made.box("alpha", "start", "decision")
+    assert start["plan"]
+    assert (decision["what"], decision["response"]) == ("LINK_LOST", "NOTHING")
+    assert "Connection refused" in decision["why"]
+    assert not (made.logs / "alpha.jsonl").exists()
 
 
 @pytest.mark.parametrize(

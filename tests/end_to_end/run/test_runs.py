@@ -109,6 +109,23 @@ def test_a_vehicle_whose_motors_run_is_not_taken_for_a_new_run(fleet):
     assert flown.start().end(PATIENCE) == 1
     assert "motors run already" in flown.process.said[-1]
     assert flown.vehicles["a"].autopilot.mode_name == "loiter"
+    (step,) = flown.steps("a")
+    assert (step["move"], step["label"], step["detail"]) == ("start", "fault", "REFUSED")
+    start, decision = [line for line in flown.box("a") if line["kind"] in ("start", "decision")]
+    assert (start["kind"], start["vehicle"]) == ("start", "copter")
+    assert (decision["what"], decision["response"], decision["move"]) == ("REFUSED", "NOTHING", "start")
+    assert "motors run already" in decision["why"]
+
+
+def test_a_vehicle_that_was_never_heard_is_waited_for_again_in_the_same_folder(fleet):
+    flown = fleet(Pad("a"))
+    flown.vehicles["a"].stop()
+    for again in ((), ("--resume",)):
+        assert flown.start("--backend-option", "patience=0.2", *again).end(PATIENCE) == 5
+        assert "no vehicle" in flown.process.said[-1]
+        assert flown.steps("a") == []
+    told = [line["what"] for line in flown.box("a") if line["kind"] == "decision"]
+    assert told == ["LINK_LOST", "LINK_LOST"]
 
 
 def test_a_folder_with_logs_is_not_flown_over(fleet, told):

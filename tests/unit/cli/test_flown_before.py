@@ -5,9 +5,14 @@ from __future__ import annotations
 import pytest
 import typer
 
+from mmrs_core.behaviour.log import LogWriter
+from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.cli.flown_before import resumed_steps
 from mmrs_core.cli.wishes import Wishes
 from mmrs_core.testing.programs import two_drones
+
+_ALPHA = two_drones().robot("alpha")
+START = _ALPHA.moves[_ALPHA.start].id
 
 
 @pytest.mark.parametrize("name", ["alpha.blackbox.ndjson", "alpha.slots.ndjson"])
@@ -21,3 +26,10 @@ def test_a_folder_that_knows_nothing_of_the_robots_is_refused(tmp_path, name):
     (tmp_path / name).write_text("")
     with pytest.raises(typer.BadParameter, match="no logs in"):
         resumed_steps(two_drones(), Wishes(tmp_path, resume=True), ("alpha",))
+
+
+def test_a_run_whose_robots_were_refused_before_it_began_is_not_gone_on_with_without_them(tmp_path):
+    with LogWriter(tmp_path) as writer:
+        writer.write(StepRecord("run-0", "alpha", 0, 1, 2.0, "fault", START, "REFUSED"))
+    with pytest.raises(typer.BadParameter, match="nothing had begun"):
+        resumed_steps(two_drones(), Wishes(tmp_path, resume=True), ("alpha", "beta"))

@@ -73,6 +73,47 @@ def test_a_robot_that_does_not_get_ready_ends_the_run_before_anything_moves(live
     assert all(each.closed for each in run.script.robots.values())
 
 
+def test_who_does_not_get_ready_is_in_the_logs_and_the_others_black_boxes_say_why_they_have_not_begun(live):
+    logged = []
+    behaviour = program(robot("a", [do("h")]), robot("b", [do("h")]))
+    run = live(behaviour, Script(ready=inf), observe=logged.append)
+    run.wait_for(lambda: len(run.script.robots) == 2)
+    run.script.robots["b"].fail("REFUSED")
+    run.end()
+    (step,) = logged
+    assert (step.robot, step.seq, step.label, step.detail) == ("b", 0, "fault", "REFUSED")
+    assert replay(behaviour, logged, partial=True).complaints == ()
+    (own,), (other,) = run.script.robots["b"].noted, run.script.robots["a"].noted
+    assert own == ("decision", {"what": "REFUSED", "why": "says the test", "response": "NOTHING"})
+    assert other[1]["what"] == "PEER_LOST"
+    assert "'b' did not get ready" in other[1]["why"]
+
+
+@pytest.mark.parametrize(("armed", "steps"), [(None, 0), (False, 1)])
+def test_a_vehicle_that_was_never_heard_may_be_waited_for_again_in_the_same_folder(live, armed, steps):
+    logged = []
+    run = live(program(robot("a", [do("h")])), Script(ready=inf), observe=logged.append)
+    run.wait_for(lambda: len(run.script.robots) == 1)
+    run.script.robots["a"].armed = armed
+    run.script.robots["a"].fail("LINK_LOST")
+    run.end()
+    assert isinstance(run.error, LinkLostError)
+    assert len(logged) == steps
+    assert [each["what"] for _, each in run.script.robots["a"].noted] == ["LINK_LOST"]
+
+
+def test_a_log_that_cannot_be_written_hides_nothing_of_what_keeps_robots_from_beginning(live):
+    def full(record):
+        raise OSError(28, "no space left on device")
+
+    run = live(program(robot("a", [do("h")])), Script(ready=inf), observe=full)
+    run.wait_for(lambda: len(run.script.robots) == 1)
+    run.script.robots["a"].fail("REFUSED")
+    run.end()
+    assert "robot 'a': does not get ready: says the test" in str(run.error)
+    assert "'a': the fault is not in the log: no space left on device" in run.said
+
+
 def test_a_link_that_is_lost_while_others_get_ready_ends_the_run_before_anything_moves(live):
     run = live(program(robot("a", [do("h")]), robot("b", [do("h")])), Script(ready=inf))
     run.wait_for(lambda: len(run.script.robots) == 2)

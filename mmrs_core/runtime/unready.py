@@ -1,0 +1,65 @@
+"""Robots that do not get ready: nothing begins then, and logs and black boxes say why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from mmrs_core.contributions.abilities import Noting, Telling
+from mmrs_core.contributions.backends import Backend
+from mmrs_core.contributions.execution import Fault
+from mmrs_core.errors import LinkLostError, MmrsError
+from mmrs_core.flight.faults import LINK_LOST, PEER_LOST
+from mmrs_core.flight.policies import NOTHING
+
+
+class Unready(Exception):  # noqa: N818  # it is no error yet: whoever raises it has still to be let go of
+    """Robots do not get ready. Attributes: `faults` by robot."""
+
+    def __init__(self, faults: Mapping[str, Fault]) -> None:
+        super().__init__(faults)
+        self.faults = faults
+
+
+def unready(faults: Mapping[str, Fault]) -> MmrsError:
+    """Return what keeps robots from beginning: all of it, whatever is lost first."""
+    lines = (f"robot '{id}': does not get ready: {reason_of(found)}" for id, found in faults.items())
+    lost = any(found.which == LINK_LOST for found in faults.values())
+    return (LinkLostError if lost else MmrsError)("; ".join(lines))
+
+
+def reason_of(found: Fault) -> str:
+    """Return in words why a robot does not get ready."""
+    return found.reason or found.which
+
+
+def record(
+    robots: Mapping[str, Backend], faults: Mapping[str, Fault], fail: Callable[[str, str], None]
+) -> None:
+    """Have logs say which programs have ended, and black boxes why none begins.
+
+    A vehicle that was never heard may be there the next time: no log says that its program has ended.
+
+    Args:
+        robots: all that were to begin.
+        faults: by robot that does not get ready.
+        fail: logs that a robot's program has ended, by which fault.
+    """
+    for id, found in faults.items():
+        robot = robots[id]
+        note(robot, found.which, reason_of(found))
+        if found.which != LINK_LOST or not isinstance(robot, Telling) or robot.told():
+            fail(id, found.which)
+    missing = ", ".join(f"'{id}'" for id in faults)
+    note_alone((robot for id, robot in robots.items() if id not in faults), f"{missing} did not get ready")
+
+
+def note_alone(robots: Iterable[Backend], why: str) -> None:
+    """Have black boxes say that robots have not begun, since others are not ready."""
+    for robot in robots:
+        note(robot, PEER_LOST, f"has not begun: {why}")
+
+
+def note(robot: Backend, what: str, why: str) -> None:
+    """Have a robot's black box say why it is told nothing."""
+    if isinstance(robot, Noting):
+        robot.note("decision", {"what": what, "why": why, "response": NOTHING})
