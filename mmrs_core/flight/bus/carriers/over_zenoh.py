@@ -9,6 +9,7 @@ the certificate of whoever speaks.
 from __future__ import annotations
 
 import json
+import os
 import re
 import threading
 import time
@@ -34,6 +35,10 @@ ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
 
 CLOSING_SECONDS = 1.0
+
+READERS = 64
+"""Threads that read from the network. Zenoh blocks two of them for ten seconds with every machine that goes
+out of reach (it closes sockets that linger); without one that is free, nobody else is heard either."""
 
 _FILES = (
     "root_ca_certificate",
@@ -333,6 +338,8 @@ def _close(session: Any) -> None:
 
 
 def _opened(endpoints: Endpoints) -> Any:
+    # Read when the first session of a process is opened, and nowhere else can it be said.
+    os.environ.setdefault("ZENOH_RUNTIME", f"(rx: (worker_threads: {READERS}))")
     try:
         return zenoh.open(configuration(endpoints))
     except zenoh.ZError as error:
