@@ -25,7 +25,7 @@ from . import modes, preparation, safeguards
 from .enclosure import enclose
 from .evidence import LinkEvidence
 from .exemptions import end_exemption
-from .helm import MODE_SECONDS, Helm
+from .helm import MODE_SECONDS, Away, Helm
 from .listening import check_listening
 from .mission import Mission
 from .own_home import keep_home
@@ -171,9 +171,20 @@ class MavlinkVehicle:
             self._tell(keep_home(self._link, self._telemetry, self._home, self.start))
         self._helm.leave_ground(height)
         limit = PATIENCE_SECONDS + PATIENCE_FACTOR * height
-        self._helm.until(
-            lambda: abs(self._telemetry.here().height - height) <= self._acceptance, limit, "to take off"
-        )
+        self._helm.until(lambda: self._is_at(height) or self._has_climbed(), limit, "to take off")
+        if not self._is_at(height):
+            self._steering.go_to(at_height(self._telemetry.here(), height), None, None, False)
+
+    def _is_at(self, height: float) -> bool:
+        return abs(self._telemetry.here().height - height) <= self._acceptance
+
+    def _has_climbed(self) -> bool:
+        """Return whether a vehicle that climbs by itself has ended that, wherever it has.
+
+        A PX4 takes for home where it leaves the ground, by when its height has drifted, or it has risen.
+        """
+        holds = bool(self._helm.habits.climbing()) and self._helm.mode() == modes.HOLD
+        return holds and self._telemetry.airborne() and self._telemetry.speed() <= STILL
 
     def land(self) -> None:
         """Descend and stop the motors.
@@ -319,6 +330,10 @@ class MavlinkVehicle:
         self._helm.regain()
         if self._helm.mode() == modes.GUIDED:
             self._steering.stay()
+
+    def explain(self, explains: Callable[[Fault, Away], Fault | None]) -> None:
+        """Ask what the vehicle has gone elsewhere for, where it does so while it is told a mode."""
+        self._helm.explains = explains
 
     def insist(self, insists: Callable[[Fault], bool]) -> None:
         """Ask that, where the vehicle has left by itself what it is just told, before telling it again."""

@@ -35,6 +35,9 @@ LEAST_PAUSE = 0.01
 AHEAD_SECONDS = 1.5
 """For how long set-points are sent before the mode is asked for: PX4 wants more than a second."""
 
+FRESH_SECONDS = 1.0
+"""In which a position comes from a vehicle that tells five a second."""
+
 TAKING_OFF = (4, 2)
 HEADED = frozenset({mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_UNLIM})
 
@@ -131,9 +134,16 @@ class Px4:
     def take_off(self, height: float) -> tuple[float, ...]:
         """Return the parameters of NAV_TAKEOFF, straight up from here.
 
+        Home is there, and as high, as the vehicle was armed: what it told before that does not count.
+
         Raises:
             Refused: the vehicle has not told how high its home is.
         """
+        begun, clock = self._link.clock.now(), self._link.clock
+        self._link.wait(
+            lambda: clock.now() - self._link.since("GLOBAL_POSITION_INT") > begun,
+            clock.patience(FRESH_SECONDS),
+        )
         return (-1.0, 0.0, 0.0, nan, nan, nan, self._above(height))
 
     def climbing(self) -> tuple[int, ...]:

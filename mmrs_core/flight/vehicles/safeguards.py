@@ -154,6 +154,12 @@ PX4 = (
         | {6: "terminate", 7: "stop the motors"},
         {6: "it falls", 7: "it falls"},
     ),
+    Safeguard(
+        "MAV_FWDEXTSP",
+        "set-points from outside",
+        {0: "passed over", 1: "heeded"},
+        {0: "it goes into no OFFBOARD, in which it is steered"},
+    ),
     Safeguard("COM_OF_LOSS_T", "seconds until set-points count as ended", unit=" s"),
     Safeguard("COM_FAIL_ACT_T", "seconds that it holds before it returns or lands by itself", unit=" s"),
     Safeguard("COM_POS_FS_DELAY", "seconds until a lost position counts", unit=" s"),

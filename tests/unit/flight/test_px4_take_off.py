@@ -1,0 +1,62 @@
+"""Take-off of a PX4, which sets its home by itself, as a robot of the runtime has it."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from flight_crew import manned, robot_of
+from patience import until
+
+from mmrs_core.flight.services.uploads import uploads_of
+
+ROBOT = robot_of()
+
+
+def raise_home(made, metres: float) -> None:
+    """Have the vehicle take another height for that of its home."""
+    with made.simulated.lock:
+        latitude, longitude, height = made.simulated.autopilot.home
+        made.simulated.autopilot.home = (latitude, longitude, height + metres)
+
+
+def prepared(made):
+    """Return the vehicle of a robot that is ready to take off."""
+    made.crew.vehicle.prepare(uploads_of(ROBOT))
+    made.crew.watch.renew()
+    return made.crew.vehicle
+
+
+def test_a_px4_that_takes_another_height_for_home_as_it_climbs_goes_to_the_right_one(tmp_path):
+    with manned(tmp_path, ROBOT, firmware="px4") as made:
+        vehicle, body = prepared(made), made.simulated.autopilot.body
+
+        def shift() -> None:
+            until(lambda: body.position[2] > 1.0)
+            raise_home(made, 2.0)
+
+        shifting = threading.Thread(target=shift)
+        shifting.start()
+        vehicle.take_off(10.0)
+        shifting.join()
+        assert vehicle.state().place.height == pytest.approx(10.0, abs=0.6)
+        assert body.position[2] == pytest.approx(12.0, abs=0.6)
+
+
+def test_the_height_of_home_when_the_motors_start_counts(tmp_path):
+    with manned(tmp_path, ROBOT, firmware="px4") as made:
+        vehicle, autopilot, link = prepared(made), made.simulated.autopilot, made.crew.link
+        raise_home(made, -5.0)
+        until(lambda: vehicle.telemetry.here().height > 4.0)
+        hears = link.hears
+
+        def hears_late(message, sender):
+            armed = next((time for time, number, _ in autopilot.history if number == 400), autopilot.time)
+            early = armed < autopilot.time < armed + 2.0
+            if not (early and message.get_type() == "GLOBAL_POSITION_INT"):
+                hears(message, sender)
+
+        link.hears = hears_late
+        vehicle.take_off(10.0)
+        commanded = next(params for _, number, params in autopilot.history if number == 22)
+        assert commanded[6] == pytest.approx(autopilot.settings.altitude + 10.0, abs=0.1)
