@@ -36,7 +36,8 @@ def demo(
     from mmrs_core.cli.demonstration import demonstrate, manner_of
     from mmrs_core.cli.journey import Journey, Workshop
 
-    made = demonstrate(Journey(Workshop(settings_of(call)), folder), out, manner_of(folder))
+    journey = Journey(Workshop(settings_of(call)), folder)
+    made = demonstrate(journey, folder, out, manner_of(folder), examples().values())
     if json:
         say_json(made.summary())
     else:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import shlex
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from mmrs_core.behaviour.log import read_logs
 from mmrs_core.behaviour.replay import ReplayResult, replay
+from mmrs_core.cli.copying import copy_example, require_copies
 from mmrs_core.cli.journey import Journey
 from mmrs_core.cli.output import counted
 from mmrs_core.cli.plan_words import plan_lines, plan_summary
@@ -25,6 +27,7 @@ from mmrs_core.runtime.run import Run
 _MOST_REASONS = 3
 TARGETS = ("mavlink-python", "qgc-plan")
 MANNER = "demo.toml"
+LOGS = "logs"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +113,8 @@ class Demonstration:
         for what, path, count in self.files:
             more = f" ({counted(count, 'file')})" if count > 1 else ""
             yield f"  {path.relative_to(self.folder).as_posix():<30} {what}{more}"
+        told = shlex.join(["mmrs", "report", str(self.folder), str(self.folder / LOGS)])
+        yield f"to have it told as a flight is: {told}"
 
     def summary(self) -> Mapping[str, object]:
         """Return the same as values."""
@@ -123,8 +128,21 @@ class Demonstration:
         }
 
 
-def demonstrate(journey: Journey, folder: Path, manner: Manner = Manner()) -> Demonstration:
-    """Take a mission through all stages and leave everything that they make in a folder.
+def demonstrate(
+    journey: Journey,
+    example: Path,
+    folder: Path,
+    manner: Manner = Manner(),
+    others: Iterable[Path] = (),
+) -> Demonstration:
+    """Take an example through all stages and leave it with everything that they make in a folder.
+
+    Args:
+        journey: of its mission.
+        example: its folder.
+        folder: of what is made; what is there of other examples is replaced.
+        manner: how it is shown.
+        others: the folders of other examples.
 
     Raises:
         MmrsError: as the stages raise it; nothing is written before the behaviour is known to be safe.
@@ -133,10 +151,15 @@ def demonstrate(journey: Journey, folder: Path, manner: Manner = Manner()) -> De
     program = journey.program
     behaviour = folder / "behaviour.xmi"
     require_writable(journey, behaviour, "choose another folder")
+    require_copies(folder, example, others)
     require_sound(journey, journey.scene.name or "mission")
     folder.mkdir(parents=True, exist_ok=True)
     save(journey.transformed[0], behaviour, workshop.contributions)
-    files: list[tuple[str, Path, int]] = [("what each robot does, move by move", behaviour, 1)]
+    copied = copy_example(example, folder)
+    files: list[tuple[str, Path, int]] = [
+        ("the mission, its place, and types of robot", folder / "mission.xmi", copied),
+        ("what each robot does, move by move", behaviour, 1),
+    ]
     left_out: dict[str, tuple[str, ...]] = {}
     for target in manner.targets:
         rendered, left_out[target] = _rendered(journey, target)
@@ -150,11 +173,11 @@ def demonstrate(journey: Journey, folder: Path, manner: Manner = Manner()) -> De
         )
         files.append((f"code for {target}{lossy}", folder / "controllers" / target, len(rendered)))
     run = fly(workshop, program, place, {}, Chosen(manner.backend, manner.options, manner.own))
-    logs = write_logs(run, program, folder / "logs", place.types)
-    files.append(("what each robot did", folder / "logs", len(logs)))
+    logs = write_logs(run, program, folder / LOGS, place.types)
+    files.append(("what each robot did", folder / LOGS, len(logs)))
     pictures = write_pictures(picture_of(journey), folder)
     files += [("a page to look at", pictures[0], 1), ("the map alone", pictures[1], 1)]
-    replayed = replay(program, read_logs([folder / "logs"]))
+    replayed = replay(program, read_logs([folder / LOGS]))
     backends = " and ".join(dict.fromkeys((manner.backend, *manner.own.values())))
     return Demonstration(journey, run, replayed, folder, tuple(files), left_out, backends)
 

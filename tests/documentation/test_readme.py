@@ -40,7 +40,7 @@ def test_every_page_that_the_readme_names_exists():
 
 def test_every_command_of_the_readme_works_and_the_demo_leaves_what_is_promised(tmp_path):
     promised = re.findall(r"^\| `(\S+?)` \|", README, re.MULTILINE)
-    assert len(promised) == 5
+    assert len(promised) == 6
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     for command in [".venv/bin/mmrs demo", *COMMANDS[2:]]:

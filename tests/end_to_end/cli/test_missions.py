@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import shutil
 
 import pytest
@@ -31,10 +32,31 @@ def demonstrates(mmrs, tmp_path, example):
     left = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*")}
     assert {"behaviour.xmi", "preview.html", "preview.svg", "controllers/mavlink-python"} <= left
     assert any(path.startswith("logs/") for path in left)
+    return out
 
 
 def test_an_example_can_be_demonstrated(mmrs, tmp_path):
     demonstrates(mmrs, tmp_path, "mixed-team")
+
+
+def test_a_demonstration_can_be_reported_as_it_says_with_its_tasks_and_what_was_planned(mmrs, tmp_path):
+    out = demonstrates(mmrs, tmp_path, "pool")
+    command = shlex.split(out.splitlines()[-1].partition("mmrs ")[2])
+    code, told, err = mmrs(*command, "--json")
+    assert (code, err) == (0, "")
+    report = json.loads(told)["report"]
+    assert report["tasks"]
+    assert all(robot["planned_way"] > 0.0 for robot in report["robots"])
+    assert not any("context" in line for line in report["unknown"])
+
+
+def test_a_demonstration_takes_the_place_of_another_ones_whole_copy(mmrs, tmp_path):
+    demonstrates(mmrs, tmp_path, "mixed-team")
+    demonstrates(mmrs, tmp_path, "pool")
+    example = shipped("examples") / "pool"
+    types = {path.name for path in (tmp_path / "out" / "robots").iterdir()}
+    assert types == {path.name for path in (example / "robots").iterdir()}
+    assert (tmp_path / "out" / "mission.xmi").read_bytes() == (example / "mission.xmi").read_bytes()
 
 
 @pytest.mark.thorough

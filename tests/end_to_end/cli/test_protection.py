@@ -89,6 +89,18 @@ def test_demo_does_not_replace_a_behaviour_written_by_hand(mmrs, project):
     assert contents(project) == before
 
 
+@pytest.mark.parametrize("name", ["mission.xmi", "context.xmi", "robots/mine.xmi"])
+def test_demo_does_not_replace_models_that_are_no_copies_of_an_example(mmrs, pool, name):
+    file = pool / name
+    file.write_text(file.read_text() + " " if file.exists() else "<mine/>")
+    before = contents(pool)
+    code, _, err = mmrs("demo", "carbon-dioxide", "--out", pool)
+    assert code == 2
+    assert name in err
+    assert "choose another folder" in err
+    assert contents(pool) == before
+
+
 def test_preview_does_not_draw_over_an_input(mmrs, pool):
     (pool / "preview.svg").symlink_to("mission.xmi")
     before = contents(pool)
