@@ -18,6 +18,9 @@ ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
 DENIED = int(mavlink.MAV_RESULT_DENIED)
 FAILED = int(mavlink.MAV_RESULT_FAILED)
 UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
+NOT_NOW = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+"""What a PX4 answers to whatever it does not do, as if that could change (``Commander.cpp``)."""
+
 
 FORCE_DISARM = 21_196
 ON_ITS_WAY = frozenset({"auto", "return", "smart_return"})
@@ -37,7 +40,7 @@ def obey(pilot: Autopilot, number: int, params: Params) -> int:
     result = ACCEPTED if handler is None else handler(pilot, params)
     if result == ACCEPTED:
         pilot.note(number, params)
-    return result
+    return NOT_NOW if result == FAILED and pilot.settings.firmware == PX4 else result
 
 
 def steer(pilot: Autopilot, target: Vector, heading: float | None) -> None:

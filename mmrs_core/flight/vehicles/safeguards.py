@@ -155,6 +155,12 @@ PX4 = (
         {6: "it falls", 7: "it falls"},
     ),
     Safeguard(
+        "COM_DISARM_LAND",
+        "seconds after landing until it disarms",
+        below=(0.1, "it never does, and its landing is taken for one that does not end"),
+        unit=" s",
+    ),
+    Safeguard(
         "MAV_FWDEXTSP",
         "set-points from outside",
         {0: "passed over", 1: "heeded"},
