@@ -26,6 +26,7 @@ import zenoh
 from ..troubles import Net, tell_people
 from ..words import LONGEST, digest
 from .carrier import Answered, Station
+from .doubts import Doubts, Papers
 from .endpoints import first_fault
 
 LEASE_MILLISECONDS = 1500
@@ -47,6 +48,7 @@ _FILES = (
     "connect_private_key",
     "connect_certificate",
 )
+_SHOWN = ("root_ca_certificate", "connect_certificate", "connect_private_key")
 _SOURCES = re.compile(r" at \S+\.rs:\d+\.?")
 RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
 
@@ -102,6 +104,7 @@ class ZenohCarrier:
         self._work: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._worker = threading.Thread(target=self._serve_all, name="bus answers", daemon=True)
         self._closing = threading.Lock()
+        self._doubts: Doubts | None = None
 
     def open(self, station: Station) -> None:
         """Open a session, and watch who is there.
@@ -117,6 +120,13 @@ class ZenohCarrier:
             f"{self._prefix}/*/here/*", self._later(self._see), history=True
         )
         self._declared.append(watched)
+        papers = _papers(self._endpoints.file)
+        self._doubts = Doubts(self._endpoints.connect, papers, self._count_peers, self._net)
+        self._doubts.start()
+
+    def _count_peers(self) -> int:
+        with self._closing:
+            return 0 if self._session is None else len(self._session.info.peers_zid())
 
     def ask(self, sender: str, owner: str, request: str, answered: Answered) -> None:
         """Send a query; Zenoh's own thread hands over the answer."""
@@ -180,6 +190,8 @@ class ZenohCarrier:
 
     def close(self) -> None:
         """Close the session; idempotent."""
+        if self._doubts is not None:
+            self._doubts.stop()
         for robot in list(self._tokens):
             self.vanish(robot)
         while self._declared:
@@ -261,6 +273,7 @@ def configuration(endpoints: Endpoints) -> Any:
     if why := first_fault((*endpoints.listen, *endpoints.connect)):
         raise OSError(why)
     config = zenoh.Config() if endpoints.file is None else _from_file(endpoints.file)
+    _refuse_ways(endpoints, json.loads(config.get_json("transport/link/protocols")))
     _insert(config, "transport/link/tx/lease", LEASE_MILLISECONDS)
     _insert(config, "connect/retry", RETRY)
     if endpoints.listen:
@@ -273,6 +286,29 @@ def configuration(endpoints: Endpoints) -> Any:
         _insert(config, "connect/timeout_ms", -1)
         _insert(config, "connect/exit_on_failure", False)
     return config
+
+
+def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
+    """Refuse endpoints that Zenoh would try in vain, and without a word.
+
+    Raises:
+        OSError: one needs certificates and there are none, or the file does not allow it.
+    """
+    for each in (*endpoints.listen, *endpoints.connect):
+        way = each.partition("/")[0]
+        if endpoints.file is None and way in ("tls", "quic"):
+            raise OSError(f"{each}: needs certificates, and the configuration with them (mmrs bus keys)")
+        if allowed and way not in allowed:
+            raise OSError(f"{each}: {endpoints.file} allows {', '.join(allowed)} only")
+
+
+def _papers(file: Path | None) -> Papers | None:
+    """Return what a configuration says of certificates; None: nothing, or not all of it."""
+    if file is None:
+        return None
+    config = _from_file(file)
+    found = [json.loads(config.get_json(f"transport/link/tls/{name}")) for name in _SHOWN]
+    return Papers(*map(Path, found)) if all(isinstance(each, str) for each in found) else None
 
 
 def _from_file(path: Path) -> Any:
