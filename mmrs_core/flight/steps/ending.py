@@ -302,6 +302,7 @@ class Ending:
         self._crew.say(f"cannot carry out {response}: {fault}; take over by hand")
 
     def _give_up(self, fault: Fault, response: str) -> int:
+        """Leave a vehicle as it is; return the exit code, which tells where nobody knows that it stopped."""
         crew = self._crew
         crew.pilot.journal.decide(fault.event, f"{response} cannot be carried out: {fault}", NOTHING)
         if fault.event == TAKEN_OVER or self._acts_by_itself():
@@ -311,8 +312,7 @@ class Ending:
         crew.say(f"cannot carry out {response}: {fault}; take over by hand")
         if crew.vehicle.state().armed:
             crew.say("heartbeats end now: the vehicle does what it does about a lost link")
-            return LINK if STOPPED in self._handled else self._code(fault)
-        return self._code(fault)
+        return LINK
 
     def _acts_by_itself(self) -> bool:
         """Return whether the vehicle is in a mode that nobody here told it."""

@@ -87,7 +87,7 @@ def test_a_vehicle_that_obeys_nothing_is_stayed_with_where_it_would_not_come_dow
 def test_a_vehicle_that_obeys_nothing_is_left_to_what_it_does_about_a_lost_link(halted):
     made = halted(Policy("DEVICE_SILENT", "RETURN"), Policy("LINK_LOST", "LAND"))
     heed_no_modes(made)
-    assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 1
+    assert made.ending().end(Fault("DEVICE_SILENT", "no answer")) == 5
     assert made.said[-1].endswith("heartbeats end now: the vehicle does what it does about a lost link")
 
 
