@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, fields
 from hashlib import sha256
 from math import inf
 from pathlib import Path
 from types import TracebackType
-from typing import TextIO
+from typing import IO
 from urllib.parse import quote
 
 from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.diagnostics import Diagnostic, Place, Severity
 from mmrs_core.errors import InvalidModelError, UnreadableError
-from mmrs_core.flight.records.lines import keep_whole_lines, whole_lines
+from mmrs_core.flight.records.lines import append_whole, keep_whole_lines, whole_lines
 from mmrs_core.languages.codes import explained
 from mmrs_core.resources import named
 
@@ -47,36 +47,49 @@ def to_line(record: StepRecord) -> str:
 class LogWriter:
     """Appends steps to one log a robot in a folder; the first step of a robot replaces an older log.
 
-    A run that is resumed goes on with its logs instead, after their last whole lines. Every step is
-    flushed; a notify or a fault is on the disk when `write` returns, so that a notify written before it is
-    delivered survives whatever happens next.
+    A run that is resumed goes on with its logs instead, after their last whole lines. Every step is out of
+    the process, a notify or a fault on the disk, when `write` returns, so that a notify written before it is
+    delivered survives whatever happens next. Of what cannot be written, nothing is left in the log; a fault
+    is tried once more when it is closed.
     """
 
     def __init__(self, folder: Path, *, resumed: bool = False) -> None:
         """Open no file yet; make the folder where it is missing."""
         folder.mkdir(parents=True, exist_ok=True)
         self._folder, self._resumed = folder, resumed
-        self._files: dict[str, TextIO] = {}
+        self._files: dict[str, IO[bytes]] = {}
+        self._owed: dict[str, StepRecord] = {}
 
     def write(self, record: StepRecord) -> None:
-        """Append a step to its robot's log."""
-        file = self._files.get(record.robot) or self._opened(record.robot)
-        with named(self._folder / log_name(record.robot)):
-            file.write(to_line(record) + "\n")
-            file.flush()
-            if record.label in ("ntf", "fault"):
-                os.fsync(file.fileno())
+        """Append a step to its robot's log.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        if record.label == "fault":
+            self._owed[record.robot] = record
+        self._append(record)
+        self._owed.pop(record.robot, None)
 
     def close(self) -> None:
-        """Close all files."""
+        """Write the faults that could not be written before, as on a full disk; close all files."""
+        while self._owed:
+            with suppress(OSError):
+                self._append(self._owed.popitem()[1])
         while self._files:
             self._files.popitem()[1].close()
 
-    def _opened(self, robot: str) -> TextIO:
+    def _append(self, record: StepRecord) -> None:
+        with named(self._folder / log_name(record.robot)):
+            file = self._files.get(record.robot) or self._opened(record.robot)
+            line = to_line(record).encode("utf-8") + b"\n"
+            append_whole(file, line, at_once=record.label in ("ntf", "fault"))
+
+    def _opened(self, robot: str) -> IO[bytes]:
         path = self._folder / log_name(robot)
         if self._resumed and path.exists():
             keep_whole_lines(path)
-        file = path.open("a" if self._resumed else "w", encoding="utf-8", newline="\n")
+        file: IO[bytes] = path.open("ab" if self._resumed else "wb", buffering=0)
         self._files[robot] = file
         return file
 

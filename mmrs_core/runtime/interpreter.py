@@ -9,6 +9,8 @@ backend, the bus or an order wakes it.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from math import inf
 
@@ -19,6 +21,7 @@ from mmrs_core.behaviour.steps import StepRecord
 from mmrs_core.contributions.backends import Backend
 from mmrs_core.contributions.buses import Bus, CommandId
 from mmrs_core.contributions.execution import Clock, Condition, Fault
+from mmrs_core.flight.faults import LOG_FAILED
 from mmrs_core.runtime.agenda import Agenda
 from mmrs_core.runtime.attention import BUS
 from mmrs_core.runtime.finding import finds_of, names_told, teach
@@ -200,8 +203,12 @@ class _Run:
             if self._terms.observe is not None:
                 self._terms.observe(record)
         except OSError as error:
-            self._lose_log(robot, error)
-            return
+            if not self._clock.passes_by_itself:
+                raise
+            if record.label != "fault":
+                self._lose_log(robot, record, error)
+                return
+            self._terms.say(f"'{robot.id}': the fault is not in the log: {error.strerror or error}")
         yield record
         robot.follow(step, self._clock.now())
         self._made += 1
@@ -210,11 +217,12 @@ class _Run:
         if robot.point.is_final:
             self._retire(robot)
 
-    def _lose_log(self, robot: RunningRobot, error: OSError) -> None:
-        """End the program of a robot whose steps cannot be recorded: none may be made then."""
-        if not self._clock.passes_by_itself:
-            raise error
-        robot.fail(Fault("LOG_FAILED", error.strerror or str(error)))
+    def _lose_log(self, robot: RunningRobot, lost: StepRecord, error: OSError) -> None:
+        """End the program of a robot whose step cannot be recorded: it may not be made then."""
+        robot.fail(Fault(LOG_FAILED, error.strerror or str(error)))
+        if self._terms.observe is not None:
+            with suppress(OSError):
+                self._terms.observe(replace(lost, label="fault", detail=LOG_FAILED, slot=""))
         self._retire(robot)
 
     def _record(self, robot: RunningRobot, step: Step) -> StepRecord:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 
 def whole_lines(data: bytes) -> list[bytes]:
@@ -25,6 +27,32 @@ def keep_whole_lines(path: Path) -> None:
     whole = sum(len(line) + 1 for line in whole_lines(data))
     if whole < len(data):
         os.truncate(path, whole)
+
+
+def append_whole(file: IO[bytes], line: bytes, *, at_once: bool = False) -> None:
+    """Append a line to a file without a buffer, whole or not at all.
+
+    Args:
+        file: at its end.
+        line: with its end.
+        at_once: whether it is to be on the disk when this returns.
+
+    Raises:
+        OSError: it cannot be written; nothing of it is left in the file then.
+    """
+    end = os.fstat(file.fileno()).st_size
+    try:
+        left = line
+        while left:
+            left = left[file.write(left) :]
+        if at_once:
+            os.fsync(file.fileno())
+    except OSError:
+        # What follows must not become part of half a line.
+        with suppress(OSError):
+            file.truncate(end)
+            file.seek(end)
+        raise
 
 
 def _is_rubbish(line: bytes) -> bool:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
 from ..faults import LOG_FAILED, Fault
-from .lines import keep_whole_lines, whole_lines
+from .lines import append_whole, keep_whole_lines, whole_lines
 
 FIELDS = frozenset({"run", "robot", "seq", "lamport", "time", "label", "move", "detail", "slot"})
 KEPT_AT_ONCE = frozenset({"ntf", "fault"})
@@ -37,7 +36,7 @@ class Log:
             if resume and path.exists():
                 keep_whole_lines(path)
             self._file: IO[bytes] = path.open("ab" if resume else "xb", buffering=0)
-            self._end = path.stat().st_size
+        self._owed: dict[str, Any] | None = None
         self._path = path
         self._run = run
         self._robot = robot
@@ -63,31 +62,29 @@ class Log:
             "detail": detail,
             "slot": slot,
         }
+        self._owed = line if label == "fault" else None
         with _writing(self._path):
-            self._append(json.dumps(line, ensure_ascii=True).encode("ascii") + b"\n")
-            if label in KEPT_AT_ONCE:
-                os.fsync(self._file.fileno())
-        self.steps.append(line)
+            self._append(line)
 
     def close(self) -> None:
-        """Close the file; one without steps is taken away, so that nobody takes it for a run's."""
+        """Close the file, after a fault that could not be written before, as on a full disk.
+
+        One without steps is taken away, so that nobody takes it for a run's.
+        """
+        with suppress(OSError):
+            if self._owed is not None:
+                self._append(self._owed)
         # Every line was written, or its fault raised, before: nothing new can fail here.
         with suppress(OSError):
             self._file.close()
             if not self.steps and not self._path.stat().st_size:
                 self._path.unlink()
 
-    def _append(self, data: bytes) -> None:
-        try:
-            left = data
-            while left:
-                left = left[self._file.write(left) :]
-        except OSError:
-            # What follows must not become part of half a line.
-            with suppress(OSError):
-                os.ftruncate(self._file.fileno(), self._end)
-            raise
-        self._end += len(data)
+    def _append(self, line: dict[str, Any]) -> None:
+        data = json.dumps(line, ensure_ascii=True).encode("ascii") + b"\n"
+        append_whole(self._file, data, at_once=line["label"] in KEPT_AT_ONCE)
+        self.steps.append(line)
+        self._owed = None
 
 
 def read(path: Path) -> tuple[dict[str, Any], ...]:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import errno
 import os
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 
-from mmrs_core.behaviour.log import LogWriter
+from mmrs_core.behaviour.log import LogWriter, read_log
 from mmrs_core.behaviour.steps import StepRecord
+from mmrs_core.flight.faults import Fault
+from mmrs_core.flight.records.log import Log
 from mmrs_core.languages.writing import replace_file
 
 FULL = "/dev/full"
@@ -35,6 +38,47 @@ def test_a_file_that_is_replaced_is_named(full, tmp_path):
         replace_file(tmp_path / "model.xmi", b"x")
     assert raised.value.errno == errno.ENOSPC
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def limit():
+    """Return a function that lets files grow up to so many bytes; None: as before."""
+    resource = pytest.importorskip("resource")
+    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    def set_to(most):
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual if most is None else (most, usual[1]))
+
+    yield set_to
+    set_to(None)
+
+
+@pytest.mark.parametrize("resumed", [False, True])
+def test_a_log_on_a_full_disk_has_its_fault_once_there_is_room_and_no_step_that_was_not_made(
+    tmp_path, limit, resumed
+):
+    fault = replace(STEP, seq=1, label="fault", detail="LOG_FAILED")
+    with LogWriter(tmp_path, resumed=resumed) as writer:
+        writer.write(STEP)
+        limit((tmp_path / "alpha.jsonl").stat().st_size + 10)
+        for lost in (replace(STEP, seq=1, label="end"), fault):
+            with pytest.raises(OSError, match=r"alpha\.jsonl"):
+                writer.write(lost)
+        limit(None)
+    assert read_log(tmp_path / "alpha.jsonl") == (STEP, fault)
+
+
+def test_generated_code_keeps_its_fault_until_there_is_room_too(tmp_path, limit):
+    path = tmp_path / "alpha.jsonl"
+    log = Log(path, "run-0", "alpha")
+    log.write("begin", "start", lamport=1, time=0.0)
+    limit(path.stat().st_size + 10)
+    for label, detail in (("end", ""), ("fault", "LOG_FAILED")):
+        with pytest.raises(Fault, match="cannot be written"):
+            log.write(label, "start", lamport=2, time=1.0, detail=detail)
+    limit(None)
+    log.close()
+    assert [(step.seq, step.label) for step in read_log(path)] == [(0, "begin"), (1, "fault")]
 
 
 def test_a_log_is_named(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import replace
 from math import inf
 
 import pytest
@@ -79,7 +80,10 @@ def test_a_pilot_who_takes_a_robot_that_holds_is_noticed_and_obeyed(live):
 
 
 def test_a_log_that_cannot_be_written_ends_the_program_without_the_step(live):
+    logged = []
+
     def full(record):
+        logged.append(record)
         if record.label == "begin" and record.move == "walk":
             raise OSError(28, "no space left on device")
 
@@ -88,6 +92,22 @@ def test_a_log_that_cannot_be_written_ends_the_program_without_the_step(live):
     assert run.end().faults["r"].which == "LOG_FAILED"
     assert run.script.robots["r"].stops == ["LAND"]
     assert "r begin walk" not in run.shown()
+    lost, fault = logged[-2:]
+    assert fault == replace(lost, label="fault", detail="LOG_FAILED")
+
+
+def test_a_fault_that_cannot_be_written_is_answered_as_that_fault(live):
+    def full(record):
+        if record.label == "fault":
+            raise OSError(28, "no space left on device")
+
+    policies = (Policy("LOG_FAILED", "LAND"), Policy("DEVICE_SILENT", "RETURN"))
+    run = live(program(robot("r", [do("walk")], policies=policies)), Script(walk=inf), observe=full)
+    run.wait_for_step("r begin walk")
+    run.script.robots["r"].fail("DEVICE_SILENT")
+    assert run.end().faults["r"].which == "DEVICE_SILENT"
+    assert run.script.robots["r"].stops == ["RETURN"]
+    assert "'r': the fault is not in the log: no space left on device" in run.said
 
 
 class Full:
