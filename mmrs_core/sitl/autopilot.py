@@ -31,6 +31,7 @@ EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 """Of the ellipsoid of WGS 84: metres, and its flatness."""
 
 NEAR_GROUND = 0.05
+CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 
 STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
 """PX4 takes set-points that have come for a second, with at most half a second in between."""
@@ -206,7 +207,7 @@ class Autopilot:
             self._take_up_mission(name)
         self.mode, self.mode_name = number, name
         self.body.target = self.body.onward = self.body.origin = None
-        self.body.speed = self.usual_speed()
+        self.body.speed = self._entry_speed(name)
         self.body.adrift = self.aimed = False
         self.held, self.returning = 0.0, []
         return int(mavlink.MAV_RESULT_ACCEPTED)
@@ -276,6 +277,12 @@ class Autopilot:
         if mode == "auto" and (self.finished or self.parameters.get("MIS_RESTART") == 1):
             self.item, self.finished = self.first_item, False
             self.loops.clear()
+
+    def _entry_speed(self, mode: str) -> float:
+        """Return the speed at which it begins a mode: of missions a PX4 keeps what items have said before."""
+        said = [item.params[1] for item in self.stores[MISSION][: self.item] if item.command == CHANGE_SPEED]
+        keeps = said and mode == "auto" and self.settings.firmware == PX4
+        return said[-1] if keeps else self.usual_speed()
 
     def usual_speed(self) -> float:
         """Return the metres per second at which it goes unless it is told another speed."""

@@ -112,7 +112,7 @@ def _return(pilot: Autopilot, params: Params) -> int:
 
 def _speed(pilot: Autopilot, params: Params) -> int:
     if params[1] <= 0.0:
-        return DENIED
+        return _usual_speed(pilot)
     if pilot.settings.kind == "rover" and not _heeds_speeds(pilot):
         return FAILED
     if params[0] in (2.0, 3.0):
@@ -120,6 +120,14 @@ def _speed(pilot: Autopilot, params: Params) -> int:
         pilot.body.descent = params[1] if params[0] == 3.0 else pilot.body.descent
     else:
         pilot.body.speed = params[1]
+    return ACCEPTED
+
+
+def _usual_speed(pilot: Autopilot) -> int:
+    """Have a PX4 take the speed of its parameters; others are not told so."""
+    if pilot.settings.firmware != PX4:
+        return DENIED
+    pilot.body.speed = pilot.usual_speed()
     return ACCEPTED
 
 

@@ -100,6 +100,7 @@ _PX4: Mapping[str, float] = {
     "NAV_DLL_ACT": 0,
     "NAV_RCL_ACT": 2,
     "COM_DL_LOSS_T": 10,
+    "COM_DLL_EXCEPT": 0,
     "COM_LOW_BAT_ACT": 0,
     "BAT_LOW_THR": 0.15,
     "BAT_CRIT_THR": 0.07,

@@ -27,6 +27,9 @@ Answers = Mapping[int, tuple[str, ...]]
 ON_SILENCE: Answers = {1: ("loiter",), 2: ("return", "land"), 3: ("land",), 5: (DISARM,), 6: (DISARM,)}
 """By NAV_DLL_ACT."""
 
+EXEMPT = {"auto": 1, "loiter": 2, "take_off": 2, "return": 2, "guided": 4}
+"""By mode, the bit of COM_DLL_EXCEPT by which nothing is done then."""
+
 ON_BREACH: Answers = {2: ("loiter",), 3: ("return", "land"), 4: (DISARM,), 5: ("land",)}
 """By GF_ACTION; 1: it only says so."""
 
@@ -108,7 +111,8 @@ def _watch_link(pilot: Autopilot) -> None:
     elif "gcs" not in pilot.failed:
         pilot.failed["gcs"] = pilot.time
         pilot.say(INFO, "Connection to ground station lost")
-        if pilot.mode_name != "land":
+        exempt = int(pilot.parameters["COM_DLL_EXCEPT"]) & EXEMPT.get(pilot.mode_name, 0)
+        if pilot.mode_name != "land" and not exempt:
             _answer(pilot, ON_SILENCE.get(int(pilot.parameters["NAV_DLL_ACT"]), ()))
 
 

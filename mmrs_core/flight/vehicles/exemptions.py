@@ -1,4 +1,4 @@
-"""What an ArduCopter goes on with by itself although it hears no ground: nothing, where a policy answers."""
+"""What a vehicle goes on with by itself although it hears no ground: nothing, where a policy answers."""
 
 from __future__ import annotations
 
@@ -6,24 +6,35 @@ from ..faults import Refused
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters
+from . import modes
 
 OPTIONS = "FS_OPTIONS"
 IN_MISSIONS = 2
 """The bit by which missions go on (ArduCopter's ``GCS_CONTINUE_IF_AUTO``), whatever FS_GCS_ENABLE says."""
 
+PX4_OPTIONS = "COM_DLL_EXCEPT"
+IN_OUR_MODES = 0b111
+"""The bits by which a PX4 goes on in missions, its other own modes, OFFBOARD, whatever NAV_DLL_ACT says."""
+
 
 def end_exemption(link: Link, kind: str) -> str:
-    """Have a vehicle respond to a lost link in missions, too; return what people should know of it.
+    """Have a vehicle respond to a lost link in all modes of programs; return what people should know of it.
 
     Raises:
-        Refused: it would go on with its mission, and does not confirm that it will not.
+        Refused: it would go on, and does not confirm that it will not.
     """
-    if kind != "copter" or is_px4(link):
+    coded = parameters.REAL
+    if is_px4(link):
+        name, bits, where = PX4_OPTIONS, IN_OUR_MODES, "the modes of its program"
+        coded = modes.MAV_PARAM_TYPE_INT32
+    elif kind == "copter":
+        name, bits, where = OPTIONS, IN_MISSIONS, "missions"
+    else:
         return ""
-    was = round(parameters.read(link, [OPTIONS]).get(OPTIONS, 0.0))
-    if not was & IN_MISSIONS:
+    was = round(parameters.read(link, [name]).get(name, 0.0))
+    if not was & bits:
         return ""
-    wanted = was & ~IN_MISSIONS
-    if not parameters.write(link, OPTIONS, wanted):
-        raise Refused(f"response to a lost link: the vehicle does not confirm {OPTIONS} = {wanted}")
-    return f"{OPTIONS} = {wanted}, which was {was}: it answers a lost link in missions, too"
+    wanted = was & ~bits
+    if not parameters.write(link, name, wanted, coded):
+        raise Refused(f"response to a lost link: the vehicle does not confirm {name} = {wanted}")
+    return f"{name} = {wanted}, which was {was}: it answers a lost link in {where}, too"

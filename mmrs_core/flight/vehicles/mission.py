@@ -19,7 +19,7 @@ from .corridor import width_for
 from .feasibility import check_feasible
 from .following import Following
 from .helm import MODE_SECONDS, Helm
-from .runs import first_flown, keep_place, speed_before
+from .runs import first_flown, keep_place, speed_for
 from .steering import PATIENCE_SECONDS
 from .telemetry import Telemetry
 
@@ -71,7 +71,7 @@ class Mission:
             run = {seq: place for seq, place in places.items() if seq >= first}
             following = Following(trail, run, self._item, first, self._width)
             self._helm.enter(modes.AUTO)
-            if (speed := speed_before(self._items, first)) is not None:
+            if (speed := speed_for(self._link, self._items, first)) is not None:
                 command(self._link, mavlink.MAV_CMD_DO_CHANGE_SPEED, 1, speed, -1)
             self._follow(first, last, following, reached)
         return places[max(places)] if places else None

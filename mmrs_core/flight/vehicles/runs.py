@@ -6,7 +6,7 @@ and tells the number of that one; what stands before it is done when AUTO begins
 the first item whatever it was told (``start_or_resume``). A PX4 tells the item that it was told
 (``mission.cpp``, ``set_current_mission_index``), and has no such parameter; but with COM_TAKEOFF_ACT = 1 it
 begins its mission as soon as it has taken off (``Commander.cpp``, ``checkForMissionUpdate``), of whichever
-run. Both forget the speed of a mission when AUTO is entered.
+run. An ArduPilot forgets the speed of a mission when AUTO is entered.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..faults import Refused
 from ..links.autopilots import is_px4
 from ..links.link import Link
 from ..services import parameters
-from ..services.items import Item
+from ..services.items import CHANGE_SPEED, LOITER, Item
 from . import modes
 
 LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
@@ -28,6 +28,9 @@ LAST_TO_FLY = int(mavlink.MAV_CMD_NAV_LAST)
 RESTART, AFTER_TAKE_OFF = "MIS_RESTART", "COM_TAKEOFF_ACT"
 AT_ONCE = 1
 """The value of either by which a vehicle begins a run that it was not told to begin."""
+
+USUAL_SPEED = -1.0
+"""By which DO_CHANGE_SPEED has a PX4 take the speed of its parameters."""
 
 TROUBLE = {
     RESTART: "the vehicle would begin every run with the first item of its mission",
@@ -40,12 +43,24 @@ def first_flown(mission: Sequence[Item], seq: int) -> int:
     return next(index for index in range(seq, len(mission)) if mission[index].command <= LAST_TO_FLY)
 
 
+def speed_for(link: Link, mission: Sequence[Item], seq: int) -> float | None:
+    """Return the speed to tell a vehicle that begins AUTO at an item; None: it need not be told.
+
+    A PX4 sets the speed again that was last said before the item, of whichever run (``mission_base.cpp``,
+    ``on_activation``): less than 0 has it take its usual one.
+    """
+    said = speed_before(mission, seq)
+    if said is not None or mission[seq].command == CHANGE_SPEED or not is_px4(link):
+        return said
+    return USUAL_SPEED if any(item.command == CHANGE_SPEED for item in mission[:seq]) else None
+
+
 def speed_before(mission: Sequence[Item], seq: int) -> float | None:
     """Return the speed that its run has said before an item, metres per second; None: none yet."""
     for item in reversed(mission[:seq]):
-        if item.command == mavlink.MAV_CMD_NAV_LOITER_UNLIM:
+        if item.command == LOITER:
             return None
-        if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+        if item.command == CHANGE_SPEED:
             return item.params[1]
     return None
 

@@ -1,4 +1,4 @@
-"""A copter answers a lost link in missions, too, where a policy has it answer."""
+"""Vehicles answer a lost link in whatever mode programs use, where a policy has them answer."""
 
 from __future__ import annotations
 
@@ -45,6 +45,14 @@ def test_a_copter_that_insists_on_going_on_is_refused():
         pytest.raises(Refused, match="does not confirm FS_OPTIONS = 0"),
     ):
         end_exemption(link, "copter")
+
+
+def test_a_px4_that_would_go_on_is_told_otherwise_for_the_modes_of_its_program(tmp_path):
+    with manned(tmp_path, firmware="px4", parameters={"COM_DLL_EXCEPT": 13}) as made:
+        made.crew.vehicle.answer_lost_link("CONTINUE")
+        assert made.simulated.autopilot.parameters["COM_DLL_EXCEPT"] == 13
+        made.crew.vehicle.answer_lost_link("RETURN")
+        assert made.simulated.autopilot.parameters["COM_DLL_EXCEPT"] == 8
 
 
 def test_a_robot_with_an_answer_to_a_lost_link_ends_what_its_owner_had_exempted(tmp_path):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from flight_crew import manned, robot_of
+from patience import until
 
 from mmrs_core.flight.faults import Refused
 from mmrs_core.flight.places import distance
@@ -33,6 +34,15 @@ ROBOT = replace(
     runs=(Run(("a1", "a2"), (0.0, 0.0)), Run(("b1", "b2", "b3"), (0.0, 0.0, 0.0))),
 )
 MISSION, FLIGHTS = mission_of(ROBOT)
+UNHURRIED = replace(
+    ROBOT,
+    steps=tuple(
+        replace(step, movement=GoTo(WAYS[step.move], None)) if step.move[0] == "b" else step
+        for step in ROBOT.steps
+    ),
+)
+"""The second run of which says no speed."""
+
 SECOND = FLIGHTS["b1"]
 
 
@@ -41,10 +51,10 @@ def airborne(tmp_path):
     """Return a function that gives the crew of a robot that has taken off, with its mission uploaded."""
     opened = []
 
-    def fly(**settings):
-        opened.append(manned(tmp_path, ROBOT, **settings))
+    def fly(robot=ROBOT, **settings):
+        opened.append(manned(tmp_path, robot, **settings))
         made = opened[-1].__enter__()
-        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        made.crew.vehicle.prepare(uploads_of(robot))
         made.crew.watch.renew()
         made.crew.vehicle.take_off(10.0)
         return made
@@ -90,6 +100,16 @@ def test_what_is_left_of_a_run_is_flown_as_fast_as_the_run(airborne):
     assert set(speeds[len(speeds) // 4 :]) == {3.0, 4.0}
 
 
+def test_a_run_without_a_speed_is_not_flown_at_that_of_the_run_before(airborne):
+    made = airborne(firmware="px4", robot=UNHURRIED)
+    autopilot, speeds, second = made.simulated.autopilot, [], mission_of(UNHURRIED)[1]["b1"]
+    made.crew.link.observe(
+        lambda message, out: speeds.append(autopilot.body.speed) if made.mode == "auto" else None
+    )
+    made.crew.vehicle.fly(second.first, second.last, lambda seq: None)
+    assert speeds[-1] == autopilot.parameters["MPC_XY_CRUISE"]
+
+
 def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told(tmp_path):
     with manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made:
         told = []
@@ -112,6 +132,7 @@ def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path
         assert "COM_TAKEOFF_ACT = 0, which was 1: each run begins with its own first place" in told
         made.crew.watch.renew()
         made.crew.vehicle.take_off(10.0)
+        until(lambda: made.mode != "take_off")
         assert made.mode == "loiter"
 
 

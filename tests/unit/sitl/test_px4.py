@@ -96,6 +96,13 @@ def test_it_holds_for_a_while_before_it_returns_since_nobody_is_heard(bench):
     ]
 
 
+def test_where_its_owner_exempts_a_mode_it_goes_on_although_it_hears_nobody(bench):
+    bench.pilot.parameters |= {"NAV_DLL_ACT": 2, "COM_OF_LOSS_T": 60.0, "COM_DLL_EXCEPT": 4}
+    stream(bench, (0.0, 0.0, 10.0), 1.5)
+    switch(bench, OFFBOARD)
+    assert unheard(bench, 20.0) == "guided"
+
+
 def test_whoever_gives_it_another_mode_while_it_holds_has_it(bench):
     bench.pilot.parameters["NAV_DLL_ACT"] = 2
     switch(bench, (3, 0))
