@@ -337,3 +337,76 @@ def set_ready(peer, until) -> None:
     until(lambda: delivery.lamport is not None)
     delivery.send(4)
     until(lambda: not delivery.waiting)
+
+
+def connected(gateway) -> Client:
+    return Client(json.loads(gateway[1].read_text())["port"])
+
+
+def test_those_who_say_nothing_keep_no_program_waiting(gateway):
+    silent = [connected(gateway) for _ in range(200)]
+    token = json.loads(gateway[1].read_text())["token"]
+    last = connected(gateway)
+    last.socket.settimeout(4.0)
+    last.ask({"do": "hello", "token": token}, "welcome")
+    for each in (*silent, last):
+        each.close()
+
+
+def test_a_hello_that_comes_in_drops_is_turned_away_in_time(gateway):
+    dripping = connected(gateway)
+    begun = time.monotonic()
+    with suppress(TimeoutError):
+        dripping.socket.settimeout(0.5)
+        while time.monotonic() - begun < 15.0:
+            dripping.socket.sendall(b" ")
+            try:
+                said = dripping.socket.recv(1000)
+                break
+            except TimeoutError:
+                said = b""
+    assert json.loads(said) == {"is": "wrong", "why": "says no hello within 5 s"}
+    dripping.close()
+
+
+def test_a_second_program_is_told_of_the_first(gateway, client):
+    second = connected(gateway)
+    told = second.ask({"do": "hello", "token": json.loads(gateway[1].read_text())["token"]}, "wrong")
+    assert told["why"] == "another program speaks for 'a' already"
+    client.ask({"do": "alive"}, "alive")
+    second.close()
+
+
+def test_a_program_that_reads_nothing_is_a_lost_peer(gateway, peer, until):
+    deaf = connected(gateway)
+    hello = {"do": "hello", "token": json.loads(gateway[1].read_text())["token"], "alive": 1}
+    deaf.ask(hello, "welcome")
+    until(lambda: not peer.missing(["a"]))
+    with suppress(OSError):
+        while not peer.lost(["a"]):
+            deaf.socket.sendall(b'{"do": "state"}\n' * 1000)
+    until(lambda: peer.lost(["a"]))
+    deaf.close()
+
+
+def test_a_hello_with_what_cannot_be_is_refused_in_words(gateway):
+    token = json.loads(gateway[1].read_text())["token"]
+
+    def answer(**hello: object) -> str:
+        made = connected(gateway)
+        why = made.ask({"do": "hello", "token": token, **hello}, "wrong")["why"]
+        made.close()
+        return why
+
+    assert answer(token="\ud800") == "does not know the token"
+    for lamport in (-5, 10**20, 1 << 51 | 1):
+        resumed = {"lamport": 3, "notifies": [["b", "go", True, lamport]]}
+        assert "lamport" in answer(resumed=resumed)
+
+
+def test_a_notify_that_is_sent_before_it_was_granted_is_told_as_that(client):
+    client.ask({"do": "prepare", "number": 1, "slots": [["b", "go"]], "active": True}, "asked")
+    assert (
+        client.ask({"do": "send", "number": 1, "lamport": 9}, "wrong")["why"]
+        == "number 1: is not granted yet"
+    )

@@ -1,6 +1,7 @@
 """The bus for programs that have no Zenoh: lines of JSON over loopback TCP.
 
-One gateway serves one robot, and one program at a time. It keeps that robot's slots as any other end
+One gateway serves one robot, and one program at a time; whoever connects and does not say hello keeps
+nobody waiting. It keeps that robot's slots as any other end
 of the bus does, but only while the program is connected: when the program goes without having ended,
 or the gateway dies, the robot is lost to the others.
 """
@@ -13,8 +14,9 @@ import secrets
 import socket
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from ..node import Node
 from ..owners.members import Recorded
@@ -26,6 +28,10 @@ FILE = "gateway.json"
 """Name of the file that says where a gateway listens, and with which token it is spoken to."""
 
 HELLO_SECONDS = 5.0
+"""How long a program has to say hello, and how long it waits for the one before it to be gone."""
+
+SORE_SECONDS = 0.2
+MOST_WAITING = 512
 LONGEST_SILENCE = 3600
 
 Enter = Callable[[Recorded | None], Node]
@@ -54,12 +60,12 @@ class Gateway:
             OSError: the port is taken, or the file cannot be written.
         """
         self._robot, self._run, self._enter = robot, run, enter
-        self._socket = socket.create_server(("127.0.0.1", port))
+        self._socket = socket.create_server(("127.0.0.1", port), backlog=MOST_WAITING)
         self.port: int = self._socket.getsockname()[1]
         self.token = secrets.token_hex(16)
         self._file = folder / FILE
         self._session: Session | None = None
-        self._closed = threading.Event()
+        self._closed, self._seat = threading.Event(), threading.Lock()
         _write_secret(self._file, {"port": self.port, "token": self.token, "robot": robot})
 
     def serve(self, say: Callable[[str], None]) -> None:
@@ -71,10 +77,13 @@ class Gateway:
         while not self._closed.is_set():
             try:
                 connection, _ = self._socket.accept()
-            except OSError:
-                break  # closed: there is nobody to be told
-            with connection:
-                self._serve(connection, say)
+            except OSError as error:
+                if not self._closed.wait(SORE_SECONDS):
+                    say(f"{self._robot!r}: a program could not be let in: {error.strerror}")
+                continue
+            threading.Thread(target=self._let_in, args=(connection, say), daemon=True).start()
+        with self._seat:
+            return  # the program that was served has gone
 
     def close(self) -> None:
         """Stop serving; the robot is lost to the others unless its program has ended."""
@@ -89,27 +98,50 @@ class Gateway:
             self._session.hang_up()
         self._file.unlink(missing_ok=True)
 
-    def _serve(self, connection: socket.socket, say: Callable[[str], None]) -> None:
+    def _let_in(self, connection: socket.socket, say: Callable[[str], None]) -> None:
+        """Serve a program that says hello in time, once none is served any more."""
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        connection.settimeout(HELLO_SECONDS)
-        with connection.makefile("rb") as lines:
+        with connection, connection.makefile("rb") as lines:
             try:
-                hello = self._hello(line_of(lines))
-                alive = _alive_in(hello)
-                node = self._enter(_recorded_in(hello))
+                hello = self._hello(_first_line(connection, lines))
+                alive, recorded = _alive_in(hello), _recorded_in(hello)
+                if not self._seat.acquire(timeout=HELLO_SECONDS):
+                    raise Unreadable(f"another program speaks for {self._robot!r} already")
             except (OSError, ValueError) as error:
-                _send(connection, {"is": "wrong", "why": str(error)})
-                say(f"{self._robot!r}: a program was turned away: {error}")
+                self._turn_away(connection, error, say)
                 return
-            connection.settimeout(None)
-            say(f"{self._robot!r}: a program has come")
-            self._session = Session(self._robot, self._run, node, connection, alive)
             try:
-                self._session.run(lines)
+                self._serve(connection, lines, alive, recorded, say)
             finally:
-                node.close()
                 self._session = None
-            say(f"{self._robot!r}: the program has gone")
+                self._seat.release()
+
+    def _serve(
+        self,
+        connection: socket.socket,
+        lines: IO[bytes],
+        alive: int | None,
+        recorded: Recorded | None,
+        say: Callable[[str], None],
+    ) -> None:
+        try:
+            node = self._enter(recorded)
+        except (OSError, ValueError) as error:
+            self._turn_away(connection, error, say)
+            return
+        say(f"{self._robot!r}: a program has come")
+        session = self._session = Session(self._robot, self._run, node, connection, alive)
+        if self._closed.is_set():
+            session.hang_up()
+        try:
+            session.run(lines)
+        finally:
+            node.close()
+        say(f"{self._robot!r}: the program has gone{session.why}")
+
+    def _turn_away(self, connection: socket.socket, error: Exception, say: Callable[[str], None]) -> None:
+        _send(connection, {"is": "wrong", "why": str(error)})
+        say(f"{self._robot!r}: a program was turned away: {error}")
 
     def _hello(self, line: bytes) -> Mapping[str, Any]:
         """Return what a program says first.
@@ -120,9 +152,33 @@ class Gateway:
         content = object_in(line)
         if text_in(content, "do") != "hello":
             raise Unreadable("says something else before hello")
-        if not secrets.compare_digest(text_in(content, "token", "").encode(), self.token.encode()):
+        token = text_in(content, "token", "").encode("utf-8", "surrogatepass")
+        if not secrets.compare_digest(token, self.token.encode()):
             raise Unreadable("does not know the token")
         return content
+
+
+def _first_line(connection: socket.socket, lines: IO[bytes]) -> bytes:
+    """Return the first line.
+
+    Raises:
+        OSError: the connection broke.
+        Unreadable: no line was said in time, however much of one.
+    """
+    late = threading.Timer(HELLO_SECONDS, _hear_no_more, [connection])
+    late.start()
+    try:
+        line = line_of(lines)
+    finally:
+        late.cancel()
+    if not line.endswith(b"\n"):
+        raise Unreadable(f"says no hello within {HELLO_SECONDS:g} s")
+    return line
+
+
+def _hear_no_more(connection: socket.socket) -> None:
+    with suppress(OSError):  # it has gone already
+        connection.shutdown(socket.SHUT_RD)
 
 
 def _alive_in(content: Mapping[str, Any]) -> int | None:
@@ -140,17 +196,28 @@ def _recorded_in(content: Mapping[str, Any]) -> Recorded | None:
         return None
     if not isinstance(resumed, dict) or not isinstance(resumed.get("notifies"), list):
         raise Unreadable("resumed: no object with lamport and notifies")
-    notifies = {}
-    for each in resumed["notifies"]:
-        match each:
-            case [str(robot), str(slot), bool(active), int(lamport)]:
-                notifies[robot, slot] = (active, lamport)
-            case _:
-                raise Unreadable("resumed: notifies are no lists of robot, slot, value and logical time")
-    lamport = number_in(resumed, "lamport")
+    notifies = dict(_notify_in(each) for each in resumed["notifies"])
+    return Recorded(_time_in(resumed), notifies)
+
+
+def _notify_in(each: object) -> tuple[tuple[str, str], tuple[bool, int]]:
+    match each:
+        case [str(robot), str(slot), bool(active), int(lamport)]:
+            return (robot, slot), (active, _time_in({"lamport": lamport}))
+        case _:
+            raise Unreadable("resumed: notifies are no lists of robot, slot, value and logical time")
+
+
+def _time_in(content: Mapping[str, Any]) -> int:
+    """Return the logical time of something that a program has recorded.
+
+    Raises:
+        Unreadable: there is none.
+    """
+    lamport = number_in(content, "lamport")
     if lamport > LARGEST // 2:
         raise Unreadable(f"resumed: lamport {lamport}: more steps than can be counted")
-    return Recorded(lamport, notifies)
+    return lamport
 
 
 def _send(connection: socket.socket, content: Mapping[str, object]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+import struct
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -19,6 +20,9 @@ from ..words import LONGEST, MOST_SLOTS, REACH, CommandId
 
 WAITING_SECONDS = 1.0
 """How often a program is told for whom its notify waits."""
+
+DEAF_SECONDS = 5.0
+"""How long a program may leave what it is told unread, when no more of it can be sent."""
 
 WATCHING_SECONDS = 0.2
 """How often it is looked whether a program is still there that has said how often it speaks."""
@@ -37,7 +41,11 @@ def line_of(lines: IO[bytes]) -> bytes:
 
 
 class Session:
-    """Serves one program until it goes."""
+    """Serves one program until it goes.
+
+    Attributes:
+        why: it was sent away, as the end of a sentence; empty: it went by itself.
+    """
 
     def __init__(
         self, robot: str, run: str, node: Node, connection: socket.socket, alive: float | None = None
@@ -51,6 +59,9 @@ class Session:
             connection: to the program.
             alive: seconds of silence after which the program counts as frozen; None: it never does.
         """
+        self.why = ""
+        patience = min(DEAF_SECONDS, alive or DEAF_SECONDS)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", *_parts(patience)))
         self._robot, self._run, self._node, self._connection = robot, run, node, connection
         self._turn = threading.Lock()
         self._deliveries: dict[int, Delivery] = {}
@@ -131,7 +142,10 @@ class Session:
 
     def _send(self, content: Mapping[str, Any]) -> Mapping[str, object]:
         number = number_in(content, "number")
-        self._delivery(number).send(number_in(content, "lamport"))
+        delivery, lamport = self._delivery(number), number_in(content, "lamport")
+        if delivery.lamport is None:
+            raise Unreadable(f"number {number}: is not granted yet")
+        delivery.send(lamport)
         return {"is": "sent", "number": number}
 
     def _withdraw(self, content: Mapping[str, Any]) -> Mapping[str, object]:
@@ -228,6 +242,10 @@ class Session:
     def _say(self, content: Mapping[str, object]) -> None:
         try:
             self._connection.sendall(json.dumps(content).encode() + b"\n")
+        except BlockingIOError:
+            self.why = ": it reads nothing of what it is told"
+            self._over.set()
+            self.hang_up()
         except OSError:
             self._over.set()  # the program has gone: reading ends, too
 
@@ -242,6 +260,11 @@ class Session:
         "alive": _live,
         "leave": _leave,
     }
+
+
+def _parts(seconds: float) -> tuple[int, int]:
+    """Return whole seconds, and microseconds of the rest."""
+    return int(seconds), int(seconds % 1 * 1e6)
 
 
 def _slots_in(content: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
