@@ -34,6 +34,7 @@ class Body:
     """A point in metres north, east and up of home, with a heading in degrees.
 
     Attributes:
+        position: where it takes itself to be. error: metres north and east by which that is wrong.
         target: where it goes; None: it comes to a halt.
         onward: where it goes from there without a stop; None: it stops there.
         origin: where its leg begins, to which it keeps; None: it goes straight to its target.
@@ -68,6 +69,7 @@ class Body:
     post: Vector | None = None
     airspeed: float = 18.0
     adrift: bool = False
+    error: tuple[float, float] = (0.0, 0.0)
 
     def advance(self, seconds: float) -> None:
         """Move for a while."""
@@ -77,6 +79,17 @@ class Body:
             self._accelerate(self._in_the_wind(self._wanted_velocity()), step)
             self.position = plus(self.position, self.motion, step)
             self._turn(step)
+
+    @property
+    def place(self) -> Vector:
+        """Return where it really is."""
+        north, east, up = self.position
+        return (north - self.error[0], east - self.error[1], up)
+
+    def mistake(self, north: float, east: float) -> None:
+        """Take itself to be so many metres from where it really is."""
+        (really_north, really_east, up), self.error = self.place, (north, east)
+        self.position = (really_north + north, really_east + east, up)
 
     def distance_to(self, place: Vector) -> float:
         """Return the metres to a place."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from inspect import signature
-from math import isfinite, nan
+from math import cos, isfinite, nan, radians, sin
 
 from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.body import wind_of
@@ -46,6 +46,12 @@ class Faults:
         """Give it its position back."""
         with self._lock:
             self._autopilot.located = True
+
+    def shift_position(self, metres: float, bearing: float = 0.0) -> None:
+        """Have it take itself to be elsewhere from now on, so far off in degrees clockwise from north."""
+        with self._lock:
+            angle = radians(bearing)
+            self._autopilot.body.mistake(metres * cos(angle), metres * sin(angle))
 
     def restart(self, armed: bool = False) -> None:
         """Reboot it: it is silent for a while, its boot time is zero, and its memory is what is on disk.
@@ -216,6 +222,9 @@ Act = Callable[..., None]
 
 FAULTS: Mapping[str, Act] = {
     "gps-lost": Faults.lose_position,
+    "position-shift": lambda faults, metres="40", bearing="0": faults.shift_position(
+        _finite(metres), _finite(bearing)
+    ),
     "restart": lambda faults, armed="": faults.restart(_armed(armed)),
     "stick": Faults.take_stick,
     "obstacle": lambda faults, metres="3", bearing="0": faults.meet_obstacle(
@@ -237,6 +246,7 @@ FAULTS: Mapping[str, Act] = {
 
 ENDS: Mapping[str, Act] = {
     "gps-lost": Faults.find_position,
+    "position-shift": lambda faults: faults.shift_position(0.0),
     "obstacle": Faults.clear_obstacle,
     "breach": Faults.mend_fence,
     "silent": Faults.silence,

@@ -93,6 +93,6 @@ def _touch_ground(pilot: Autopilot) -> None:
 def _remember(pilot: Autopilot) -> None:
     position = pilot.body.position
     if not pilot.track or pilot.time - pilot.track[-1][0] >= TRACK_SECONDS - 1e-6:
-        pilot.track.append((pilot.time, *position))
+        pilot.track.append((pilot.time, *pilot.body.place))
     if pilot.armed and not pilot.returning and dist(position, pilot.crumbs[-1]) >= CRUMB_METRES:
         pilot.crumbs.append(position)

@@ -44,6 +44,8 @@ class SimulatedVehicle:
         radio: how it speaks to who steers it.
         streams: what it tells by itself. values: its parameters, for the ground.
         received: (seconds, name) of every message that has come for it, but heartbeats.
+        on_tick: called whenever its time has gone on, in its own thread: what must happen at an instant
+            of it, happens there.
         speedup: seconds of simulation in a second.
     """
 
@@ -85,6 +87,7 @@ class SimulatedVehicle:
             old=given.mavlink == 1,
         )
         self.received: list[tuple[float, str]] = []
+        self.on_tick: Callable[[], None] = lambda: None
         self.lock = threading.RLock()
         self.faults = Faults(self.autopilot, self.lock, watched=ground is not None)
         self.radio.dumb = lambda: self.faults.dumb
@@ -149,6 +152,7 @@ class SimulatedVehicle:
         """Let real time pass, and tell what is due."""
         with self.lock:
             advance(self.autopilot, real_seconds * self.speedup)
+            self.on_tick()
             if self.autopilot.booted != self._booted:
                 self._begin()
             if self.autopilot.reboots:

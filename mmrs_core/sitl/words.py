@@ -43,6 +43,7 @@ def troubles_of(pilot: Autopilot) -> list[str]:
     """Return what is wrong with a vehicle, in words."""
     found = {
         "no position": not pilot.located,
+        f"{hypot(*pilot.body.error):.0f} m from where it takes itself to be": any(pilot.body.error),
         "obstacle": pilot.obstacle is not None,
         "out of its fence": pilot.breached,
         "camera dead": not pilot.camera.works,
@@ -64,7 +65,7 @@ def deeds_of(vehicle: SimulatedVehicle) -> Deeds:
         photos=len(pilot.camera.photos),
         battery=round(pilot.energy, 3),
         armed=pilot.armed,
-        from_home=round(hypot(*pilot.body.position[:2]), 1),
+        from_home=round(hypot(*pilot.body.place[:2]), 1),
         sent=vehicle.radio.sent,
         heard=vehicle.radio.heard,
         modes=[names.get(number, str(number)) for _, number in pilot.modes],

@@ -102,7 +102,7 @@ class Watch:
 
     def begin(self, link: Link, vehicle: MavlinkVehicle) -> None:
         """Watch link and vehicle, too."""
-        signs = Signs(vehicle.telemetry)
+        signs = Signs(vehicle.telemetry, leaps=self._robot.vehicle != "sub")
         departures = Departures(self._robot, link, vehicle, signs, self._answers)
         motors = Motors(vehicle, self._robot.vehicle)
         self._watched = _Watched(link, vehicle, signs, departures, Ground(link), motors)
@@ -235,7 +235,8 @@ class Watch:
             self._answer(*departure, watched)
         watched.motors.check(moving=self.moving)
         for event, why in watched.signs.seen(moving=self.moving):
-            self._weigh(event, why)
+            # A place that has leapt is wrong at once, and may stay so.
+            self._weigh(event, why, at_once=event == POSITION_LOST and watched.signs.leapt)
         self._weigh(BATTERY_LOW, self._low(watched.vehicle))
         self._weigh(LOG_FAILED, self.unkept())
         self._check_ground(watched.ground)
@@ -263,8 +264,8 @@ class Watch:
                 self.decide(BATTERY_LOW, untold, WATCHED)
         return low or (vehicle.telemetry.battery_trouble() if state.armed and self.moving else "")
 
-    def _weigh(self, event: str, why: str) -> None:
-        """Raise a fault for what has lasted long enough and must not be borne."""
+    def _weigh(self, event: str, why: str, *, at_once: bool = False) -> None:
+        """Raise a fault for what has lasted long enough, or counts at once, and must not be borne."""
         if not why:
             self._since.pop(event, None)
             self._borne.discard(event)
@@ -274,7 +275,7 @@ class Watch:
         policy = policy_for(event, self._robot, self.current())
         limit = LASTING.get(event, 0.0) if policy.after is None else policy.after
         since = self._since.setdefault(event, self._clock.now())
-        if self._clock.now() - since >= limit:
+        if at_once or self._clock.now() - since >= limit:
             self._judge(event, why, policy)
 
     def _judge(self, event: str, why: str, policy: Policy) -> None:

@@ -15,19 +15,31 @@ STARTED_ANEW = "the vehicle has started anew"
 class Signs:
     """Reads what a vehicle tells; nothing here waits."""
 
-    def __init__(self, telemetry: Telemetry) -> None:
-        """Take the vehicle's restarts up to now for granted."""
+    def __init__(self, telemetry: Telemetry, *, leaps: bool = True) -> None:
+        """Take for granted what was up to now.
+
+        Args:
+            telemetry: of the vehicle.
+            leaps: whether its position must not leap; that of what dives does when it comes up to a fix.
+        """
         self._telemetry = telemetry
-        self._starts = telemetry.starts()
+        self._heeds_leaps = leaps
+        self.renew()
 
     def renew(self) -> None:
-        """Take the vehicle's restarts up to now for granted."""
+        """Take the vehicle's restarts and leaps up to now for granted."""
         self._starts = self._telemetry.starts()
+        self._leaps = self._telemetry.leaps.count
 
     @property
     def restarted(self) -> bool:
         """Return whether the vehicle has started anew since `renew`."""
         return self._telemetry.starts() > self._starts
+
+    @property
+    def leapt(self) -> bool:
+        """Return whether the place that it takes for its own has leapt since `renew`."""
+        return self._heeds_leaps and self._telemetry.leaps.count > self._leaps
 
     def seen(self, *, moving: bool) -> tuple[tuple[str, str], ...]:
         """Return each event with the reason to believe that it is there; an empty one: it is not.
@@ -39,7 +51,11 @@ class Signs:
         active = moving and tells.armed()
         return (
             (VEHICLE_RESTARTED, STARTED_ANEW if moving and self.restarted else ""),
-            (POSITION_LOST, tells.position_trouble() if active else ""),
+            (POSITION_LOST, self._unlocated() if active else ""),
             (FENCE_BREACHED, tells.breach() if active else ""),
             (OBSTACLE, tells.obstacle() if active else ""),
         )
+
+    def _unlocated(self) -> str:
+        """Return why nobody knows where the vehicle is; empty if somebody does."""
+        return self._telemetry.position_trouble() or (self._telemetry.leaps.last if self.leapt else "")

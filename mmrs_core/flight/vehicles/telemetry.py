@@ -15,6 +15,7 @@ from ..program import Geographic, Local, Place
 from .announcements import WORDS, Announcements
 from .batteries import Batteries
 from .detections import Detections
+from .leaps import Leaps
 from .readiness import lacks, unlocated
 from .texts import Texts
 from .trail import Trail, place_in
@@ -46,6 +47,7 @@ class Telemetry:
     Attributes:
         texts: what the vehicle has said.
         announcements: what of that is about what it does by itself.
+        leaps: of the place that it takes for its own.
     """
 
     def __init__(self, link: Link, home: Place) -> None:
@@ -60,6 +62,8 @@ class Telemetry:
         link.observe(self.announcements)
         self._batteries = Batteries(lambda: link.component)
         link.observe(self._batteries)
+        self.leaps = Leaps(self._position, lambda: link.component, self.armed)
+        link.observe(self.leaps)
         self._detections = Detections(lambda: self.here() if self.placed() else None)
         link.observe(self._detections)
 

@@ -47,6 +47,13 @@ def event_rows() -> list[Row]:
             [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
             "LAND",
         ),
+        *_landed(
+            "position leaps by 40 m",
+            "POSITION_LOST",
+            strikes.shift,
+            [(AT, "LAND", "here"), (AUTO, "LAND", "here"), (LEG, "HOLD", "here")],
+            "LAND",
+        ),
         *_event_rows(
             "obstacle reported",
             "OBSTACLE",

@@ -65,6 +65,11 @@ def satellites(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.lose_position()
 
 
+def shift(vehicle: SimulatedVehicle) -> None:
+    """Have it take itself to be 40 m north-east of where it is."""
+    vehicle.faults.shift_position(40.0, 45.0)
+
+
 def obstacle(vehicle: SimulatedVehicle) -> None:
     vehicle.faults.meet_obstacle(2.0)
 

@@ -52,6 +52,8 @@ def fly(
     with Fleet(folder, pads, execution, speedup=speedup, settings=settings, watched=watched) as fleet:
         process = fleet.start(*arguments)
         watches = [Watch(row, name, fleet) for row, name in zip(rows, names, strict=True)]
+        for watch in watches:
+            watch.begin(itself=blow is None)
         if blow is not None and wait_for(lambda: all([watch.ready() for watch in watches]), patience):
             if until is not None:
                 until(fleet, process)
@@ -59,7 +61,7 @@ def fly(
                 watch.strike()
             blow(fleet, process)
         wait_for(
-            lambda: all([watch.settled(blow is None) for watch in watches]) or _over(process, blow),
+            lambda: all([watch.settled() for watch in watches]) or _over(process, blow),
             patience,
         )
         for watch in watches:

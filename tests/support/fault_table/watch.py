@@ -43,7 +43,7 @@ class Watch:
         self._mended = row.mends is None
         self._resumed = row.resumes is None
         self._refused = not row.refuses
-        self._settled = False
+        self._settled = self._itself = False
         self._rest: tuple[str, float] | None = None
         self._target: tuple[float, float, float] | None = None
         self._turned: float | None = None
@@ -64,20 +64,37 @@ class Watch:
         if self._row.order and not self._row.together:
             self._give(self._row.order)
 
-    def settled(self, itself: bool = True) -> bool:
-        """Go on with it; return whether nothing more is to come.
+    def begin(self, itself: bool) -> None:
+        """Act from now on, at instants of the vehicle's own time, however late whoever looks on may be.
 
         Args:
             itself: whether to strike when the vehicle is where it is wanted; else somebody else does.
         """
+        self._itself = itself
+        self._vehicle.on_tick = self._act
+
+    def _act(self) -> None:
+        try:
+            if not self._settled:
+                self._go_on()
+        except Exception as error:
+            # It would end the vehicle, and nobody would know why.
+            self.outcome.problems.append(f"the table itself fails: {error!r}")
+
+    def _go_on(self) -> None:
+        if self._struck is None:
+            if self._itself and self.ready():
+                self.strike()
+            return
+        self._notice_turn()
+        self._follow_up(self._vehicle.autopilot.time - self._struck.time)
+
+    def settled(self) -> bool:
+        """Return whether nothing more is to come."""
         if self._settled:
             return True
         if self._struck is None:
-            if itself and self.ready():
-                self.strike()
             return False
-        self._notice_turn()
-        self._follow_up(self._vehicle.autopilot.time - self._struck.time)
         found, now = ending(self._vehicle, self._struck), self._vehicle.autopilot.time
         if not found or self._rest is None or self._rest[0] != found:
             self._rest = (found, now) if found else None

@@ -139,6 +139,24 @@ def test_seconds_without_a_position_count_only_as_long_as_they_last(in_the_air):
     assert made.caught().event == "POSITION_LOST"
 
 
+def test_a_position_that_leaps_counts_at_once_whatever_seconds_are_borne(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "LAND", 1000.0))
+    made.simulated.faults.shift_position(40.0, 90.0)
+    fault = made.caught()
+    assert fault.event == "POSITION_LOST"
+    assert "its position has leapt by 40 m" in str(fault)
+    made.crew.watch.tighten()
+    made.quiet(5.0)
+
+
+def test_a_position_that_leaps_is_borne_by_who_carries_on(in_the_air):
+    made = in_the_air(Policy("POSITION_LOST", "CONTINUE"))
+    made.simulated.faults.shift_position(40.0)
+    until(lambda: made.crew.vehicle.telemetry.leaps.count)
+    made.quiet(5.0)
+    assert made.decided == [("POSITION_LOST", "CONTINUE")]
+
+
 def test_what_a_policy_bears_is_told_once(in_the_air):
     made = in_the_air(Policy("OBSTACLE", "CONTINUE"))
     made.simulated.faults.meet_obstacle(3.0)

@@ -11,6 +11,8 @@ from mmrs_core.sitl import FAULTS, Settings, SimulatedVehicle
 
 SPEEDUP = 10.0
 PREARM = 0x1000_0000
+METRES_PER_DEGREE = 111_412.0
+"""Of longitude, at the equator: no degree is longer."""
 
 
 @pytest.fixture
@@ -41,6 +43,19 @@ def test_a_lost_position_is_told_and_lands_the_vehicle(vehicle, ground):
     assert ground.hear(lambda m: m.get_type() == "HEARTBEAT" and m.custom_mode == 9)
     vehicle.faults.find_position()
     assert ground.hear(lambda m: m.get_type() == "EKF_STATUS_REPORT" and m.flags & 16)
+
+
+def test_who_takes_himself_to_be_elsewhere_goes_back_to_where_he_then_is_not(vehicle, ground):
+    airborne(vehicle, ground)
+    body = vehicle.autopilot.body
+    vehicle.faults.begin("position-shift", "40", "90")
+    assert body.place == pytest.approx((0.0, 0.0, 10.0), abs=1.0)
+    assert body.position[1] == pytest.approx(40.0, abs=1.0)
+    east = 40.0 / METRES_PER_DEGREE
+    home = vehicle.autopilot.settings.longitude
+    assert ground.hear(lambda m: m.get_type() == "GLOBAL_POSITION_INT" and m.lon * 1e-7 - home > 0.9 * east)
+    vehicle.faults.end("position-shift")
+    assert body.position == body.place == pytest.approx((0.0, 0.0, 10.0), abs=1.0)
 
 
 def test_a_restart_begins_time_anew_and_drops_the_vehicle_but_keeps_what_was_uploaded(vehicle, ground):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from flight_crew import HOME, in_background
 from patience import until
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.flight.faults import Strange
 from mmrs_core.flight.orders.obedience import Ordered
@@ -96,10 +97,13 @@ def test_a_vehicle_that_is_not_the_robots_is_told_nothing_and_a_log_that_was_beg
     made = robot()
     if begun:
         made.crew.pilot.journal.write("begin")
-    heard = len(made.simulated.received)
+    received = made.simulated.received
+    made.crew.link.send(mavlink.MAVLink_ping_message(0, 0, 0, 0))
+    until(lambda: received[-1][1] == "PING")
+    heard = len(received)
     ending = made.ending()
     assert ending.refuse(Strange("somebody else has it")) == 1
     assert ending.suspended is begun
     assert made.events() == ([] if begun else ["REFUSED"])
-    assert made.simulated.received[heard:] == []
+    assert received[heard:] == []
     assert made.simulated.autopilot.armed
