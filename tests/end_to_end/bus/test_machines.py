@@ -9,8 +9,11 @@ import threading
 import time
 
 import bus_asking
+import bus_walking
 import machines
 import pytest
+
+from mmrs_core.behaviour.replay import Outcome, replay
 
 pytestmark = [pytest.mark.thorough, pytest.mark.skipif(bool(why := machines.why_not()), reason=why)]
 
@@ -66,3 +69,94 @@ def test_a_machine_that_is_out_of_reach_keeps_the_others_from_nothing(three, unt
     assert time.monotonic() - max(each.answered_at for each in asking[1:]) < 1.5
     made.heal()
     until(lambda: all(len(each.here) == 2 for each in asking))
+
+
+class Walking:
+    """Robots that step through a behaviour, each on a machine of its own."""
+
+    def __init__(self, made, folder, behaviour, size):
+        self.made, self.folder = made, folder
+        self.program = bus_walking.BEHAVIOURS[behaviour](size)
+        self.robots = [robot.id for robot in self.program.robots]
+        self.words = (behaviour, str(size))
+        self.runs: dict[int, subprocess.Popen[bytes]] = {}
+
+    def start(self, number, *more):
+        behaviour, size = self.words
+        robot, others = self.robots[number], [each for each in range(len(self.robots)) if each != number]
+        words = [behaviour, robot, str(self.folder / robot), "--size", size, "--seconds", "150"]
+        words += ["--listen", "tcp/0.0.0.0:7447", *more]
+        for other in others:
+            words += ["--connect", f"tcp/{self.made.address(other)}:7447"]
+        command = self.made.command(number, sys.executable, bus_walking.__file__, *words)
+        self.runs[number] = subprocess.Popen(command)
+
+    def number_of_steps(self, number):
+        return len(bus_walking.logged(self.folder / self.robots[number], self.robots[number]))
+
+    def all_have_ended(self):
+        return [run.wait(160) for run in self.runs.values()] == [0] * len(self.runs)
+
+    def replayed(self):
+        logs = [bus_walking.logged(self.folder / robot, robot) for robot in self.robots]
+        return replay(self.program, [record for log in logs for record in log])
+
+
+@pytest.fixture
+def walking(tmp_path):
+    """Return what has robots walk through a behaviour, with machines for up to four."""
+    made = machines.Machines(4, seed=7)
+    begun: list[Walking] = []
+
+    def walk(behaviour, size):
+        begun.append(Walking(made, tmp_path, behaviour, size))
+        for number in range(len(begun[0].robots)):
+            begun[0].start(number, "--pause", "0.2")
+        return begun[0]
+
+    yield made, walk
+    made.close()
+    for each in begun:
+        for run in each.runs.values():
+            run.wait()
+
+
+BAD_WAYS = {
+    "lossy": machines.Way(delay=0.02, jitter=0.2, loss=0.2, doubled=0.1),
+    "slow": machines.Way(delay=0.3, rate=4000.0),
+}
+
+
+@pytest.mark.parametrize("way", BAD_WAYS)
+def test_what_is_applied_is_exact_over_a_bad_network(walking, way):
+    made, walk = walking
+    made.way(BAD_WAYS[way], 0, 1)
+    fleet = walk("exchange", 4)
+    assert fleet.all_have_ended()
+    assert (fleet.replayed().outcome, fleet.replayed().complaints) == (Outcome.SUCCESS, ())
+
+
+def test_machines_that_lose_power_and_begin_again_go_on_where_they_were(walking, until):
+    made, walk = walking
+    fleet = walk("exchange", 8)
+    for number, steps in ((0, 6), (1, 10), (0, 16)):
+        until(lambda number=number, steps=steps: fleet.number_of_steps(number) >= steps)
+        made.kill(number)
+        fleet.runs[number].wait()
+        fleet.start(number, "--pause", "0.2", "--again")
+    assert fleet.all_have_ended()
+    assert (fleet.replayed().outcome, fleet.replayed().complaints) == (Outcome.SUCCESS, ())
+
+
+def test_a_network_that_parts_and_an_address_that_changes_lose_and_double_nothing(walking, until):
+    made, walk = walking
+    fleet = walk("gathering", 4)
+    made.split((0, 1), (2, 3))
+    time.sleep(3.0)
+    made.move(2, "10.77.0.77")
+    made.link(3, "down")
+    made.heal()
+    time.sleep(1.0)
+    made.link(3, "up")
+    assert fleet.all_have_ended()
+    assert (fleet.replayed().outcome, fleet.replayed().complaints) == (Outcome.SUCCESS, ())

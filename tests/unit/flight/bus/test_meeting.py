@@ -43,6 +43,24 @@ def test_a_robot_that_gives_up_as_all_begin_is_told_so():
     assert meeting.answer(ready("a", 0)).what == "begin"
 
 
+def test_the_instant_is_as_far_off_as_the_slowest_link_needs():
+    now = 0.0
+    meeting = Roster(lambda: now)
+    meeting.answer(ready("a"))
+    now = 2.0
+    meeting.answer(ready("a"))
+    assert meeting.answer(ready("b")).at == 2.0 + 6.0
+
+
+def test_a_robot_that_was_away_makes_nobody_wait():
+    now = 0.0
+    meeting = Roster(lambda: now)
+    meeting.answer(ready("a"))
+    now = 100.0
+    meeting.answer(ready("a"))
+    assert meeting.answer(ready("b")).at == 101.0
+
+
 def test_people_are_told_skew_offset_and_uncertainty():
     words = str(Beginning(offset=0.0123, uncertainty=0.0004, late=0.0011))
     assert words == "at most 1.5 ms from the instant: 1.1 ms late, by clocks 12.3 ms apart, known to 0.4 ms"
