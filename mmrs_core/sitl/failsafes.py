@@ -40,22 +40,34 @@ ON_ROVERS_LOSS: Answers = {
     5: (DISARM,),
     6: ("loiter", "brake"),
 }
-ON_BATTERY: Answers = {
-    1: ("land", "surface", "brake"),
-    2: ("return", "land", "brake"),
-    3: ("smart_return", "return", "land", "brake"),
-    4: ("smart_return", "land", "brake"),
-    5: (DISARM,),
-    6: ("return", "land"),
-    7: ("brake", "land"),
+ON_BATTERY: Mapping[str, Answers] = {
+    "copter": {
+        1: ("land",),
+        2: ("return", "land"),
+        3: ("smart_return", "return", "land"),
+        4: ("smart_return", "land"),
+        5: (DISARM,),
+        6: ("return", "land"),
+        7: ("brake", "land"),
+    },
+    "sub": {2: (DISARM,), 3: ("surface",)},
+    "rover": ON_ROVERS_LOSS,
 }
-ON_BREACH: Answers = {
-    1: ("return", "land", "brake"),
-    2: ("land", "brake"),
-    3: ("smart_return", "return", "land", "brake"),
-    4: ("brake", "land"),
-    5: ("smart_return", "land", "brake"),
+ON_BREACH: Mapping[str, Answers] = {
+    "copter": {
+        1: ("return", "land"),
+        2: ("land",),
+        3: ("smart_return", "return", "land"),
+        4: ("brake", "land"),
+        5: ("smart_return", "land"),
+    },
+    "sub": {},
+    "rover": ON_ROVERS_LOSS,
 }
+"""A submarine only says that its fence is broken (``ArduSub/fence.cpp``)."""
+
+ON_IN_MISSIONS = 2
+"""Of a copter's FS_OPTIONS: missions go on although the ground is not heard."""
 
 
 def watch(pilot: Autopilot, seconds: float) -> None:
@@ -91,16 +103,29 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
 def _watch_link(pilot: Autopilot) -> None:
     if pilot.heard is None:
         return
-    if pilot.time - pilot.heard < max(pilot.parameters["FS_GCS_TIMEOUT"], pilot.patience):
-        if pilot.failed.pop("gcs", None) is not None:
+    limit = pilot.parameters["FS_GCS_TIMEOUT"] + pilot.parameters.get("FS_TIMEOUT", 0.0)
+    if pilot.time - pilot.heard < max(limit, pilot.patience):
+        if pilot.failed.pop("gcs", None) is not None and pilot.settings.kind != "sub":
             pilot.say(WARNING, "GCS Failsafe Cleared")
         return
     enabled = pilot.parameters["FS_GCS_ENABLE"]
     if not enabled or "gcs" in pilot.failed:
         return
     pilot.failed["gcs"] = pilot.time
-    pilot.say(WARNING, "GCS Failsafe")
+    if pilot.settings.kind == "sub":
+        pilot.say(WARNING, f"MYGCS: {pilot.parameters['SYSID_MYGCS']:.0f}, heartbeat lost")
+    elif _goes_on(pilot):
+        pilot.say(WARNING, "GCS Failsafe - Continuing Auto Mode")
+        return
+    else:
+        pilot.say(WARNING, "GCS Failsafe")
     _answer(pilot, _on_silence(pilot, int(enabled)))
+
+
+def _goes_on(pilot: Autopilot) -> bool:
+    """Return whether a copter is to go on with its mission although it hears no ground."""
+    exempt = int(pilot.parameters["FS_OPTIONS"]) & ON_IN_MISSIONS
+    return bool(pilot.flies and exempt and pilot.mode_name == "auto")
 
 
 def _on_silence(pilot: Autopilot, enabled: int) -> tuple[str, ...]:
@@ -126,7 +151,7 @@ def _watch_battery(pilot: Autopilot) -> None:
             word = "low" if name == "LOW" else "critical"
             used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
             pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
-            _answer(pilot, ON_BATTERY.get(int(pilot.parameters[action]), ()))
+            _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[action]), ()))
 
 
 def _watch_fence(pilot: Autopilot) -> None:
@@ -149,7 +174,7 @@ def breach(pilot: Autopilot) -> None:
     pilot.breaches += 1
     pilot.say(mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached")
     if pilot.armed and pilot.parameters["FENCE_ENABLE"]:
-        _answer(pilot, ON_BREACH.get(int(pilot.parameters["FENCE_ACTION"]), ()))
+        _answer(pilot, ON_BREACH[pilot.settings.kind].get(int(pilot.parameters["FENCE_ACTION"]), ()))
 
 
 def outside_fence(pilot: Autopilot) -> bool:

@@ -39,11 +39,11 @@ _COMMON: Mapping[str, float] = {
     "MIS_TOTAL": 0,
     "MIS_RESTART": 0,
     "ARMING_CHECK": 1,
-    "FS_OPTIONS": 0,
     "SIM_GPS1_ENABLE": 1,
 }
 _COPTER: Mapping[str, float] = {
     "FS_THR_ENABLE": 1,
+    "FS_OPTIONS": 16,
     "FS_EKF_ACTION": 1,
     "FS_EKF_THRESH": 0.8,
     "DISARM_DELAY": 10,
@@ -73,6 +73,8 @@ _COPTER: Mapping[str, float] = {
 _ROVER: Mapping[str, float] = {
     "FS_ACTION": 2,
     "FS_TIMEOUT": 1.5,
+    "FS_OPTIONS": 0,
+    "RALLY_LIMIT_KM": 0.5,
     "FS_THR_ENABLE": 1,
     "FS_EKF_ACTION": 1,
     "FS_EKF_THRESH": 0.8,

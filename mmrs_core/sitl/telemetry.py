@@ -205,9 +205,9 @@ def battery_status(pilot: Autopilot) -> Message | None:
 
 
 def landed(pilot: Autopilot) -> Message:
-    """Return whether it stands on the ground, of which ArduSub says nothing."""
+    """Return whether it stands on the ground, of which ArduSub and Rover say nothing."""
     state = mavlink.MAV_LANDED_STATE_IN_AIR if pilot.airborne else mavlink.MAV_LANDED_STATE_ON_GROUND
-    if pilot.settings.kind == "sub":
+    if not pilot.flies:
         state = mavlink.MAV_LANDED_STATE_UNDEFINED
     return mavlink.MAVLink_extended_sys_state_message(0, state)
 

@@ -110,7 +110,7 @@ ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
     "copter": {
         POSITION_LOST: frozenset({9}),
         FENCE_BREACHED: frozenset({6, 9, 17, 21}),
-        BATTERY_LOW: frozenset({6, 9, 21}),
+        BATTERY_LOW: frozenset({6, 9, 17, 21}),
         LOST_LINK: frozenset({6, 9, 17, 21}),
     },
     "rover": {event: frozenset({4, 11, 12}) for event in (FENCE_BREACHED, BATTERY_LOW, LOST_LINK)}
@@ -180,7 +180,7 @@ LINK_LOST: Mapping[str, Mapping[str, Mapping[str, int]]] = {
     "rover": {
         "CONTINUE": {ON_LOST_LINK: 0},
         "RETURN": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
-        "EMERGENCY_AREA": {ON_ANY_LOSS: 3, ON_LOST_LINK: 1},
+        "EMERGENCY_AREA": {NEAREST: 0, FARTHEST: 0, ON_ANY_LOSS: 1, ON_LOST_LINK: 1},
         "HOLD": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
         "LAND": {ON_ANY_LOSS: 2, ON_LOST_LINK: 1},
         "STOP_THRUST": {ON_ANY_LOSS: 5, ON_LOST_LINK: 1},
@@ -283,7 +283,7 @@ PX4_BREACH: Answers = {
     "EMERGENCY_AREA": {PX4_RETURNS_TO: 1, "GF_ACTION": 3},
     "LAND": {"GF_ACTION": 5},
 }
-PATIENCE = {"copter": ("FS_GCS_TIMEOUT", 2.0, 120.0), "rover": ("FS_GCS_TIMEOUT", 2.0, 120.0)}
+PATIENCE = dict.fromkeys(("copter", "rover", "sub"), ("FS_GCS_TIMEOUT", 2.0, 120.0))
 PX4_PATIENCE = ("COM_DL_LOSS_T", 5.0, 300.0)
 """The parameter for the seconds until a link counts as lost, with its least and largest value."""
 

@@ -120,6 +120,13 @@ SUB = (
         "FS_GCS_ENABLE",
         "no heartbeats from the ground",
         {0: "nothing", 1: "warn", 2: "disarm", 3: "hold its depth", 4: "surface"},
+        {2: "its motors stop wherever it is"},
+    ),
+    Safeguard(
+        "FS_PILOT_INPUT",
+        "a pilot's sticks, once used, fall silent",
+        {0: "nothing", 1: "warn", 2: "disarm"},
+        {2: "its motors stop in every mode where a joystick that was in use since it was switched on does"},
     ),
     Safeguard("BATT_FS_LOW_ACT", "battery low", {0: "nothing", 2: "disarm", 3: "surface"}, {0: NOTHING}),
     Safeguard("FS_LEAK_ENABLE", "water inside", {0: "nothing", 1: "warn", 2: "surface"}, {0: NOTHING}),

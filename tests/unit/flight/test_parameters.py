@@ -211,3 +211,16 @@ def test_every_parameter_that_is_set_is_one_that_is_told_or_of_little_account(ki
     told = {each.name for each in safeguards.OF_ARDUPILOT[kind]} | {"RALLY_INCL_HOME", "RALLY_LIMIT_KM"}
     answers = [*modes.LINK_LOST[kind].values(), *modes.BREACH[kind].values()]
     assert {name for values in answers for name in values} <= told
+
+
+def test_a_rover_that_is_to_flee_returns_to_a_rally_point_and_not_home_by_its_way():
+    with linked() as (link, _):
+        told = modes.lost_link_answers(link, "rover")["EMERGENCY_AREA"]
+    assert told == {"RALLY_INCL_HOME": 0, "RALLY_LIMIT_KM": 0, "FS_ACTION": 1, "FS_GCS_ENABLE": 1}
+
+
+def test_a_submarine_that_stops_when_a_joystick_falls_silent_is_told_of():
+    values = Values(FS_PILOT_INPUT=2.0)
+    with linked(values) as (link, _):
+        (line,) = safeguards.report(link, "sub")
+    assert line.startswith("FS_PILOT_INPUT = 2: a pilot's sticks, once used, fall silent: disarm (beware: ")

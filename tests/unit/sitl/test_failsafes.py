@@ -72,6 +72,35 @@ def test_a_sub_comes_up_if_it_is_set_up_to(enabled, mode):
     assert silent(out((5.0, 0.0, -5.0), kind="sub", parameters=given)) == mode
 
 
+@pytest.mark.parametrize(("options", "mode"), [(16, "return"), (18, "auto")])
+def test_a_copter_may_go_on_with_its_mission_when_its_ground_station_is_silent(options, mode):
+    bench = out(parameters={"FS_GCS_ENABLE": 1, "FS_OPTIONS": options})
+    bench.load(bench.item(16, (500.0, 0.0, 12.0)))
+    bench.mode("auto")
+    assert silent(bench) == mode
+    assert bench.pilot.said[-1][2] == (
+        "GCS Failsafe - Continuing Auto Mode" if mode == "auto" else "GCS Failsafe"
+    )
+
+
+def test_a_sub_says_in_words_of_its_own_that_it_hears_no_ground_station():
+    bench = out((5.0, 0.0, -5.0), kind="sub", parameters={"FS_GCS_ENABLE": 4})
+    silent(bench)
+    bench.wait(2.0)
+    assert [text for _, _, text in bench.pilot.said][-1] == "MYGCS: 255, heartbeat lost"
+
+
+@pytest.mark.parametrize(
+    ("kind", "action", "mode"), [("rover", 1, "return"), ("rover", 2, "brake"), ("sub", 3, "surface")]
+)
+def test_actions_for_a_low_battery_mean_something_else_to_others_than_copters(kind, action, mode):
+    given = {"BATT_FS_LOW_ACT": action, "BATT_LOW_MAH": 1500.0, "BATT_LOW_VOLT": 0.0}
+    bench = out((5.0, 0.0, -5.0 if kind == "sub" else 0.0), kind=kind, parameters=given)
+    bench.pilot.battery.change(0.29)
+    bench.wait(11.0)
+    assert bench.pilot.mode_name == mode
+
+
 def test_a_sub_may_stop_its_thrust():
     bench = out((5.0, 0.0, -5.0), kind="sub", parameters={"FS_GCS_ENABLE": 2})
     silent(bench)
