@@ -203,6 +203,37 @@ class Manned:
 
 
 @contextmanager
+def crewed(
+    folder: Path, robot: Robot, link: Link, stop: threading.Event, say: Callable[[str], None], on_stop: str
+) -> Iterator[tuple[Crew, Inbox]]:
+    """Give all that works for a robot whose vehicle has been met, and the inbox for orders to it."""
+    clock = link.clock
+    with ExitStack() as stack:
+        log = folder / robot.log
+        desk = Desk(
+            clock=clock,
+            slots=LocalSlots([robot]),
+            log=Log(log, "run-0", robot.id),
+            box=BlackBox(log.with_suffix(".blackbox.ndjson"), "run-0", robot.id, clock.now),
+            conditions={},
+            locators={},
+            stop=stop,
+            say=say,
+        )
+        stack.callback(desk.log.close)
+        stack.callback(desk.box.close)
+        inbox = Inbox(robot.id, arrived=link.wake)
+        watch, obedience = Watch(robot, clock, stop), Obedience(inbox, clock, stop, say)
+        vehicle = MavlinkVehicle(link, robot.vehicle, robot.home)
+        watch.begin(link, vehicle)
+        obedience.begin(vehicle)
+        pilot = Pilot(robot, vehicle, desk, watch, obedience)
+        watch.track = lambda: pilot.track
+        link.guard = guarding(watch, obedience)
+        yield Crew(robot, vehicle, link, watch, obedience, desk, pilot, on_stop), inbox
+
+
+@contextmanager
 def manned(
     folder: Path, robot: Robot | None = None, *, on_stop: str = "hold", **settings: object
 ) -> Iterator[Manned]:
@@ -216,31 +247,10 @@ def manned(
         ears = Ears(open_port(f"udpin:127.0.0.1:{port}"))
         link = Link(Radio(ears, clock), clock, simulated.autopilot.settings.system)
         stack.callback(link.close)
-        log = folder / robot.log
-        desk = Desk(
-            clock=clock,
-            slots=LocalSlots([robot]),
-            log=Log(log, "run-0", robot.id),
-            box=BlackBox(log.with_suffix(".blackbox.ndjson"), "run-0", robot.id, clock.now),
-            conditions={},
-            locators={},
-            stop=stop,
-            say=said.append,
-        )
-        stack.callback(desk.log.close)
-        stack.callback(desk.box.close)
         assert link.wait(lambda: link.component, 10.0 * SPEEDUP)
-        inbox = Inbox(robot.id, arrived=link.wake)
-        watch, obedience = Watch(robot, clock, stop), Obedience(inbox, clock, stop, said.append)
-        vehicle = MavlinkVehicle(link, robot.vehicle, robot.home)
-        watch.begin(link, vehicle)
-        obedience.begin(vehicle)
-        pilot = Pilot(robot, vehicle, desk, watch, obedience)
-        crew = Crew(robot, vehicle, link, watch, obedience, desk, pilot, on_stop)
-        made = Manned(crew, inbox, stop, simulated, said, log, desk.box, ears)
-        watch.track = lambda: pilot.track
-        watch.decide = lambda event, why, response: made.decided.append((event, response))
-        link.guard = guarding(watch, obedience)
+        crew, inbox = stack.enter_context(crewed(folder, robot, link, stop, said.append, on_stop))
+        made = Manned(crew, inbox, stop, simulated, said, folder / robot.log, crew.desk.box, ears)
+        crew.watch.decide = lambda event, why, response: made.decided.append((event, response))
         until(lambda: simulated.autopilot.ready)
         yield made
 

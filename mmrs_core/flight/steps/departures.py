@@ -51,6 +51,8 @@ class Departures:
         self.taken_back = -inf
         self._kind, self._answers = robot.vehicle, answers
         self._link, self._vehicle, self._signs = link, vehicle, signs
+        self._moving = True
+        vehicle.explain(self._explain)
 
     @property
     def _clock(self) -> Clock:
@@ -67,18 +69,9 @@ class Departures:
         Raises:
             Fault: a pilot has taken over, as far as anybody can tell.
         """
+        self._moving = moving
         left = _left(self._vehicle)
-        if left is None:
-            return None
-        self.looking = True
-        try:
-            found = self._await_cause(moving)
-        finally:
-            self.looking = False
-        if found is None:
-            self.taken = True
-            raise _taken_over(left, self._vehicle)
-        return found
+        return None if left is None else self._find(left)
 
     def check(self, event: str, *, moving: bool) -> None:
         """Make sure that the vehicle has left its mode for nothing but what it answers by itself.
@@ -97,23 +90,50 @@ class Departures:
         if tells.mode() not in self._vehicle.answers_to(event, said):
             self.find(moving=moving)
 
-    def _await_cause(self, moving: bool) -> Cause | None:
-        tells, signs, link = self._vehicle.telemetry, self._signs, self._link
-        if not tells.armed() or tells.mode() == FIRST_MODE:
+    def _explain(self, left: Fault) -> Fault:
+        """Return what the vehicle has answered by going elsewhere while it was told a mode.
+
+        Raises:
+            Fault: a pilot has taken over, as far as anybody can tell.
+        """
+        mode = self._vehicle.state().mode
+        event, why = self._find(left)
+        return left if event == left.event else Fault(event, f"{why}; by itself it has gone into mode {mode}")
+
+    def _find(self, left: Fault) -> Cause:
+        """Return what the vehicle has answered by going into its mode, wherever it goes meanwhile.
+
+        Raises:
+            Fault: a pilot has taken over, as far as anybody can tell.
+        """
+        taken_over = _taken_over(left, self._vehicle)
+        self.looking = True
+        try:
+            found = self._await_cause(self._vehicle.telemetry.mode())
+        finally:
+            self.looking = False
+        if found is None:
+            self.taken = True
+            raise taken_over
+        return found
+
+    def _await_cause(self, mode: int) -> Cause | None:
+        signs, link = self._signs, self._link
+        if not self._vehicle.telemetry.armed() or mode == FIRST_MODE:
             # One that has started anew has lost its position, too: that is no cause.
             anew = link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
             return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None
-        by_itself = tells.mode() in modes.of_failsafes(link, self._kind) | self._vehicle.modes_alone
+        by_itself = mode in modes.of_failsafes(link, self._kind) | self._vehicle.modes_alone
         seconds = self._clock.patience(CAUSE_SECONDS) if by_itself else 0.0
-        return link.wait(lambda: self._cause(moving), seconds)
+        return link.wait(lambda: self._cause(mode), seconds)
 
-    def _cause(self, moving: bool) -> Cause | None:
-        """Return the event that the vehicle has answered by itself: by the very mode that it is in."""
-        if self._signs.restarted and moving:
+    def _cause(self, mode: int) -> Cause | None:
+        """Return the event that the vehicle has answered by itself, by going into that very mode."""
+        if self._signs.restarted and self._moving:
             return VEHICLE_RESTARTED, STARTED_ANEW
-        mode, tells = self._vehicle.telemetry.mode(), self._vehicle.telemetry.announcements
+        tells = self._vehicle.telemetry.announcements
         told = [(event, text.text) for event, text in tells.recent()]
-        for event, why in (*self._signs.seen(moving=moving), *told):
+        for event, why in (*self._signs.seen(moving=self._moving), *told):
             said = tells.of_this_mode(event, self.taken_back)
             if why and mode in self._vehicle.answers_to(event, (said,)):
                 if self._answers(event):

@@ -13,14 +13,14 @@ from .texts import Text, Texts
 
 ABOUT_BATTERIES = (
     "battery failsafe",
-    "battery 1 is",
-    "battery 2 is",
+    *(f"battery {number} is" for number in range(1, 10)),
     "low battery",
     "critical battery",
     "battery level",
 )
 ABOUT_LINKS = (
     "gcs failsafe",
+    "heartbeat lost",
     "gcs connection lost",
     "gcs connection regained",
     "connection to ground station lost",

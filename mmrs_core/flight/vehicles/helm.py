@@ -42,6 +42,7 @@ class Helm:
     since: it is only late, or a copy of it was.
 
     Attributes:
+        explains: finds out what a vehicle has gone elsewhere for while it was told a mode.
         insists: whether the vehicle is to be told again what it has left by itself while it was told.
     """
 
@@ -58,6 +59,7 @@ class Helm:
         self._requests = Requests(link)
         self._asked_again = -inf
         self._arming = False
+        self.explains: Callable[[Fault], Fault] = lambda left: left
         self.insists: Callable[[Fault], bool] = lambda fault: False
 
     @property
@@ -87,31 +89,26 @@ class Helm:
             Refused: the vehicle does not go into the mode.
             Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
         """
-        wanted, before, accepted = self._modes[mode], self._telemetry.mode(), self._accepted
-        self._begin(mode)
-        self.let_go()
-
-        def strange() -> bool:
-            number = self._telemetry.mode()
-            return number not in {before, wanted.number, *accepted} and not self._requests.own(number)
-
+        wanted, left = self._modes[mode], self._mode or self.mode()
+        if self._strays():
+            self._explain(left)
+        known = self._accepted or frozenset({self._telemetry.mode()})
+        self._mode, self._accepted = None, known | {wanted.number}
         for _ in range(MODE_TRIES):
-            self._requests.ask(wanted.number)
+            self._begin(mode)
+            before = self._telemetry.mode()
             command(self._link, mavlink.MAV_CMD_DO_SET_MODE, *wanted.params)
             self._link.wait(
-                lambda: self._telemetry.mode() == wanted.number or strange(),
+                lambda: self._telemetry.mode() == wanted.number or self._strays(),
                 self._link.clock.patience(MODE_SECONDS),
                 heard=True,
             )
-            if strange():
-                self._await_words()
-                fault = self._left(self._telemetry.mode(), modes.word_of(self._link, self._kind, before))
-                if not self.insists(fault):
-                    raise fault
-                before = self._telemetry.mode()
-                self._begin(mode)
+            if self._strays():
+                self._explain(left)
             if self._telemetry.mode() == wanted.number:
-                self._requests.shows(wanted.number)
+                self._requests.is_back()
+                if before != wanted.number:
+                    self._requests.shows(wanted.number)
                 self._mode, self._speed, self._accepted = mode, None, frozenset({wanted.number})
                 if mode != modes.GUIDED:
                     self.habits.end_guiding()
@@ -145,11 +142,16 @@ class Helm:
         """
         number = self._telemetry.mode()
         if not self._accepted or number in self._accepted:
-            return
-        if self._requests.own(number):
+            self._requests.is_back()
+        elif not self._strays():
             self._ask_again()
         elif self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
             raise self._left(number, self._mode or "take-off")
+
+    def _strays(self) -> bool:
+        """Return whether the vehicle is in a mode that nobody here has told it."""
+        number = self._telemetry.mode()
+        return bool(self._accepted) and number not in self._accepted and not self._requests.own(number)
 
     def _ask_again(self) -> None:
         """Ask once more for the mode, in which an earlier request of the program, being late, was heeded.
@@ -166,10 +168,16 @@ class Helm:
         if mode == modes.GUIDED:
             self.habits.begin_guiding()
 
-    def _await_words(self) -> None:
-        """Give a vehicle that is in a mode of its failsafes the time to say why."""
-        if self._telemetry.mode() in modes.of_failsafes(self._link, self._kind):
-            self._link.wait(self._telemetry.failsafe, self._link.clock.patience(WORDS_SECONDS, 0.3))
+    def _explain(self, before: str) -> None:
+        """Accept the mode that a vehicle has left another for by itself, where it is to be told again.
+
+        Raises:
+            Fault: somebody has taken over, or what it has answered by itself is to be answered.
+        """
+        fault = self.explains(self._left(self._telemetry.mode(), before))
+        if not self.insists(fault):
+            raise fault
+        self._accepted = self._accepted | {self._telemetry.mode()}
 
     def _left(self, number: int, mode: str) -> Fault:
         """Return what it means that the vehicle has left a mode for that of a number; steer no more."""

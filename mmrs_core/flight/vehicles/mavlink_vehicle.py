@@ -25,7 +25,7 @@ from . import modes, preparation, safeguards
 from .enclosure import enclose
 from .evidence import LinkEvidence
 from .exemptions import end_exemption
-from .helm import MODE_SECONDS, Away, Helm
+from .helm import MODE_SECONDS, Helm
 from .listening import check_listening
 from .mission import Mission
 from .own_home import keep_home
@@ -331,7 +331,7 @@ class MavlinkVehicle:
         if self._helm.mode() == modes.GUIDED:
             self._steering.stay()
 
-    def explain(self, explains: Callable[[Fault, Away], Fault | None]) -> None:
+    def explain(self, explains: Callable[[Fault], Fault]) -> None:
         """Ask what the vehicle has gone elsewhere for, where it does so while it is told a mode."""
         self._helm.explains = explains
 

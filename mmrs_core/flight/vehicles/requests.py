@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..links.link import Link
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from ..links.autopilots import is_px4
+from ..links.link import Link, Message
+from . import modes
 
 SHOWN_SECONDS = 5.0
 """In which a vehicle shows a mode after it has heard of it, its next heartbeats being lost."""
@@ -19,33 +23,53 @@ class Request:
 
 
 class Requests:
-    """Remembers what was asked for until it cannot come any more.
+    """Remembers what was asked for until it cannot come any more; an observer of the vehicle's link.
 
     A request may have been broken off by an order or a fault before the vehicle showed it. Until a
     later one is shown it may come as late as an answer over the link, and the heartbeat after that;
-    then only a copy of it may still be on its way.
+    then only a copy of it may still be on its way. Every copy that is sent counts, also of a command
+    that was sent again since its answer was late.
     """
 
     def __init__(self, link: Link) -> None:
         """Have asked for nothing."""
         self._link = link
         self._of: dict[int, Request] = {}
+        self._late: tuple[int, float] | None = None
+        link.observe(self)
 
-    def ask(self, number: int) -> None:
+    def __call__(self, message: Message, outgoing: bool) -> None:
         """Remember that a mode is asked for now."""
-        self._of[number] = Request(self._link.clock.now())
+        command = message.command if outgoing and message.get_type() == "COMMAND_LONG" else None
+        if command == mavlink.MAV_CMD_DO_SET_MODE:
+            self._of[_number_in(self._link, message)] = Request(self._link.clock.now())
 
     def shows(self, number: int) -> None:
-        """Know that the vehicle shows the mode that was asked for last."""
+        """Know that the vehicle has gone into the mode that was asked for last."""
         for other, request in self._of.items():
             request.overtaken = request.overtaken or other != number
 
     def own(self, number: int) -> bool:
-        """Return whether a mode may come from a request of the program."""
-        request = self._of.get(number)
+        """Return whether a mode that the vehicle shows now may come from a request of the program.
+
+        One that came in time stays the program's as long as it may take to put it right.
+        """
+        now, request = self._link.clock.now(), self._of.get(number)
+        if self._late is None or self._late[0] != number:
+            self._late = (number, now)
         if request is None:
             return False
-        seconds = self._link.patience
-        if not request.overtaken:
-            seconds += self._link.clock.patience(SHOWN_SECONDS, 2.0)
-        return self._link.clock.now() - request.asked <= seconds
+        begun, usual = self._late[1], self._link.patience
+        long = usual + self._link.clock.patience(SHOWN_SECONDS, 2.0)
+        return begun - request.asked <= (usual if request.overtaken else long) and now - begun <= long
+
+    def is_back(self) -> None:
+        """Know that the vehicle is in a mode that it should be in."""
+        self._late = None
+
+
+def _number_in(link: Link, asked: Message) -> int:
+    """Return the number of the mode that a command to the vehicle at a link asks for."""
+    if is_px4(link):
+        return modes.px4_number(int(asked.param2), int(asked.param3))
+    return int(asked.param2)

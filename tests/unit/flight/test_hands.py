@@ -1,0 +1,126 @@
+"""Who has a vehicle: the program, whatever its frames meet and the vehicle does by itself; or a pilot."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from still_crew import robot_of, still
+from virtual_link import Air
+
+from mmrs_core.flight.program import Policy
+
+KINDS = ("copter", "sub", "rover")
+AIRS = (
+    Air(),
+    Air(delay=0.05, jitter=0.2),
+    Air(loss=0.1, double=0.1, delay=0.05, jitter=0.3),
+    Air(loss=0.2, double=0.2, delay=0.1, jitter=0.6),
+    Air(double=0.3, delay=0.1, jitter=0.6),
+)
+ORDERS = (
+    ("return", "hold", "resume"),
+    ("hold", "resume", "hold", "resume"),
+    ("hold", "resume", "return", "hold", "resume"),
+    ("return", "hold", "resume", "hold", "resume"),
+    ("hold", "return", "hold", "resume", "land"),
+)
+ALONE = (
+    (),
+    (Policy("LINK_LOST", "HOLD"),),
+    (Policy("LINK_LOST", "CONTINUE"),),
+    (Policy("LINK_LOST", "RETURN", 3.0),),
+)
+STICKS = {
+    "copter": ("loiter", "alt_hold", "stabilize", "return"),
+    "sub": ("manual", "alt_hold", "stabilize"),
+    "rover": ("loiter", "manual", "stabilize", "return"),
+}
+"""What pilots choose, and programs never ask for."""
+
+
+def order_at_random(made, chance: random.Random, begun: float) -> float:
+    """Have things ordered one after the other, and, whatever was ordered, the robot go on; return when."""
+    for name in chance.choice(ORDERS):
+        made.order(name, begun)
+        begun += chance.uniform(0.0, chance.choice((1.0, 4.0, 12.0)))
+    for _ in range(2):
+        begun += 60.0
+        made.order("resume", begun)
+    made.order("land", begun + 60.0)
+    return begun
+
+
+def stall_at_random(world, chance: random.Random) -> None:
+    """Have either side, or both, stand still at times, and be slow after that to read what has come."""
+
+    def stall() -> None:
+        which, end = chance.randrange(1, 4), world.clock.time + chance.uniform(0.3, 4.0)
+        if which & 1:
+            world.ours, world.most = end, chance.choice((1, 3, 1000))
+            world.at(end + chance.uniform(0.1, 1.0), lambda: setattr(world, "most", 1000))
+        if which & 2:
+            world.its = end
+
+    for _ in range(chance.choice((0, 3, 8))):
+        world.at(chance.uniform(4.0, 60.0), stall)
+
+
+def when_it_moves(world, do) -> None:
+    """Have something done once the vehicle is on its way."""
+
+    def look() -> None:
+        pilot = world.vehicle.autopilot
+        if pilot.armed and (pilot.airborne or not pilot.flies):
+            do()
+        else:
+            world.at(world.clock.time + 1.0, look)
+
+    look()
+
+
+def fly_without_a_pilot(folder, kind: str, seed: int) -> None:
+    chance = random.Random(seed)
+    robot = robot_of(kind, *chance.choice(ALONE))
+    with still(folder, robot, chance.choice(AIRS), seed) as made:
+        order_at_random(made, chance, chance.uniform(4.0, 30.0))
+        stall_at_random(made.world, chance)
+        made.fly()
+        assert not made.says("taken over"), made.said
+
+
+def fly_until_a_pilot_comes(folder, kind: str, seed: int) -> None:
+    chance = random.Random(seed)
+    with still(folder, robot_of(kind), chance.choice(AIRS), seed) as made:
+        world, vehicle = made.world, made.world.vehicle
+        stick, wait, ahead = chance.choice(STICKS[kind]), chance.uniform(0.0, 25.0), chance.uniform(0.0, 12.0)
+        number, taken = vehicle.autopilot.numbers[stick], []
+
+        def take() -> None:
+            vehicle.faults.take_stick(stick)
+            taken.append(world.clock.time)
+            world.at(world.clock.time + 40.0, vehicle.autopilot.disarm)
+
+        def begin() -> None:
+            order_at_random(made, chance, world.clock.time + max(0.0, wait - ahead))
+            world.at(world.clock.time + wait, take)
+
+        when_it_moves(world, begin)
+        made.fly()
+        heard = [time for time, mode in world.shown if taken and time >= taken[0] and mode == number]
+        if not heard:
+            return
+        assert not [each for each in world.told if each[0] > heard[0]], made.said
+        assert made.says("taken over"), made.said
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_late_or_doubled_or_done_by_the_vehicle_itself_is_no_pilots(tmp_path, kind, seed):
+    fly_without_a_pilot(tmp_path, kind, seed)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(6))
+def test_a_vehicle_that_a_pilot_takes_is_told_nothing_any_more(tmp_path, kind, seed):
+    fly_until_a_pilot_comes(tmp_path, kind, seed)
