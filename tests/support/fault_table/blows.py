@@ -153,7 +153,7 @@ def _full_disk() -> tuple[Row, ...]:
             AT,
             ("LOG_FAILED", response, None),
             leave_alone,
-            "",
+            "|LOG_FAILED",
             ends,
             within=60.0,
             stay=STAY / 2,
