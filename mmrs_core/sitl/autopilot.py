@@ -31,6 +31,9 @@ EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
 """Of the ellipsoid of WGS 84: metres, and its flatness."""
 
 NEAR_GROUND = 0.05
+
+SPEEDS = (("WP_SPD", 1.0), ("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0))
+"""Parameters for its usual speed, with their units: the first is that of copters from 4.7 on."""
 CHANGE_SPEED = int(mavlink.MAV_CMD_DO_CHANGE_SPEED)
 
 STREAM_SECONDS, STREAM_GAP, STREAM_LEAST = 1.0, 0.5, 2
@@ -286,7 +289,7 @@ class Autopilot:
 
     def usual_speed(self) -> float:
         """Return the metres per second at which it goes unless it is told another speed."""
-        for name, part in (("WPNAV_SPEED", 0.01), ("WP_SPEED", 1.0), ("MPC_XY_CRUISE", 1.0)):
+        for name, part in SPEEDS:
             if name in self.parameters:
                 return self.parameters[name] * part
         return self.body.speed

@@ -113,7 +113,12 @@ def _go(pilot: Autopilot, item: Item, seconds: float) -> bool:
 
 def _radius(values: Mapping[str, float]) -> float:
     """Return the metres from a place at which it counts as passed, as parameters have it."""
-    for name, metres in (("WPNAV_RADIUS", 0.01), ("WP_RADIUS", 1.0), ("NAV_ACC_RAD", 1.0)):
+    for name, metres in (
+        ("WP_RADIUS_M", 1.0),
+        ("WPNAV_RADIUS", 0.01),
+        ("WP_RADIUS", 1.0),
+        ("NAV_ACC_RAD", 1.0),
+    ):
         if name in values:
             return values[name] * metres
     return MEASURED_RADIUS

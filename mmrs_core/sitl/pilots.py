@@ -125,6 +125,8 @@ def _aside(a: Vector, b: Vector) -> float:
 
 
 def _return_height(pilot: Autopilot) -> float:
+    if "RTL_ALT_M" in pilot.parameters:
+        return pilot.parameters["RTL_ALT_M"]
     centimetres = pilot.parameters.get("RTL_ALT")
     return pilot.parameters.get("RTL_RETURN_ALT", 15.0) if centimetres is None else centimetres / 100.0
 

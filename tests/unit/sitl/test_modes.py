@@ -50,6 +50,14 @@ def test_return_climbs_comes_home_and_lands():
     assert max(point[3] for point in bench.pilot.track) == pytest.approx(15.0, abs=0.6)
 
 
+def test_a_copter_heeds_the_newer_names_of_its_speed_and_height():
+    bench = out(parameters={"WP_SPD": 3.0, "RTL_ALT_M": 20.0})
+    bench.mode("return")
+    assert bench.wait_for(lambda: not bench.pilot.armed)
+    assert max(point[3] for point in bench.pilot.track) == pytest.approx(20.0, abs=0.6)
+    assert bench.pilot.usual_speed() == 3.0
+
+
 def test_return_goes_to_the_nearest_of_home_and_the_rally_points():
     bench = out()
     rally(bench, (45.0, 40.0, 10.0))
