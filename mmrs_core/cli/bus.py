@@ -165,7 +165,8 @@ def state(
     Example: mmrs bus state survey --connect tcp/10.0.0.2:7447 --robot Drone1
     """
     with _needing("eclipse-zenoh"):
-        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, states_of
+        from mmrs_core.flight.bus.carriers.looking import reasons, states_of
+        from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
     _refuse_endpoints(listen, connect)
     endpoints = Endpoints(tuple(listen or ()), tuple(connect or ()), config)
     try:
@@ -181,6 +182,8 @@ def state(
         _say_states(shown, missing)
         if not shown and not missing:
             tell(f"nobody has answered for mission {mission!r}, run {run!r}")
+        for why in reasons(endpoints) if missing or not shown else ():
+            tell(why)
     return LinkLostError.exit_code if missing or not shown else 0
 
 

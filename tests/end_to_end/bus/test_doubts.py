@@ -10,6 +10,7 @@ from ports import free_port
 
 from mmrs_core.cli.bus_access import Holder
 from mmrs_core.cli.bus_certificates import make_keys
+from mmrs_core.cli.running import run_command
 from mmrs_core.flight.bus.carriers import doubts
 from mmrs_core.flight.bus.carriers.doubts import Papers, why_not
 from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
@@ -94,6 +95,15 @@ def test_people_are_told_once_what_keeps_a_robot_from_the_others(
     ends.nodes[-1].await_change(0.5)
     assert told()
     assert said.count("not accepted here") == 1
+
+
+def test_whoever_looks_on_in_vain_is_told_why(ends, listening, tmp_path, capsys):
+    keys(tmp_path / "others")
+    config = tmp_path / "others" / "observer" / "bus.json5"
+    words = ["bus", "state", "mission", "--connect", listening, "--config", str(config), "--seconds", "0.3"]
+    assert run_command(words, "mmrs") == 5
+    said = capsys.readouterr().err
+    assert f"{listening}: its certificate is not accepted here: another authority made it" in said
 
 
 def test_certificates_that_are_missing_are_told_before_anything_moves(ends):

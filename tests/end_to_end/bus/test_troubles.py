@@ -8,7 +8,8 @@ import time
 import pytest
 import zenoh
 
-from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, states_of
+from mmrs_core.flight.bus.carriers.looking import states_of
+from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
 from mmrs_core.flight.bus.words import digest
 
 

@@ -16,6 +16,7 @@ FIRST_SECONDS, THEN_SECONDS = 4.0, 30.0
 """After how long people are told why peers cannot be reached, and how often that is tried anew."""
 
 ANSWER_SECONDS = 2.0
+_MOST = 1 << 16
 
 _ALERTS = {
     "UNKNOWN_CA": "another authority made it",
@@ -75,7 +76,7 @@ class Doubts:
             unheard, refused = why_not(endpoint, self._papers)
             # Who has not come yet is told where nobody has: others need not be there at once.
             if (why := refused or ("" if peers else unheard)) and not self._over.is_set():
-                self._net.tell(f"bus: {endpoint}: {why}")
+                self._net.tell(f"{endpoint}: {why}")
 
 
 def why_not(endpoint: str, papers: Papers | None) -> tuple[str, str]:
@@ -104,15 +105,32 @@ def _shaken(connection: socket.socket, papers: Papers) -> str:
     context.check_hostname = False
     context.load_verify_locations(papers.authority)
     context.load_cert_chain(papers.certificate, papers.key)
+    incoming, outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
+    shaken = context.wrap_bio(incoming, outgoing)
+
+    def carry(act: Callable[[], object]) -> None:
+        while True:
+            try:
+                act()
+                return
+            except ssl.SSLWantReadError:
+                connection.sendall(outgoing.read())
+                if heard := connection.recv(_MOST):
+                    incoming.write(heard)
+                else:
+                    incoming.write_eof()
+
     try:
-        with context.wrap_socket(connection) as shaken:
-            # Whether the other one accepts this certificate is said after the handshake.
-            shaken.settimeout(ANSWER_SECONDS / 2)
-            shaken.recv(1)
+        carry(shaken.do_handshake)
+        # Whether the other one accepts this certificate is said after the handshake.
+        connection.settimeout(ANSWER_SECONDS / 2)
+        carry(lambda: shaken.read(1))
     except TimeoutError:
         return ""  # it waits for what Zenoh would say
     except ssl.SSLCertVerificationError as error:
         return f"its certificate is not accepted here: {_doubted(error.verify_message)}"
+    except ssl.SSLEOFError:
+        return ""  # it has gone
     except ssl.SSLError as error:
         return _parted(error.reason or "")
     except OSError:

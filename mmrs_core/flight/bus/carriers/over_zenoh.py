@@ -8,11 +8,11 @@ the certificate of whoever speaks.
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import re
 import threading
-import time
 import uuid
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -35,7 +35,8 @@ LEASE_MILLISECONDS = 1500
 ANSWER_SECONDS = 5.0
 """How long an answer is of use; what is not answered is asked again sooner."""
 
-CLOSING_SECONDS = 1.0
+CLOSING_SECONDS, LAST_SECONDS = 1.0, 2.0
+"""How long closing may take, and how much longer when the process ends."""
 
 READERS = 64
 """Threads that read from the network. Zenoh blocks two of them for ten seconds with every machine that goes
@@ -113,14 +114,14 @@ class ZenohCarrier:
             OSError: it cannot be opened, or its configuration is not readable.
         """
         self._station = station
-        self._session = _opened(self._endpoints)
+        self._session = opened(self._endpoints)
         self._speaks_for = _speaks_for(self._endpoints.file)
         self._worker.start()
         watched = self._session.liveliness().declare_subscriber(
             f"{self._prefix}/*/here/*", self._later(self._see), history=True
         )
         self._declared.append(watched)
-        papers = _papers(self._endpoints.file)
+        papers = papers_of(self._endpoints.file)
         self._doubts = Doubts(self._endpoints.connect, papers, self._count_peers, self._net)
         self._doubts.start()
 
@@ -199,7 +200,7 @@ class ZenohCarrier:
         with self._closing:
             session, self._session = self._session, None
         if session is not None:
-            _close(session)
+            closed(session)
             self._work.put(None)
             self._worker.join()
 
@@ -302,7 +303,7 @@ def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
             raise OSError(f"{each}: {endpoints.file} allows {', '.join(allowed)} only")
 
 
-def _papers(file: Path | None) -> Papers | None:
+def papers_of(file: Path | None) -> Papers | None:
     """Return what a configuration says of certificates; None: nothing, or not all of it."""
     if file is None:
         return None
@@ -328,39 +329,12 @@ def _insert(config: Any, name: str, value: object) -> None:
     config.insert_json5(name, json.dumps(value))
 
 
-def states_of(
-    mission: str, run: str, endpoints: Endpoints, seconds: float, robots: Sequence[str] = ()
-) -> dict[str, str]:
-    """Return names of robots and the state of their slots as JSON, by digest of the name.
-
-    Args:
-        mission, run: of the robots.
-        endpoints: how they are reached.
-        seconds: for which they are asked; less where all that are wanted have answered.
-        robots: that are wanted; none: whoever answers.
-
-    Raises:
-        OSError: the bus cannot be opened.
-    """
-    key, found = f"mmrs/{digest(mission)}/{digest(run)}/*/state", dict[str, str]()
-    wanted = {digest(robot) for robot in robots}
-    until = time.monotonic() + seconds
-    with _opened(endpoints) as session:
-        while time.monotonic() < until and not (wanted and wanted <= set(found)):
-            # Peers may not be in touch yet: what they keep is asked for again and again.
-            for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
-                if reply.ok is not None and len(parts := str(reply.ok.key_expr).split("/")) == 5:
-                    found[parts[3]] = reply.ok.payload.to_bytes().decode("utf-8", "replace")
-            time.sleep(0.05)
-    return found
-
-
 def _shown(station: Station, robot: str) -> str:
     """Return the state of a robot's slots with its name, for those who look on and know the key only."""
     return json.dumps({"robot": robot, "slots": json.loads(station.shown(robot))})
 
 
-def _close(session: Any) -> None:
+def closed(session: Any) -> None:
     """Close a session, but do not wait for peers that are frozen: Zenoh would, for ten seconds."""
 
     def close() -> None:
@@ -371,9 +345,17 @@ def _close(session: Any) -> None:
     closing = threading.Thread(target=close, name="bus closing", daemon=True)
     closing.start()
     closing.join(CLOSING_SECONDS)
+    if closing.is_alive():
+        # A thread that comes back from Zenoh while the interpreter ends would abort the process.
+        atexit.register(closing.join, LAST_SECONDS)
 
 
-def _opened(endpoints: Endpoints) -> Any:
+def opened(endpoints: Endpoints) -> Any:
+    """Return a session.
+
+    Raises:
+        OSError: it cannot be opened, or its configuration is not readable.
+    """
     # Read when the first session of a process is opened, and nowhere else can it be said.
     os.environ.setdefault("ZENOH_RUNTIME", f"(rx: (worker_threads: {READERS}))")
     try:

@@ -1,0 +1,49 @@
+"""Looking on: the slots of robots that other processes run, and why these cannot be reached."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import zenoh
+
+from ..words import digest
+from .doubts import why_not
+from .over_zenoh import Endpoints, closed, opened, papers_of
+
+
+def states_of(
+    mission: str, run: str, endpoints: Endpoints, seconds: float, robots: Sequence[str] = ()
+) -> dict[str, str]:
+    """Return names of robots and the state of their slots as JSON, by digest of the name.
+
+    Args:
+        mission, run: of the robots.
+        endpoints: how they are reached.
+        seconds: for which they are asked; less where all that are wanted have answered.
+        robots: that are wanted; none: whoever answers.
+
+    Raises:
+        OSError: the bus cannot be opened.
+    """
+    key, found = f"mmrs/{digest(mission)}/{digest(run)}/*/state", dict[str, str]()
+    wanted = {digest(robot) for robot in robots}
+    until = time.monotonic() + seconds
+    session = opened(endpoints)
+    try:
+        while time.monotonic() < until and not (wanted and wanted <= set(found)):
+            # Peers may not be in touch yet: what they keep is asked for again and again.
+            for reply in session.get(key, timeout=seconds, target=zenoh.QueryTarget.ALL):
+                if reply.ok is not None and len(parts := str(reply.ok.key_expr).split("/")) == 5:
+                    found[parts[3]] = reply.ok.payload.to_bytes().decode("utf-8", "replace")
+            time.sleep(0.05)
+    finally:
+        closed(session)
+    return found
+
+
+def reasons(endpoints: Endpoints) -> list[str]:
+    """Return why peers cannot be reached, each with its endpoint; those that can be are left out."""
+    papers = papers_of(endpoints.file)
+    told = ((each, "".join(why_not(each, papers))) for each in endpoints.connect)
+    return [f"{each}: {why}" for each, why in told if why]
