@@ -144,7 +144,7 @@ class Helm:
         if not self._accepted or number in self._accepted:
             self._requests.is_back()
         elif not self._strays():
-            self._ask_again()
+            self._ask_again(number)
         elif self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
             raise self._left(number, self._mode or "take-off")
 
@@ -153,13 +153,17 @@ class Helm:
         number = self._telemetry.mode()
         return bool(self._accepted) and number not in self._accepted and not self._requests.own(number)
 
-    def _ask_again(self) -> None:
-        """Ask once more for the mode, in which an earlier request of the program, being late, was heeded.
+    def _ask_again(self, number: int) -> None:
+        """Ask once more for the mode, where an earlier request of the program, being late, was heeded.
 
+        Where it is to be in none, as after what it did by itself, the one that it heeded is accepted.
         Nobody waits for the acknowledgement: this is called in the middle of other waits.
         """
         now = self._link.clock.now()
-        if self._mode is None or now - self._asked_again < self._link.patience:
+        if self._mode is None:
+            self._accepted = self._accepted | {number}
+            return
+        if now - self._asked_again < self._link.patience:
             return
         self._asked_again = now
         ask(self._link, mavlink.MAV_CMD_DO_SET_MODE, *self._modes[self._mode].params)

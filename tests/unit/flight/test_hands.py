@@ -5,10 +5,13 @@ from __future__ import annotations
 import random
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from still_crew import robot_of, still
 from virtual_link import Air
 
 from mmrs_core.flight.program import Policy
+from mmrs_core.flight.services.commands import ask
+from mmrs_core.flight.vehicles.requests import Requests
 
 KINDS = ("copter", "sub", "rover")
 AIRS = (
@@ -124,3 +127,49 @@ def test_what_is_late_or_doubled_or_done_by_the_vehicle_itself_is_no_pilots(tmp_
 @pytest.mark.parametrize("seed", range(6))
 def test_a_vehicle_that_a_pilot_takes_is_told_nothing_any_more(tmp_path, kind, seed):
     fly_until_a_pilot_comes(tmp_path, kind, seed)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.thorough
+def test_what_is_late_is_no_pilots_and_a_pilot_is_left_alone(tmp_path, kind):
+    for seed in range(100, 250):
+        fly_without_a_pilot(tmp_path / f"{seed}", kind, seed)
+        fly_until_a_pilot_comes(tmp_path / f"{seed}-pilot", kind, seed)
+
+
+@pytest.mark.parametrize("words", ["GCS Failsafe", "MYGCS: 255, heartbeat lost"])
+def test_a_submarine_that_misses_us_while_it_is_told_to_hold_is_no_pilots(tmp_path, words):
+    with still(tmp_path, robot_of("sub", Policy("LINK_LOST", "HOLD")), Air(delay=0.3)) as made:
+        pilot, second = made.world.vehicle.autopilot, 20.0
+
+        def miss_us() -> None:
+            pilot.say(4, words)
+            pilot.enter("alt_hold")
+
+        made.order("hold", second)
+        made.world.at(second + 0.15, miss_us)
+        made.order("land", second + 30.0)
+        made.fly()
+        assert made.says("LINK_LOST")
+        assert not made.says("taken over"), made.said
+
+
+def test_every_copy_of_a_request_counts_and_stays_the_programs_until_the_vehicle_is_back(tmp_path):
+    hold = 17
+    with still(tmp_path, robot_of("copter")) as made:
+        link = made.crew.link
+        requests = Requests(link)
+
+        def ask_again_after(seconds: float) -> None:
+            link.wait(lambda: None, seconds)
+            ask(link, mavlink.MAV_CMD_DO_SET_MODE, 1.0, float(hold))
+
+        ask_again_after(0.0)
+        ask_again_after(3.0)
+        requests.shows(9)
+        link.wait(lambda: None, 1.0)
+        assert requests.own(hold)
+        link.wait(lambda: None, 1.0)
+        assert requests.own(hold)
+        requests.is_back()
+        assert not requests.own(hold)
