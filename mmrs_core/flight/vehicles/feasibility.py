@@ -1,7 +1,7 @@
 """Whether a vehicle that has accepted a mission would fly it, too.
 
-A PX4 accepts what it can store, and looks at it afterwards: at its fence, at the distance of the first
-place from home (MIS_DIST_1WP), at what it wants missions to begin and end with (MIS_TKO_LAND_REQ). What is
+A PX4 accepts what it can store, and looks at it afterwards: at its fence, at the distance to the first
+place (MIS_DIST_1WP), at what it wants missions to begin and end with (MIS_TKO_LAND_REQ). What is
 not feasible counts as no mission at all (``mavlink_mission.cpp``, ``update_mission_state``; since 1.15),
 and it never goes into AUTO with it, which would otherwise be noticed in the air.
 """
