@@ -101,21 +101,22 @@ class Departures:
         return left if event == left.event else Fault(event, f"{why}; by itself it has gone into mode {mode}")
 
     def _find(self, left: Fault) -> Cause:
-        """Return what the vehicle has answered by going into its mode, wherever it goes meanwhile.
+        """Return what the vehicle has answered by going into its mode, or into another one since.
 
         Raises:
             Fault: a pilot has taken over, as far as anybody can tell.
         """
-        taken_over = _taken_over(left, self._vehicle)
+        taken_over, mode = _taken_over(left, self._vehicle), self._vehicle.telemetry.mode()
         self.looking = True
         try:
-            found = self._await_cause(self._vehicle.telemetry.mode())
+            found = self._await_cause(mode)
         finally:
             self.looking = False
         if found is None:
             self.taken = True
             raise taken_over
-        return found
+        since = _left(self._vehicle) if self._vehicle.telemetry.mode() != mode else None
+        return found if since is None else self._find(since)
 
     def _await_cause(self, mode: int) -> Cause | None:
         signs, link = self._signs, self._link
