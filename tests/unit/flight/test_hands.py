@@ -82,10 +82,10 @@ def when_it_moves(world, do) -> None:
     look()
 
 
-def fly_without_a_pilot(folder, kind: str, seed: int) -> None:
+def fly_without_a_pilot(folder, kind: str, seed: int, airs=AIRS) -> None:
     chance = random.Random(seed)
     robot = robot_of(kind, *chance.choice(ALONE))
-    with still(folder, robot, chance.choice(AIRS), seed) as made:
+    with still(folder, robot, chance.choice(airs), seed) as made:
         order_at_random(made, chance, chance.uniform(4.0, 30.0))
         stall_at_random(made.world, chance)
         made.fly()
@@ -133,7 +133,8 @@ def test_a_vehicle_that_a_pilot_takes_is_told_nothing_any_more(tmp_path, kind, s
 @pytest.mark.thorough
 def test_what_is_late_is_no_pilots_and_a_pilot_is_left_alone(tmp_path, kind):
     for seed in range(100, 250):
-        fly_without_a_pilot(tmp_path / f"{seed}", kind, seed)
+        # Where the only words of a failsafe are lost, nobody can tell it from a pilot.
+        fly_without_a_pilot(tmp_path / f"{seed}", kind, seed, [air for air in AIRS if not air.loss])
         fly_until_a_pilot_comes(tmp_path / f"{seed}-pilot", kind, seed)
 
 
