@@ -75,7 +75,7 @@ class Driven:
 
     def finish(self):
         until(lambda: self.fault or self.backend.finished(self.clock.now()), 30.0)
-        assert self.fault is None
+        assert self.fault is None, self.fault
 
     def stop(self, response):
         self.backend.stop(self.clock.now(), response)

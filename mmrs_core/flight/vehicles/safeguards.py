@@ -8,7 +8,7 @@ later, ArduPilot's Rover and Sub, and PX4 1.14 and later, as their parameter ref
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..links.autopilots import is_px4
@@ -193,12 +193,18 @@ def safeguards_of(link: Link, kind: str) -> tuple[Safeguard, ...]:
     return PX4 if is_px4(link) else OF_ARDUPILOT[kind]
 
 
-def report(link: Link, kind: str) -> Iterator[str]:
-    """Yield a line for each safeguard that the vehicle tells, and one if it tells none."""
-    safeguards = safeguards_of(link, kind)
-    values = parameters.read(link, [each.name for each in safeguards])
+def report(link: Link, kind: str, instead: Sequence[Safeguard] = ()) -> Iterator[str]:
+    """Yield a line for each safeguard that the vehicle tells, and one if it tells none.
+
+    Args:
+        link: to the vehicle.
+        kind: of the vehicle.
+        instead: told in place of those of the same name.
+    """
+    safeguards = {each.name: each for each in (*safeguards_of(link, kind), *instead)}
+    values = parameters.read(link, list(safeguards))
     if not values:
         yield "the vehicle tells none of its failsafe parameters: look yourself what it does by itself"
-    for safeguard in safeguards:
-        if safeguard.name in values:
-            yield safeguard.told(values[safeguard.name])
+    for name, safeguard in safeguards.items():
+        if name in values:
+            yield safeguard.told(values[name])

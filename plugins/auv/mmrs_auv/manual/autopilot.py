@@ -11,7 +11,6 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mmrs_auv.manual.helm import Sticks
 from mmrs_core.flight import faults
 from mmrs_core.flight.links.link import Link
-from mmrs_core.flight.services import parameters
 from mmrs_core.flight.services.commands import ask, command
 from mmrs_core.flight.vehicles.modes import word_of
 from mmrs_core.flight.vehicles.preparation import VEHICLES, hear_out
@@ -43,6 +42,7 @@ STICKS_LOST = Safeguard(
     {0: "nothing", 1: "warn", 2: "disarm"},
     dict.fromkeys((0, 1), "nothing stops its motors when this program, or its link, ends"),
 )
+"""What it means here, where the program moves the sticks."""
 
 LEAK = "leak detected"
 COMES_UP = "SURFACE"
@@ -102,9 +102,7 @@ class Autopilot:
 
     def safeguards(self) -> Iterator[str]:
         """Yield what it does by itself when something goes wrong, as its parameters tell."""
-        yield from report(self._link, "sub")
-        found = parameters.read(self._link, [STICKS_LOST.name])
-        yield from (STICKS_LOST.told(value) for value in found.values())
+        yield from report(self._link, "sub", [STICKS_LOST])
 
     def trouble(self, patience: float) -> faults.Fault | None:
         """Return what is wrong; what leaves the vehicle to itself, or to others, goes first.
@@ -247,10 +245,11 @@ class Autopilot:
         )
 
     def _stale(self) -> faults.Fault | None:
-        now, age = self._link.clock.now(), max(map(self._link.since, NEEDED))
-        if self._link.silent_for() >= self._stale_after:
+        now, silent, age = self._link.clock.now(), self._link.silent_for(), max(map(self._link.since, NEEDED))
+        if silent >= self._stale_after:
             self._silent_at = now
-        if age <= self._stale_after or now - self._silent_at < self._stale_after:
+        # What was told last before all fell silent is no older than that: then the link is lost.
+        if age - silent <= self._stale_after or now - self._silent_at < self._stale_after:
             return None
         return faults.Fault(faults.POSITION_LOST, f"heading or depth was not told for {age:.1f} s")
 

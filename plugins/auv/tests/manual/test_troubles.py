@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 from dives_by_hand import DEVICE_ACTION, sub
-from mmrs_auv.manual.autopilot import TOLD
+from mavlink_peer import linked
+from mmrs_auv.manual.autopilot import DEPTH_HOLD, TOLD, Autopilot
+from mmrs_auv.manual.troubles import LINK_PATIENCE
 from patience import until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -149,3 +151,17 @@ def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
         driven.backend._late_at = driven.clock.now()
         until(lambda: driven.fault)
         assert (driven.fault.which, driven.fault.instead) == ("NO_PROGRESS", "SURFACE")
+
+
+def test_a_link_that_falls_silent_is_no_lost_heading_whatever_was_told_last():
+    with linked(speedup=4.0) as (link, wire):
+        pilot = Autopilot(link, lambda: False, 0.2)
+        wire.say(mavlink.MAVLink_attitude_message(0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
+        wire.say(mavlink.MAVLink_global_position_int_message(0, 0, 0, -2000, -2000, 0, 0, 0, 0))
+        link.wait(lambda: None, 0.5)
+        wire.beat(mode=DEPTH_HOLD, armed=True)
+        seen = []
+        until(lambda: seen.append(pilot.trouble(LINK_PATIENCE)) or link.silent_for() > LINK_PATIENCE + 1.0)
+    told = [fault.event for fault in seen if fault is not None]
+    assert told
+    assert set(told) == {"LINK_LOST"}
