@@ -30,6 +30,8 @@ MARGIN = 1.0
 """Metres by which a vehicle may go farther than it must to brake: it takes a moment to lean back."""
 
 GRAVITY = 9.81
+SPEED = 178
+"""The command for a speed, which is told again behind the first targets of a leg."""
 
 Moment = Callable[[Autopilot], bool]
 
@@ -82,10 +84,10 @@ def struck(vehicle: SimulatedVehicle) -> Struck:
 
 
 def answered(vehicle: SimulatedVehicle, since: Struck) -> float | None:
-    """Return the seconds until the vehicle first did something else: a new mode, a command, a set-point."""
+    """Return the seconds until the vehicle first did something else: a new mode, a command but for a speed."""
     pilot = vehicle.autopilot
     times = [time for time, _ in pilot.modes[since.modes :]]
-    times += [time for time, *_ in pilot.history[since.commands :]]
+    times += [time for time, number, _ in pilot.history[since.commands :] if number != SPEED]
     return max(0.0, min(times) - since.time) if times else None
 
 
