@@ -14,7 +14,7 @@ from ports import free_endpoint
 
 from fault_table.fleet import Fleet, wait_for
 from fault_table.project import OUT, TOUR, Pad
-from fault_table.record import MOMENTS, answered, ending, story, struck
+from fault_table.record import MOMENTS, Answer, answered, ending, story, struck
 from fault_table.row import Outcome, within
 from mmrs_core.sitl import SimulatedVehicle
 
@@ -112,12 +112,14 @@ def peer(execution: str, folder: Path, number: int, response: str, ends: str) ->
         _reached(fleet, "r0", AT)
         _reached(fleet, "g0", AT)
         since, begun = struck(vehicle), time.monotonic()
+        answer = Answer(vehicle, since, vehicle.autopilot.body.target)
+        vehicle.on_tick = answer.look
         giving.signal(number)
         if not wait_for(
             lambda: ending(vehicle, since) == ends and fleet.steps("r0")[-1]["label"] == "fault", 20.0
         ):
             outcome.problems.append(f"does not end as wanted: {ends}")
-        outcome.answered, outcome.rested = answered(vehicle, since), vehicle.autopilot.time - since.time
+        outcome.answered, outcome.rested = answer.seconds, vehicle.autopilot.time - since.time
         lease = LEASE_SECONDS if number == signal.SIGSTOP else 0.0
         limit = within(max(5.0, PEER_SECONDS * fleet.speedup) + lease * fleet.speedup, fleet.speedup)
         if outcome.answered is None or outcome.answered > limit:

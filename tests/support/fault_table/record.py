@@ -5,13 +5,14 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import hypot, sqrt
+from math import dist, hypot, sqrt
 
 from shapely import Point, Polygon
 
 from fault_table.project import MEADOW, OUT, TOUR
 from mmrs_core.sitl import SimulatedVehicle
 from mmrs_core.sitl.autopilot import Autopilot
+from mmrs_core.sitl.body import Vector
 
 NAMES = {
     0: "STABILIZE",
@@ -30,6 +31,7 @@ MARGIN = 1.0
 """Metres by which a vehicle may go farther than it must to brake: it takes a moment to lean back."""
 
 GRAVITY = 9.81
+GUIDED = 4
 SPEED = 178
 """The command for a speed, which is told again behind the first targets of a leg."""
 
@@ -84,11 +86,35 @@ def struck(vehicle: SimulatedVehicle) -> Struck:
 
 
 def answered(vehicle: SimulatedVehicle, since: Struck) -> float | None:
-    """Return the seconds until the vehicle first did something else: a new mode, a command but for a speed."""
+    """Return the seconds until the vehicle first did something else: a mode, a command that is no speed."""
     pilot = vehicle.autopilot
     times = [time for time, _ in pilot.modes[since.modes :]]
     times += [time for time, number, _ in pilot.history[since.commands :] if number != SPEED]
     return max(0.0, min(times) - since.time) if times else None
+
+
+class Answer:
+    """When a vehicle does something else than it did: by its record, or by where it goes in GUIDED."""
+
+    def __init__(self, vehicle: SimulatedVehicle, since: Struck, target: Vector | None) -> None:
+        """Begin to look at a vehicle that went for a target, or for none, until then."""
+        self._vehicle, self._since, self._target = vehicle, since, target
+        self._turned: float | None = None
+
+    @property
+    def seconds(self) -> float | None:
+        """Return how many it took; None: it has not yet."""
+        times = [self._turned, answered(self._vehicle, self._since)]
+        return min((time for time in times if time is not None), default=None)
+
+    def look(self) -> None:
+        """Keep when it first goes for another place than before."""
+        pilot = self._vehicle.autopilot
+        new = pilot.body.target
+        if self._turned is not None or pilot.mode != GUIDED or new is None:
+            return
+        if self._target is None or dist(new, self._target) > 1.0:
+            self._turned = max(0.0, pilot.time - self._since.time)
 
 
 def ending(vehicle: SimulatedVehicle, since: Struck) -> str:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from math import dist, inf
+from math import inf
 
 from fault_table.fleet import Fleet
-from fault_table.record import MOMENTS, Struck, answered, ending, stops_short, story, strayed, struck, talked
+from fault_table.record import MOMENTS, Answer, Struck, ending, stops_short, story, strayed, struck, talked
 from fault_table.row import Outcome, Row, within
 from mmrs_core.flight.orders.calling import Unreachable
 from mmrs_core.flight.orders.ordering import give
@@ -22,8 +22,6 @@ SURE_SECONDS = 0.0
 
 ORDER_SECONDS = 1.0
 """Real seconds in which an order must be confirmed, however fast the run goes."""
-
-GUIDED = 4
 
 
 class Watch:
@@ -45,8 +43,7 @@ class Watch:
         self._refused = not row.refuses
         self._settled = self._itself = False
         self._rest: tuple[str, float] | None = None
-        self._target: tuple[float, float, float] | None = None
-        self._turned: float | None = None
+        self._answer: Answer | None = None
         self._threads: list[threading.Thread] = []
 
     def ready(self) -> bool:
@@ -55,12 +52,12 @@ class Watch:
 
     def strike(self) -> None:
         """Make it happen."""
-        self._target = self._vehicle.autopilot.body.target
-        before = struck(self._vehicle)
+        target, before = self._vehicle.autopilot.body.target, struck(self._vehicle)
         self._row.strike(self._victim)
         after = struck(self._vehicle)
         # A restart changes the mode by itself, which is no answer; a fence's own action is one.
-        self._struck = after if self._row.event == "VEHICLE_RESTARTED" else before
+        since = after if self._row.event == "VEHICLE_RESTARTED" else before
+        self._answer, self._struck = Answer(self._vehicle, since, target), since
         if self._row.order and not self._row.together:
             self._give(self._row.order)
 
@@ -86,7 +83,8 @@ class Watch:
             if self._itself and self.ready():
                 self.strike()
             return
-        self._notice_turn()
+        assert self._answer is not None
+        self._answer.look()
         self._follow_up(self._vehicle.autopilot.time - self._struck.time)
 
     def settled(self) -> bool:
@@ -190,18 +188,8 @@ class Watch:
         self.outcome.confirmed[order] = max(seconds, self.outcome.confirmed.get(order, 0.0))
 
     def _answered(self) -> float | None:
-        assert self._struck is not None
-        times = [self._turned, answered(self._vehicle, self._struck)]
-        return min((time for time in times if time is not None), default=None)
-
-    def _notice_turn(self) -> None:
-        """Keep when the vehicle first went for another place than before, in GUIDED."""
-        pilot = self._vehicle.autopilot
-        new = pilot.body.target
-        if self._turned is not None or self._struck is None or pilot.mode != GUIDED or new is None:
-            return
-        if self._target is None or dist(new, self._target) > 1.0:
-            self._turned = pilot.time - self._struck.time
+        assert self._answer is not None
+        return self._answer.seconds
 
     def _logged(self) -> bool:
         if not self._fleet.process.running():
