@@ -323,6 +323,8 @@ class Watch:
                 return
         if self._answers(event):
             watched.departures.taken_back = self._clock.now()
+            # Nothing explains its mode a second time, to an order that comes before the answer.
+            vehicle.accept_mode()
             raise Fault(event, why)
         if event == VEHICLE_RESTARTED:
             watched.motors.check_stands(said)

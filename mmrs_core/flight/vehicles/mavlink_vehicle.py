@@ -321,6 +321,10 @@ class MavlinkVehicle:
         """Accept, until it is told something, that it is as it is, or does what it does alone."""
         self._helm.accept(self._alone)
 
+    def accept_mode(self) -> None:
+        """Accept, until it is told something, that it is in the mode that it is in."""
+        self._helm.accept(())
+
     def regain(self) -> None:
         """Have the vehicle again in the mode that it has left by itself, and stay where it is in GUIDED.
 

@@ -21,6 +21,9 @@ AIRS = (
     Air(loss=0.2, double=0.2, delay=0.1, jitter=0.6),
     Air(double=0.3, delay=0.1, jitter=0.6),
 )
+LOSSLESS = [air for air in AIRS if not air.loss]
+"""Where the only words of a failsafe are lost, nobody can tell it from a pilot."""
+
 ORDERS = (
     ("return", "hold", "resume"),
     ("hold", "resume", "hold", "resume"),
@@ -133,9 +136,12 @@ def test_a_vehicle_that_a_pilot_takes_is_told_nothing_any_more(tmp_path, kind, s
 @pytest.mark.thorough
 def test_what_is_late_is_no_pilots_and_a_pilot_is_left_alone(tmp_path, kind):
     for seed in range(100, 250):
-        # Where the only words of a failsafe are lost, nobody can tell it from a pilot.
-        fly_without_a_pilot(tmp_path / f"{seed}", kind, seed, [air for air in AIRS if not air.loss])
+        fly_without_a_pilot(tmp_path / f"{seed}", kind, seed, LOSSLESS)
         fly_until_a_pilot_comes(tmp_path / f"{seed}-pilot", kind, seed)
+
+
+def test_an_order_that_comes_as_the_vehicles_own_failsafe_is_answered_finds_no_pilot(tmp_path):
+    fly_without_a_pilot(tmp_path, "sub", 240, LOSSLESS)
 
 
 @pytest.mark.parametrize("words", ["GCS Failsafe", "MYGCS: 255, heartbeat lost"])
