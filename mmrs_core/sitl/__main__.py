@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import threading
+import time
 
 from mmrs_core.sitl import Settings, SimulatedVehicle
+
+SIGNAL_SECONDS = 0.5
 
 
 def main() -> int:
@@ -27,7 +29,9 @@ def main() -> int:
         parser.error(f"--home {given.home}, --kind {given.kind}, --system {given.system}: {error}")
     with SimulatedVehicle(given.port, settings, host=given.host, speedup=given.speedup):
         try:
-            threading.Event().wait()
+            # A signal that comes just before a wait does not end it.
+            while True:
+                time.sleep(SIGNAL_SECONDS)
         except KeyboardInterrupt:
             return 130
     return 0

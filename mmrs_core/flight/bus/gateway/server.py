@@ -32,6 +32,13 @@ HELLO_SECONDS = 5.0
 
 SORE_SECONDS = 0.2
 MOST_WAITING = 512
+
+SIGNAL_SECONDS = 0.5
+"""How long nobody may come before this process looks whether a signal has.
+
+One that comes just before a thread waits for a connection does not end the waiting.
+"""
+
 LONGEST_SILENCE = 3600
 
 Enter = Callable[[Recorded | None], Node]
@@ -61,6 +68,7 @@ class Gateway:
         """
         self._robot, self._run, self._enter = robot, run, enter
         self._socket = socket.create_server(("127.0.0.1", port), backlog=MOST_WAITING)
+        self._socket.settimeout(SIGNAL_SECONDS)
         self.port: int = self._socket.getsockname()[1]
         self.token = secrets.token_hex(16)
         self._file = folder / FILE
@@ -77,6 +85,8 @@ class Gateway:
         while not self._closed.is_set():
             try:
                 connection, _ = self._socket.accept()
+            except TimeoutError:
+                continue
             except OSError as error:
                 if not self._closed.wait(SORE_SECONDS):
                     say(f"{self._robot!r}: a program could not be let in: {error.strerror}")
