@@ -43,7 +43,7 @@ def _near(place: tuple[float, float, float]) -> Moment:
 
 
 MOMENTS: Mapping[str, Moment] = {
-    "on the ground": lambda pilot: not (pilot.armed or pilot.track) and pilot.heard is not None,
+    "on the ground": lambda pilot: not (pilot.armed or pilot.track) and bool(pilot.history),
     "climbing": lambda pilot: pilot.armed and 3.0 < pilot.body.position[2] < 8.0,
     "on a leg (GUIDED)": lambda pilot: (
         pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0

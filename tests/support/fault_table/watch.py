@@ -47,8 +47,9 @@ class Watch:
         self._threads: list[threading.Thread] = []
 
     def ready(self) -> bool:
-        """Return whether the vehicle is where the row wants it to be struck."""
-        return MOMENTS[self._row.during](self._vehicle.autopilot)
+        """Return whether the vehicle is where the row wants it to be struck, and so is the one that is."""
+        there = MOMENTS[self._row.during]
+        return there(self._vehicle.autopilot) and there(self._victim.autopilot)
 
     def strike(self) -> None:
         """Make it happen."""
