@@ -173,8 +173,8 @@ def _stopping(orders: Orders, robots: tuple[str, ...]) -> Iterator[None]:
         seen.append(number)
         if len(seen) > 1:
             raise KeyboardInterrupt
-        tell("stopping; interrupt again to end without waiting for robots, and those that pilots have")
         orders.give(STOP, robots, interrupt=True)
+        tell("stopping; interrupt again to end without waiting for robots, and those that pilots have")
 
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
     if hasattr(signal, "SIGHUP"):

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from math import inf
 from queue import Empty, SimpleQueue
 
-LONGEST_SLEEP = 3600.0
-"""Seconds after which a sleeper looks around in any case; queues take no infinite time."""
+SIGNAL_SECONDS = 0.5
+"""How long a sleeper sleeps at most before it heeds a signal that did not end its sleep.
+
+One that comes just before a thread waits, or to another thread, does not.
+"""
 
 
 class SimulatedClock:
@@ -57,13 +61,20 @@ class RealClock:
 
     def sleep_until(self, time: float) -> None:
         """Return when that time has come, or as soon as somebody wakes the sleeper."""
-        left = (time - self.now()) / self.speedup
+        while not self._is_woken((time - self.now()) / self.speedup):
+            if self.now() >= time:
+                return
+
+    def _is_woken(self, left: float) -> bool:
+        """Return whether somebody has woken the sleeper within so many seconds, `SIGNAL_SECONDS` at most."""
         try:
-            self._wakes.get(timeout=min(max(left, 0.0), LONGEST_SLEEP))
+            self._wakes.get(timeout=min(max(left, 0.0), SIGNAL_SECONDS))
+        except Empty:
+            return False
+        with suppress(Empty):
             while True:
                 self._wakes.get_nowait()
-        except Empty:
-            return
+        return True
 
     def wake(self) -> None:
         """End the present sleep, or the next one if nobody sleeps; from any thread or signal handler."""

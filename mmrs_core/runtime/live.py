@@ -19,7 +19,7 @@ from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.clock import RealClock
+from mmrs_core.runtime.clock import SIGNAL_SECONDS, RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
 from mmrs_core.runtime.resuming import over_by
@@ -198,7 +198,8 @@ def _let_go(robots: Mapping[str, Backend]) -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join()
+        while thread.is_alive():
+            thread.join(SIGNAL_SECONDS)
     if errors:
         for other in errors[1:]:
             errors[0].add_note(f"also: {other!r}")

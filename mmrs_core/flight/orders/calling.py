@@ -10,6 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 CALL_SECONDS = 5.0
+SIGNAL_SECONDS = 0.5
+"""How long nothing may be said before an interrupt is heeded that did not end the waiting."""
 
 Request = tuple[int, Mapping[str, Any]]
 """A port of this machine, and what is asked there."""
@@ -44,7 +46,10 @@ def asked_at_once(
         threading.Thread(target=ask, args=(number, request), name="call", daemon=True).start()
     left = len(requests)
     while left:
-        number, reply = said.get()
+        try:
+            number, reply = said.get(timeout=SIGNAL_SECONDS)
+        except queue.Empty:
+            continue
         if reply is None:
             left -= 1
         else:

@@ -13,9 +13,11 @@ import time
 from contextlib import ExitStack
 
 import pytest
+from signals_elsewhere import broken_off
+from stalls import Stalls
 
 from mmrs_core.flight.control import Control, Taken
-from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable
+from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable, asked_at_once
 from mmrs_core.flight.orders.ordering import give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.questions import Questions
@@ -228,6 +230,13 @@ def test_a_process_that_hangs_keeps_no_order_from_the_robots_of_others(tmp_path,
         assert time.monotonic() - begun < CALL_SECONDS
         last = next(replies)
     assert (last["robot"], last["why"]) == ("gamma", "its process does not answer")
+
+
+def test_whoever_gives_an_order_need_not_wait_for_the_answer_of_a_process_that_hangs():
+    stalls, begun = Stalls(), time.monotonic()
+    with socket.create_server(("127.0.0.1", 0)) as frozen, broken_off():
+        list(asked_at_once([(frozen.getsockname()[1], {})], seconds=1.0))
+    assert time.monotonic() - begun < 3.0 + stalls.seconds
 
 
 def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_once(

@@ -5,6 +5,8 @@ import time
 from math import inf
 
 import pytest
+from signals_elsewhere import signalled
+from stalls import Stalls
 
 from mmrs_core.runtime.clock import RealClock, SimulatedClock
 
@@ -33,6 +35,19 @@ def test_a_sleeper_is_woken_at_once():
     begun = time.monotonic()
     clock.sleep_until(inf)
     assert time.monotonic() - begun < 5.0
+
+
+def test_a_signal_that_does_not_end_a_sleep_is_heeded_soon():
+    clock, heeded = RealClock(), []
+    stalls, begun = Stalls(), time.monotonic()
+
+    def heed():
+        heeded.append(time.monotonic())
+        clock.wake()
+
+    with signalled(heed, clock.wake):
+        clock.sleep_until(inf)
+    assert heeded[0] - begun < 3.0 + stalls.seconds
 
 
 def test_a_wake_before_the_sleep_is_not_lost():

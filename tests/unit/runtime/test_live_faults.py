@@ -6,14 +6,18 @@ import threading
 import time
 from dataclasses import replace
 from math import inf
+from types import SimpleNamespace
 
 import pytest
 from hub import Hub
 from live_runs import TWO, WALK, Script, do
+from signals_elsewhere import broken_off
+from stalls import Stalls
 
 from mmrs_core.behaviour.replay import Outcome
 from mmrs_core.errors import MmrsError
 from mmrs_core.flight.bus import CommandId, Node, NoJournal
+from mmrs_core.runtime.live import _let_go
 from mmrs_core.runtime.orders import HOLD, LAND, RESUME, RETURN, STOP
 from mmrs_core.runtime.slots import ProgramBus, members_of
 from mmrs_core.scene import Policy
@@ -165,3 +169,11 @@ def test_a_robot_that_cannot_be_let_go_of_does_not_keep_the_others_and_is_told(l
     broken.close = close
     run.abort()
     assert (str(run.error), other.closed) == ("says the test", True)
+
+
+def test_an_interrupt_ends_the_waiting_for_a_robot_that_is_slow_to_be_let_go_of():
+    free, stalls, begun = threading.Event(), Stalls(), time.monotonic()
+    with broken_off(rescue=free.set):
+        _let_go({"a": SimpleNamespace(close=free.wait)})
+    free.set()
+    assert time.monotonic() - begun < 3.0 + stalls.seconds
