@@ -8,14 +8,13 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl import px4_failsafes
 from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.fences import fence_of
+from mmrs_core.sitl.fences import fence_of, watch_fence
 from mmrs_core.sitl.modes import BLIND
 from mmrs_core.sitl.settings import PX4
 
 CRITICAL = mavlink.MAV_SEVERITY_CRITICAL
 WARNING = mavlink.MAV_SEVERITY_WARNING
 EKF_SECONDS = 1.0
-FENCE_SECONDS = 1.0
 DISARM = "disarm"
 
 Answers = Mapping[int, tuple[str, ...]]
@@ -76,7 +75,7 @@ def watch(pilot: Autopilot, seconds: float) -> None:
         px4_failsafes.watch(pilot, seconds)
         return
     _watch_position(pilot, seconds)
-    _watch_fence(pilot)
+    watch_fence(pilot, "FENCE_ENABLE", outside_fence, breach)
     if not pilot.armed:
         pilot.failed.pop("gcs", None)
         return
@@ -152,17 +151,6 @@ def _watch_battery(pilot: Autopilot) -> None:
             used = f"{pilot.battery.voltage:.2f}V used {pilot.battery.used:.0f} mAh"
             pilot.say(CRITICAL, f"Battery 1 is {word} {used}")
             _answer(pilot, ON_BATTERY[pilot.settings.kind].get(int(pilot.parameters[action]), ()))
-
-
-def _watch_fence(pilot: Autopilot) -> None:
-    if pilot.time < pilot.fence_due:
-        return
-    pilot.fence_due = pilot.time + FENCE_SECONDS
-    outside = bool(pilot.parameters["FENCE_ENABLE"]) and pilot.located and outside_fence(pilot)
-    if outside and not pilot.breached and pilot.armed:
-        breach(pilot)
-    elif not outside and not pilot.told_out:
-        pilot.breached = False
 
 
 def breach(pilot: Autopilot) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Protocol
@@ -13,6 +13,9 @@ from mmrs_core.sitl.items import FENCE
 
 if TYPE_CHECKING:
     from mmrs_core.sitl.autopilot import Autopilot
+
+FENCE_SECONDS = 1.0
+"""How long it is from one look at the fence to the next."""
 
 Point = tuple[float, float]
 
@@ -62,6 +65,27 @@ class Zone:
 def fence_of(pilot: Autopilot) -> tuple[Zone, ...]:
     """Return the zones of the fence that a vehicle has."""
     return zones_of([(item, pilot.place_of(item)[:2]) for item in pilot.stores[FENCE]])
+
+
+def watch_fence(
+    pilot: Autopilot, switch: str, outside: Callable[[Autopilot], bool], breach: Callable[[Autopilot], None]
+) -> None:
+    """Look from time to time whether a vehicle is out of its fence, and let it be so once if it is armed.
+
+    Args:
+        pilot: of the vehicle.
+        switch: parameter without which there is no fence.
+        outside: says whether it is out of it.
+        breach: makes it be out of it.
+    """
+    if pilot.time < pilot.fence_due:
+        return
+    pilot.fence_due = pilot.time + FENCE_SECONDS
+    is_out = bool(pilot.parameters[switch]) and pilot.located and outside(pilot)
+    if is_out and not pilot.breached and pilot.armed:
+        breach(pilot)
+    elif not is_out and not pilot.told_out:
+        pilot.breached = False
 
 
 def zones_of(items: Sequence[tuple[Vertex, Point]]) -> tuple[Zone, ...]:

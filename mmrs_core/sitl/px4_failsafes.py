@@ -12,12 +12,11 @@ from math import hypot
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mmrs_core.sitl.autopilot import Autopilot
-from mmrs_core.sitl.fences import fence_of
+from mmrs_core.sitl.fences import fence_of, watch_fence
 from mmrs_core.sitl.modes import BLIND
 
 CRITICAL, INFO = mavlink.MAV_SEVERITY_CRITICAL, mavlink.MAV_SEVERITY_INFO
 DISARM = "disarm"
-FENCE_SECONDS = 1.0
 
 FAILSAFE, HOLDS_UNTIL, IN_MODE = "failsafe", "holds until", "in mode"
 """Of what is wrong: since when something is; until when it holds first; which mode it chose."""
@@ -53,7 +52,7 @@ ON_STILLNESS: Answers = {
 def watch(pilot: Autopilot, seconds: float) -> None:
     """Look for what is wrong, and answer it."""
     _watch_position(pilot, seconds)
-    _watch_fence(pilot)
+    watch_fence(pilot, "GF_ACTION", _outside, breach)
     if not pilot.armed:
         for name in ("gcs", "stream", FAILSAFE, HOLDS_UNTIL, IN_MODE):
             pilot.failed.pop(name, None)
@@ -81,17 +80,6 @@ def _watch_position(pilot: Autopilot, seconds: float) -> None:
     lost = pilot.failed["position"] = before + seconds
     if pilot.armed and pilot.mode_name not in BLIND and before <= pilot.parameters["COM_POS_FS_DELAY"] < lost:
         _answer(pilot, ("return", "land"), at_once=True)
-
-
-def _watch_fence(pilot: Autopilot) -> None:
-    if pilot.time < pilot.fence_due:
-        return
-    pilot.fence_due = pilot.time + FENCE_SECONDS
-    outside = bool(pilot.parameters["GF_ACTION"]) and pilot.located and _outside(pilot)
-    if outside and not pilot.breached and pilot.armed:
-        breach(pilot)
-    elif not outside and not pilot.told_out:
-        pilot.breached = False
 
 
 def _outside(pilot: Autopilot) -> bool:

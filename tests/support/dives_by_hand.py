@@ -73,6 +73,16 @@ class Driven:
     def begin(self, id):
         self.backend.begin(next(each for each in MOVES if each.id == id), self.clock.now())
 
+    def set_out(self):
+        """Begin to go out, and wait until it is a metre from home."""
+        self.begin("out")
+        until(lambda: self.truth[0] > 1.0)
+
+    def go_down(self):
+        """Begin to go out, and wait until it is a metre deep."""
+        self.begin("out")
+        until(lambda: self.truth[2] < -1.0)
+
     def finish(self):
         until(lambda: self.fault or self.backend.finished(self.clock.now()), 30.0)
         assert self.fault is None, self.fault

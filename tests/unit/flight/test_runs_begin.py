@@ -46,6 +46,19 @@ UNHURRIED = replace(
 SECOND = FLIGHTS["b1"]
 
 
+def prepare(made, robot=ROBOT):
+    """Have the mission uploaded; return what people are told meanwhile."""
+    told = []
+    made.crew.vehicle._tell = told.append
+    made.crew.vehicle.prepare(uploads_of(robot))
+    return told
+
+
+def take_off(made):
+    made.crew.watch.renew()
+    made.crew.vehicle.take_off(10.0)
+
+
 @pytest.fixture
 def airborne(tmp_path):
     """Return a function that gives the crew of a robot that has taken off, with its mission uploaded."""
@@ -54,9 +67,8 @@ def airborne(tmp_path):
     def fly(robot=ROBOT, **settings):
         opened.append(manned(tmp_path, robot, **settings))
         made = opened[-1].__enter__()
-        made.crew.vehicle.prepare(uploads_of(robot))
-        made.crew.watch.renew()
-        made.crew.vehicle.take_off(10.0)
+        prepare(made, robot)
+        take_off(made)
         return made
 
     yield fly
@@ -112,26 +124,20 @@ def test_a_run_without_a_speed_is_not_flown_at_that_of_the_run_before(airborne):
 
 def test_a_vehicle_that_begins_its_missions_anew_is_set_to_go_on_and_people_are_told(tmp_path):
     with manned(tmp_path, ROBOT, parameters={"MIS_RESTART": 1.0}) as made:
-        told = []
-        made.crew.vehicle._tell = told.append
-        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        told = prepare(made)
         assert made.simulated.autopilot.parameters["MIS_RESTART"] == 0.0
         assert "MIS_RESTART = 0, which was 1: each run begins with its own first place" in told
-        made.crew.watch.renew()
-        made.crew.vehicle.take_off(10.0)
+        take_off(made)
         made.crew.vehicle.fly(SECOND.first, SECOND.last, lambda seq: None)
         assert distance(made.crew.vehicle.state().place, WAYS["b3"]) < 4.0
 
 
 def test_a_px4_is_set_not_to_begin_its_mission_by_itself_after_take_off(tmp_path):
     with manned(tmp_path, ROBOT, firmware="px4", parameters={"COM_TAKEOFF_ACT": 1}) as made:
-        told = []
-        made.crew.vehicle._tell = told.append
-        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        told = prepare(made)
         assert made.simulated.autopilot.parameters["COM_TAKEOFF_ACT"] == 0.0
         assert "COM_TAKEOFF_ACT = 0, which was 1: each run begins with its own first place" in told
-        made.crew.watch.renew()
-        made.crew.vehicle.take_off(10.0)
+        take_off(made)
         until(lambda: made.mode != "take_off")
         assert made.mode == "loiter"
 
@@ -141,7 +147,7 @@ def test_a_mission_that_a_px4_has_accepted_and_would_not_fly_is_refused_on_the_g
         manned(tmp_path, ROBOT, firmware="px4", parameters={"MIS_DIST_1WP": 5.0}) as made,
         pytest.raises(Refused, match="mission: the vehicle has accepted it, and would not fly it"),
     ):
-        made.crew.vehicle.prepare(uploads_of(ROBOT))
+        prepare(made)
 
 
 def test_what_a_px4_says_against_a_mission_is_told(tmp_path):

@@ -42,8 +42,7 @@ def test_where_the_robot_is_is_reckoned():
 
 def test_it_holds_its_depth_where_nobody_knows_its_heading_any_more():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(TOLD[0]), -1.0)
         until(lambda: driven.fault)
         driven.stop("HOLD")
@@ -77,8 +76,7 @@ def test_it_goes_round_what_is_forbidden_and_comes_up_there(response):
 
 def test_it_comes_up_and_says_so_where_there_is_no_emergency_area():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.stop("EMERGENCY_AREA")
         assert driven.undone == "no way there is known: it comes up where it is"
         assert driven.truth[2] >= -0.4
@@ -86,8 +84,7 @@ def test_it_comes_up_and_says_so_where_there_is_no_emergency_area():
 
 def test_thrust_that_is_to_stop_has_stopped():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.stop("STOP_THRUST")
         assert not driven.vehicle.autopilot.armed
 
@@ -105,8 +102,7 @@ def test_a_vehicle_that_comes_up_can_be_told_to_stay():
 
 def test_it_pauses_and_goes_on():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         driven.backend.pause(driven.clock.now())
         until(lambda: driven.backend.paused(driven.clock.now()))
         here = driven.truth
@@ -120,7 +116,6 @@ def test_it_pauses_and_goes_on():
 @pytest.mark.parametrize("response", ["HOLD", "SURFACE"])
 def test_it_stops_as_a_response_says(response):
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.stop(response)
         assert driven.truth[2] >= -0.4 if response == "SURFACE" else driven.truth[2] <= -1.0

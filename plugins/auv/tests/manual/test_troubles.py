@@ -18,8 +18,7 @@ from mmrs_core.scene import Policy
 @pytest.mark.parametrize("number", TOLD)
 def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         command(driven.backend._link, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(number), -1.0)
         until(lambda: driven.fault)
         assert driven.fault.which == "POSITION_LOST"
@@ -31,8 +30,7 @@ def test_nobody_is_driven_by_a_heading_or_a_depth_of_the_past(number):
 
 def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         command(driven.backend._link, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0)
         until(lambda: driven.fault or driven.backend.finished(driven.clock.now()))
         assert driven.fault.which == "MOTORS_OFF"
@@ -40,8 +38,7 @@ def test_a_vehicle_that_was_disarmed_has_not_reached_anything():
 
 def test_a_vehicle_that_hears_no_sticks_any_more_stops():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         driven.backend._ended.set()
         driven.backend._released = True
         until(lambda: not driven.vehicle.autopilot.armed)
@@ -50,8 +47,7 @@ def test_a_vehicle_that_hears_no_sticks_any_more_stops():
 
 def test_who_takes_the_stick_has_the_vehicle():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         driven.vehicle.faults.take_stick("manual")
         until(lambda: driven.fault is not None)
         assert driven.fault.which == "TAKEN_OVER"
@@ -70,8 +66,7 @@ def test_a_link_that_is_lost_is_told():
 
 def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if_policies_bear_that():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[0] > 1.0)
+        driven.set_out()
         driven.vehicle.faults.fall_dumb()
         until(lambda: driven.fault)
         assert driven.backend.bear(driven.clock.now())
@@ -87,8 +82,7 @@ def test_a_vehicle_that_is_not_heard_stays_and_goes_on_when_it_is_heard_again_if
 
 def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.vehicle.faults.set_battery(0.15)
         until(lambda: driven.fault)
         assert driven.fault.which == "BATTERY_LOW"
@@ -102,8 +96,7 @@ def test_a_battery_that_gets_low_is_told_and_it_comes_up_by_itself():
 
 def test_water_inside_brings_it_up():
     with sub() as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.vehicle.autopilot.say(4, "Leak Detected")
         until(lambda: driven.fault)
         assert (driven.fault.which, driven.fault.instead) == ("CRASHED", "SURFACE")
@@ -113,8 +106,7 @@ def test_water_inside_brings_it_up():
 
 def test_what_a_policy_bears_for_a_while_is_told_after_that():
     with sub(policies=(Policy("BATTERY_LOW", "SURFACE", 20.0),)) as driven:
-        driven.begin("out")
-        until(lambda: driven.truth[2] < -1.0)
+        driven.go_down()
         driven.vehicle.faults.set_battery(0.15)
         begun = driven.clock.now()
         until(lambda: driven.fault)

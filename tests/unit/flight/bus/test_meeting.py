@@ -44,21 +44,21 @@ def test_a_robot_that_gives_up_as_all_begin_is_told_so():
 
 
 def test_the_instant_is_as_far_off_as_the_slowest_link_needs():
-    now = 0.0
-    meeting = Roster(lambda: now)
-    meeting.answer(ready("a"))
-    now = 2.0
-    meeting.answer(ready("a"))
-    assert meeting.answer(ready("b")).at == 2.0 + 6.0
+    assert instant_after_asking_twice(2.0) == 2.0 + 6.0
 
 
 def test_a_robot_that_was_away_makes_nobody_wait():
+    assert instant_after_asking_twice(100.0) == 100.0 + 1.0
+
+
+def instant_after_asking_twice(pause: float) -> float:
+    """Return when all begin if the first asks at 0 and again after a pause, at which the second is ready."""
     now = 0.0
     meeting = Roster(lambda: now)
     meeting.answer(ready("a"))
-    now = 100.0
+    now = pause
     meeting.answer(ready("a"))
-    assert meeting.answer(ready("b")).at == 101.0
+    return meeting.answer(ready("b")).at
 
 
 def test_people_are_told_skew_offset_and_uncertainty():
