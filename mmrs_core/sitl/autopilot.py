@@ -25,6 +25,7 @@ from mmrs_core.sitl.px4_missions import is_feasible
 from mmrs_core.sitl.settings import PX4, Settings
 
 if TYPE_CHECKING:
+    from mmrs_core.sitl.px4_failsafes import Failsafe
     from mmrs_core.sitl.sticks import Sticks
 
 EQUATOR, SQUARED_ECCENTRICITY = 6_378_137.0, 6.694_379_990_14e-3
@@ -64,6 +65,7 @@ class Autopilot:
         patience: seconds that it waits at least for what comes by its link, whatever parameters say.
         beats_now: whether a heartbeat is due because the mode has changed.
         failed: since when each thing is wrong that it watches, or that it has answered that.
+        failsafe: what a PX4 does because of that; None: nothing.
         fence_due: when it looks at its fence again. told_out: whether somebody says that it is out of it.
         reboots: whether it is to be switched off and on.
         home: latitude, longitude and metres above the sea. settled: whether somebody has told it its home.
@@ -120,6 +122,7 @@ class Autopilot:
         self.settled = False
         self.beats_now = False
         self.failed: dict[str, float] = {}
+        self.failsafe: Failsafe | None = None
         self.body.target = self.body.onward = self.body.origin = self.body.wanted_heading = None
 
     @property

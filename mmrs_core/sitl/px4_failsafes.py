@@ -7,6 +7,7 @@ mode cannot go on: without set-points or a position. Whoever gives it another mo
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from math import hypot
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -17,9 +18,6 @@ from mmrs_core.sitl.modes import BLIND
 
 CRITICAL, INFO = mavlink.MAV_SEVERITY_CRITICAL, mavlink.MAV_SEVERITY_INFO
 DISARM = "disarm"
-
-FAILSAFE, HOLDS_UNTIL, IN_MODE = "failsafe", "holds until", "in mode"
-"""Of what is wrong: since when something is; until when it holds first; which mode it chose."""
 
 Answers = Mapping[int, tuple[str, ...]]
 
@@ -49,13 +47,29 @@ ON_STILLNESS: Answers = {
 """By COM_OBL_RC_ACT, where set-points stay away."""
 
 
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """What a PX4 does because something is wrong.
+
+    Attributes:
+        mode: number of the mode that it has chosen; None: it has chosen none, and goes on.
+        then: modes of which it goes into the first that it may, once it has held; none: it does not hold.
+        until: when it has held for long enough.
+    """
+
+    mode: int | None = None
+    then: tuple[str, ...] = ()
+    until: float = 0.0
+
+
 def watch(pilot: Autopilot, seconds: float) -> None:
     """Look for what is wrong, and answer it."""
     _watch_position(pilot, seconds)
     watch_fence(pilot, "GF_ACTION", _outside, breach)
     if not pilot.armed:
-        for name in ("gcs", "stream", FAILSAFE, HOLDS_UNTIL, IN_MODE):
-            pilot.failed.pop(name, None)
+        pilot.failsafe = None
+        pilot.failed.pop("gcs", None)
+        pilot.failed.pop("stream", None)
         return
     _watch_link(pilot)
     _watch_battery(pilot)
@@ -126,7 +140,7 @@ def _watch_stream(pilot: Autopilot) -> None:
             _answer(pilot, ON_STILLNESS.get(int(pilot.parameters["COM_OBL_RC_ACT"]), ()), at_once=True)
             pilot.failed["stream"] = pilot.time
     elif "stream" in pilot.failed:
-        if pilot.mode != pilot.failed.get(IN_MODE) or "gcs" in pilot.failed:
+        if not _has_its_mode(pilot) or "gcs" in pilot.failed:
             del pilot.failed["stream"]
         elif pilot.is_steered():
             del pilot.failed["stream"]
@@ -143,7 +157,7 @@ def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False, 
         warns: whether it counts as a failsafe, too, where it goes on.
     """
     if names or warns:
-        pilot.failed[FAILSAFE] = pilot.time
+        pilot.failsafe = pilot.failsafe or Failsafe()
     if not names:
         return
     if names == (DISARM,) or (pilot.flies and not pilot.airborne):
@@ -152,8 +166,8 @@ def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False, 
     holds = 0.0 if at_once or names[0] == "loiter" else pilot.parameters["COM_FAIL_ACT_T"]
     if holds and pilot.mode_name not in ("return", "land"):
         pilot.say(CRITICAL, f"Failsafe activated, entering Hold for {holds:.0f} seconds")
-        pilot.failed |= {HOLDS_UNTIL: pilot.time + holds, f"then {' '.join(names)}": pilot.time}
         _choose(pilot, "loiter")
+        pilot.failsafe = Failsafe(pilot.mode, names, pilot.time + holds)
     else:
         pilot.say(CRITICAL, "Failsafe activated")
         _choose(pilot, *names)
@@ -161,16 +175,23 @@ def _answer(pilot: Autopilot, names: tuple[str, ...], *, at_once: bool = False, 
 
 def _choose(pilot: Autopilot, *names: str) -> None:
     pilot.enter(*names)
-    pilot.failed[IN_MODE] = float(pilot.mode)
+    pilot.failsafe = replace(pilot.failsafe or Failsafe(), mode=pilot.mode)
 
 
 def _go_on(pilot: Autopilot) -> None:
     """Do what it has held for, unless somebody has given it another mode meanwhile."""
-    waiting = [name for name in pilot.failed if name.startswith("then ")]
-    if not waiting or (pilot.time < pilot.failed[HOLDS_UNTIL] and pilot.mode == pilot.failed[IN_MODE]):
+    failsafe = pilot.failsafe
+    if failsafe is None or not failsafe.then:
         return
-    for name in waiting:
-        del pilot.failed[name]
-    if pilot.mode == pilot.failed[IN_MODE]:
+    ours = _has_its_mode(pilot)
+    if ours and pilot.time < failsafe.until:
+        return
+    pilot.failsafe = Failsafe(failsafe.mode)
+    if ours:
         pilot.say(CRITICAL, "Failsafe activated")
-        _choose(pilot, *waiting[-1].split()[1:])
+        _choose(pilot, *failsafe.then)
+
+
+def _has_its_mode(pilot: Autopilot) -> bool:
+    """Return whether it is in the mode that it has chosen by itself."""
+    return pilot.failsafe is not None and pilot.mode == pilot.failsafe.mode

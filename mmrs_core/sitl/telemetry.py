@@ -13,7 +13,6 @@ from mmrs_core.sitl.autopilot import Autopilot
 from mmrs_core.sitl.camera import Photo
 from mmrs_core.sitl.commands import complaint
 from mmrs_core.sitl.items import MISSION
-from mmrs_core.sitl.px4_failsafes import FAILSAFE
 from mmrs_core.sitl.px4_missions import is_feasible
 from mmrs_core.sitl.settings import PX4, Settings
 
@@ -55,7 +54,7 @@ def heartbeat(pilot: Autopilot) -> Message:
     """Return kind, mode, and whether it is armed."""
     px4 = pilot.settings.firmware == PX4
     armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED if pilot.armed else 0
-    active = mavlink.MAV_STATE_CRITICAL if FAILSAFE in pilot.failed else mavlink.MAV_STATE_ACTIVE
+    active = mavlink.MAV_STATE_ACTIVE if pilot.failsafe is None else mavlink.MAV_STATE_CRITICAL
     return mavlink.MAVLink_heartbeat_message(
         TYPES[pilot.settings.kind],
         mavlink.MAV_AUTOPILOT_PX4 if px4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,

@@ -111,6 +111,16 @@ def test_whoever_gives_it_another_mode_while_it_holds_has_it(bench):
     assert unheard(bench, 10.0) == "poshold"
 
 
+def test_what_it_held_for_is_forgotten_once_it_is_disarmed(bench):
+    bench.pilot.parameters["NAV_DLL_ACT"] = 2
+    assert unheard(bench, 10.5) == "loiter"
+    bench.command(400, 0, 21196)
+    bench.wait(0.2)
+    assert bench.command(400, 1) == 0
+    bench.wait(6.0)
+    assert bench.pilot.mode_name == "loiter"
+
+
 def test_out_of_its_fence_it_does_what_it_is_told_for_that(bench):
     bench.pilot.parameters |= {"GF_ACTION": 5, "GF_MAX_HOR_DIST": 15.0, "COM_FAIL_ACT_T": 0.0}
     stream(bench, (0.0, 0.0, 10.0), 1.5)
