@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from collections.abc import Mapping, Sequence
-from math import inf
 
 from mmrs_auv.backend.keeping import keeper_of
 from mmrs_auv.manual.autopilot import DEPTH_HOLD, SURFACE, Autopilot
 from mmrs_auv.manual.equipment import carry_out
 from mmrs_auv.manual.goals import goal_of
-from mmrs_auv.manual.helm import Goal, Helm
+from mmrs_auv.manual.helm import Helm
+from mmrs_auv.manual.route import Route
 from mmrs_auv.manual.troubles import LINK_PATIENCE, Troubles
 from mmrs_auv.manual.ways import Ways
 from mmrs_core.behaviour.program import Action, Move
@@ -53,6 +52,7 @@ class ManualRobot:
         self._ways = Ways(given, context)
         self._context, self._link, self._live = context, link, live
         self._helm = Helm(self._ways.home[0], self._ways.home[1], full_speed)
+        self._route = Route(self._helm)
         self._lock = threading.RLock()
         self._ended = threading.Event()
         reserve, resumed = given.program.reserve, live.resumed
@@ -63,12 +63,8 @@ class ManualRobot:
         self._own: Fault | None = None
         self._ready = self._released = self._lost = False
         self._response = self._instead = ""
-        self._goals: deque[Goal] = deque()
-        self._late_at = inf
         self._busy_until: float | None = None
-        self._depth = 0.0
         self._action: Action | None = None
-        self._paused: Goal | None = None
 
     def prepare(self, now: float) -> None:
         """Begin to listen, go into depth hold and arm."""
@@ -80,10 +76,10 @@ class ManualRobot:
     def begin(self, move: Move, now: float, *, through: bool = False) -> None:
         """Begin a movement."""
         with self._lock:
-            goal = goal_of(move, self._helm, self._context, self._depth)
+            goal = goal_of(move, self._helm, self._context, self._route.depth)
             self._busy_until, self._own = now, None
             if goal is not None:
-                self._go((goal,), now)
+                self._route.go((goal,), now)
 
     def act(self, action: Action, now: float) -> None:
         """Begin a device action, as its device is wired; feedback goes to people."""
@@ -101,7 +97,7 @@ class ManualRobot:
         with self._lock:
             if self._response:
                 return self._has_stopped(now)
-            done = self._ready and self._helm.reached and not self._goals and self._action is None
+            done = self._ready and self._route.reached and self._action is None
             return done and self._own is None and (self._busy_until is None or now >= self._busy_until)
 
     def fault(self, now: float) -> Fault | None:
@@ -126,7 +122,7 @@ class ManualRobot:
     def wait(self, now: float) -> None:
         """Hold the pose."""
         with self._lock:
-            self._stay(self._depth)
+            self._route.stay(self._route.depth)
 
     def state(self, now: float) -> RobotState:
         """Return where the robot is by reckoning, and its battery."""
@@ -138,7 +134,7 @@ class ManualRobot:
     def stop(self, now: float, response: str = "HOLD") -> None:
         """Do what a response says, or come up where that cannot be done."""
         with self._lock:
-            self._action = self._paused = None
+            self._action = self._route.paused = None
             self._response, self._instead = response, ""
             blind = self._troubles.event == faults.POSITION_LOST
             if response in RESTS:
@@ -146,7 +142,7 @@ class ManualRobot:
                 self._ended.set()
             elif response in STAYS:
                 self._autopilot.rising = False
-                self._stay(self._helm.depth)
+                self._route.stay(self._helm.depth)
             elif response in FINDS and blind:
                 self._come_up(now, "its heading or depth is not known: it comes up")
             elif response in FINDS:
@@ -157,21 +153,16 @@ class ManualRobot:
     def pause(self, now: float) -> None:
         """Begin to halt."""
         with self._lock:
-            if self._paused is None:
-                self._paused = self._helm.goal or Goal(self._depth)
-                self._late_at = inf
-                self._helm.hold()
+            self._route.pause()
 
     def resume(self, now: float) -> None:
         """Go on."""
         with self._lock:
-            if self._paused is not None:
-                goal, self._paused = self._paused, None
-                self._aim(goal, now)
+            self._route.resume(now)
 
     def paused(self, now: float) -> bool:
         """Return whether the vehicle has halted."""
-        return self._paused is not None and self._helm.reached and self._autopilot.armed
+        return self._route.paused is not None and self._helm.reached and self._autopilot.armed
 
     def obeys(self, now: float) -> bool:
         """Return whether the vehicle does what it was told by `stop`."""
@@ -203,7 +194,7 @@ class ManualRobot:
             if why := self.hindrance(passed, begun, now):
                 self._own = Fault(faults.REFUSED, why)
             else:
-                self._go(self._ways.back(passed, self._here()), now)
+                self._route.go(self._ways.back(passed, self._here()), now)
 
     def hindrance(self, passed: Sequence[str], begun: str, now: float) -> str:
         """Return why it cannot go on."""
@@ -255,7 +246,7 @@ class ManualRobot:
         try:
             self._autopilot.get_ready(self._live.say)
             with self._lock:
-                self._helm.depth = self._depth = self._autopilot.depth() or 0.0
+                self._helm.depth = self._route.depth = self._autopilot.depth() or 0.0
                 self._ready = True
             self._live.wake()
             while not self._ended.wait(self._link.clock.real(PERIOD)):
@@ -298,10 +289,10 @@ class ManualRobot:
 
     def _see_progress(self, now: float) -> None:
         if not self._helm.reached:
-            if now > self._late_at and self._own is None:
+            if now > self._route.late_at and self._own is None:
                 self._own = Fault(faults.NO_PROGRESS, "its goal is not reached in time", "SURFACE")
-        elif self._goals:
-            self._aim(self._goals.popleft(), now)
+        elif not self._route.reached:
+            self._route.go_on(now)
         elif self._response in FINDS and not self._autopilot.rising:
             self._come_up(now, self._instead)
 
@@ -335,7 +326,7 @@ class ManualRobot:
         driven = self._ready and self._thread is not None and self._thread.is_alive()
         if self._response == NOTHING or not driven or trouble in OFF:
             return True
-        if self._autopilot.rising and now > self._late_at:
+        if self._autopilot.rising and now > self._route.late_at:
             self._instead = f"it is not known to have come up: {self._helm.depth:.1f} m deep when last heard"
             return True
         if trouble == faults.LINK_LOST:
@@ -353,29 +344,14 @@ class ManualRobot:
         goals = self._ways.for_response(response, self._here())
         if goals:
             self._autopilot.rising = False
-            self._go(goals, now)
+            self._route.go(goals, now)
         else:
             self._come_up(now, "no way there is known: it comes up where it is")
 
     def _come_up(self, now: float, instead: str = "") -> None:
-        self._goals.clear()
+        self._route.come_up(now)
         self._instead = instead
-        self._late_at = now + self._helm.seconds(Goal(0.0))
         self._lost = self._autopilot.rising = True
-
-    def _stay(self, depth: float) -> None:
-        self._goals.clear()
-        self._late_at = inf
-        self._helm.aim(Goal(depth, self._helm.east, self._helm.north))
-
-    def _go(self, goals: Sequence[Goal], now: float) -> None:
-        self._goals = deque(goals)
-        if self._goals:
-            self._aim(self._goals.popleft(), now)
-
-    def _aim(self, goal: Goal, now: float) -> None:
-        self._depth, self._late_at = goal.depth, now + self._helm.seconds(goal)
-        self._helm.aim(goal)
 
     def _here(self) -> Position:
         return (self._helm.east, self._helm.north, self._context.zero - self._helm.depth)

@@ -140,7 +140,7 @@ def test_a_device_that_does_not_answer_is_told_while_the_vehicle_is_steered_on()
 def test_a_goal_that_is_not_reached_in_time_ends_the_dive():
     with sub() as driven:
         driven.begin("out")
-        driven.backend._late_at = driven.clock.now()
+        driven.backend._route.late_at = driven.clock.now()
         until(lambda: driven.fault)
         assert (driven.fault.which, driven.fault.instead) == ("NO_PROGRESS", "SURFACE")
 

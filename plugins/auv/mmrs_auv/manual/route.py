@@ -1,0 +1,69 @@
+"""Goals to which a vehicle that is driven by hand is steered one after another."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from math import inf
+
+from mmrs_auv.manual.helm import Goal, Helm
+
+
+class Route:
+    """Gives a helm its goals.
+
+    Attributes:
+        depth: of the last goal, or where the vehicle began; metres.
+        late_at: when something must be wrong if the goal is not reached.
+        paused: goal towards which it is steered again after a pause; None: there is no pause.
+    """
+
+    def __init__(self, helm: Helm) -> None:
+        """Have no goals."""
+        self.depth, self.late_at = 0.0, inf
+        self.paused: Goal | None = None
+        self._helm = helm
+        self._goals: deque[Goal] = deque()
+
+    @property
+    def reached(self) -> bool:
+        """Return whether all goals are."""
+        return self._helm.reached and not self._goals
+
+    def go(self, goals: Sequence[Goal], now: float) -> None:
+        """Have these goals instead of all others."""
+        self._goals = deque(goals)
+        self.go_on(now)
+
+    def go_on(self, now: float) -> None:
+        """Steer towards the next goal, if there is one."""
+        if self._goals:
+            self._aim(self._goals.popleft(), now)
+
+    def stay(self, depth: float) -> None:
+        """Have no goal but the reckoned place, so deep, for as long as it takes."""
+        self._goals.clear()
+        self.late_at = inf
+        self._helm.aim(Goal(depth, self._helm.east, self._helm.north))
+
+    def come_up(self, now: float) -> None:
+        """Have no goals, since the vehicle comes up by itself."""
+        self._goals.clear()
+        self.late_at = now + self._helm.seconds(Goal(0.0))
+
+    def pause(self) -> None:
+        """Halt, and keep the goal."""
+        if self.paused is None:
+            self.paused = self._helm.goal or Goal(self.depth)
+            self.late_at = inf
+            self._helm.hold()
+
+    def resume(self, now: float) -> None:
+        """Steer towards the goal that was kept."""
+        if self.paused is not None:
+            goal, self.paused = self.paused, None
+            self._aim(goal, now)
+
+    def _aim(self, goal: Goal, now: float) -> None:
+        self.depth, self.late_at = goal.depth, now + self._helm.seconds(goal)
+        self._helm.aim(goal)
