@@ -32,12 +32,12 @@ class Route:
 
     def go(self, goals: Sequence[Goal], now: float) -> None:
         """Have these goals instead of all others."""
-        self._goals = deque(goals)
+        self._goals, self.paused = deque(goals), None
         self.go_on(now)
 
     def go_on(self, now: float) -> None:
-        """Steer towards the next goal, if there is one."""
-        if self._goals:
+        """Steer towards the next goal, if there is one, unless there is a pause."""
+        if self._goals and self.paused is None:
             self._aim(self._goals.popleft(), now)
 
     def stay(self, depth: float) -> None:

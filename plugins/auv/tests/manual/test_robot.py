@@ -55,11 +55,13 @@ def test_it_holds_its_depth_where_nobody_knows_its_heading_any_more():
         assert driven.truth[2] >= -0.4
 
 
+WALL = Area("wall", AreaUse.FORBIDDEN, ((2.0, -0.4), (3.0, -0.4), (3.0, 0.4), (2.0, 0.4)))
+
+
 @pytest.mark.parametrize("response", ["RETURN", "EMERGENCY_AREA"])
 def test_it_goes_round_what_is_forbidden_and_comes_up_there(response):
-    wall = Area("wall", AreaUse.FORBIDDEN, ((2.0, -0.4), (3.0, -0.4), (3.0, 0.4), (2.0, 0.4)))
     refuge = Area("bay", AreaUse.EMERGENCY, ((-9.0, -4.0), (-1.0, -4.0), (-1.0, 4.0), (-9.0, 4.0)))
-    with sub(areas=(wall, refuge)) as driven:
+    with sub(areas=(WALL, refuge)) as driven:
         driven.begin("out")
         driven.finish()
         gone = len(driven.vehicle.autopilot.track)
@@ -111,6 +113,21 @@ def test_it_pauses_and_goes_on():
         driven.backend.resume(driven.clock.now())
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
+
+
+def test_it_pauses_on_its_way_round_what_is_forbidden():
+    with sub(areas=(WALL,)) as driven:
+        driven.begin("out")
+        driven.finish()
+        driven.backend.recover((), "out", driven.clock.now())
+        driven.backend.pause(driven.clock.now())
+        until(lambda: driven.backend.paused(driven.clock.now()))
+        here = driven.truth
+        driven.pass_by(10.0)
+        assert driven.truth == pytest.approx(here, abs=0.4)
+        driven.backend.resume(driven.clock.now())
+        driven.finish()
+        assert driven.truth[0] == pytest.approx(0.0, abs=1.5)
 
 
 @pytest.mark.parametrize("response", ["HOLD", "SURFACE"])
