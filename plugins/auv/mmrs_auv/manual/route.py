@@ -27,8 +27,8 @@ class Route:
 
     @property
     def reached(self) -> bool:
-        """Return whether all goals are."""
-        return self._helm.reached and not self._goals
+        """Return whether all goals are, and there is no pause."""
+        return self._helm.reached and not self._goals and self.paused is None
 
     def go(self, goals: Sequence[Goal], now: float) -> None:
         """Have these goals instead of all others."""

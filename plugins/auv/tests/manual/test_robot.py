@@ -110,6 +110,7 @@ def test_it_pauses_and_goes_on():
         here = driven.truth
         driven.pass_by(5.0)
         assert driven.truth == pytest.approx(here, abs=0.3)
+        assert not driven.backend.finished(driven.clock.now())
         driven.backend.resume(driven.clock.now())
         driven.finish()
         assert driven.truth[0] == pytest.approx(6.0, abs=1.5)
