@@ -23,7 +23,7 @@ from mmrs_core.cli.journey import Workshop
 from mmrs_core.cli.observing import Observer
 from mmrs_core.cli.onlookers import Gallery
 from mmrs_core.cli.orders_heard import hear_orders
-from mmrs_core.cli.output import say, tell, unfailing
+from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.wishes import (
     Wishes,
     check_mavlink,
@@ -34,6 +34,7 @@ from mmrs_core.cli.wishes import (
 )
 from mmrs_core.errors import LinkLostError
 from mmrs_core.flight.faults import ORDERED, STOPPED
+from mmrs_core.flight.screen import unfailing
 from mmrs_core.pipeline import backend_for, conditions_for, inputs_of
 from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.live import Venture, run_live

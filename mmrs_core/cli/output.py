@@ -6,8 +6,8 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, redirect_stderr, suppress
-from typing import TYPE_CHECKING, Any, TextIO
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
 from unicodedata import category
 
 import typer
@@ -145,40 +145,7 @@ def _write(stream: TextIO, words: str) -> None:
         stream.flush()
 
 
-@contextmanager
-def unfailing() -> Iterator[None]:
-    """Within it, what standard error cannot take is left out: robots rely on the process, read or not."""
-    stream = sys.stderr
-    with redirect_stderr(_Unfailing(stream)):
-        yield
-    try:
-        stream.flush()
-    except OSError:
-        _close(stream)
-
-
-class _Unfailing:
-    """A stream to people that never fails."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-
-    def write(self, words: str) -> int:
-        try:
-            return self._stream.write(words)
-        except OSError:
-            return len(words)
-
-    def flush(self) -> None:
-        with suppress(OSError):
-            self._stream.flush()
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
 def _close(stream: TextIO) -> None:
-    """Let the stream end in nothing, so that flushing it at the exit does not fail again."""
-    nothing = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nothing, stream.fileno())
-    os.close(nothing)
+    from mmrs_core.flight.screen import let_end_in_nothing
+
+    let_end_in_nothing(stream)

@@ -20,7 +20,7 @@ from .objects import Locator
 from .options import Options, options_of, parser_for
 from .program import Robot
 from .records.log import read
-from .screen import bear_all_characters, say
+from .screen import bear_all_characters, say, unfailing
 from .session import Shared, Vehicles, run_robot
 from .slots import BusSlots, LocalSlots, recorded_of, shared_slots, strangers_of
 from .steps.ending import FAILED, INTERRUPTED, LINK, OK
@@ -55,6 +55,7 @@ def main(
     for fault in judgement.faults(robots):
         parser.error(fault)
     with ExitStack() as stack:
+        stack.enter_context(unfailing())
         stop, abandon = threading.Event(), threading.Event()
         rehearsal = Rehearsal(options.inject, options.clock, say)
         shared = Shared(

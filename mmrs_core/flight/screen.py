@@ -1,14 +1,21 @@
-"""Tells people what goes on."""
+"""Tells people what goes on, and lets nobody wait for them."""
 
 from __future__ import annotations
 
 import io
+import os
+import select
 import sys
 import threading
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr, suppress
+from typing import Any, TextIO
 
-_print_lock = threading.Lock()
+PATIENCE_SECONDS = 0.2
+"""How long nobody may read before something is left out."""
+
+ROOM = 1000
+"""Characters that whatever takes anything takes without a wait."""
 
 
 def bear_all_characters() -> None:
@@ -20,8 +27,73 @@ def bear_all_characters() -> None:
 def say(line: str) -> None:
     """Tell people something, one line at a time."""
     # Nobody may read any more, or the disk that is written to be full: robots fly on all the same.
-    with _print_lock, suppress(OSError, ValueError):
-        print(line, file=sys.stderr, flush=True)
+    with suppress(OSError, ValueError):
+        print(f"{line}\n", end="", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def unfailing() -> Iterator[None]:
+    """Within it, what standard error does not take is left out: robots rely on the process, read or not."""
+    stream = sys.stderr
+    with redirect_stderr(_Unfailing(stream)):
+        yield
+    try:
+        stream.flush()
+    except OSError:
+        let_end_in_nothing(stream)
+
+
+def let_end_in_nothing(stream: TextIO) -> None:
+    """Have a stream be one to nobody, so that flushing it at the exit does not fail again."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, stream.fileno())
+    os.close(nothing)
+
+
+class _Unfailing:
+    """A stream to people that never fails, and never waits for them for long.
+
+    A terminal that is held takes nothing, nor does a pipe whose reader sleeps or a connection that stalls.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._lock = threading.RLock()
+        self._left_out = 0
+
+    def write(self, words: str) -> int:
+        with self._lock:
+            if self._left_out and self._takes(0.0):
+                lines, self._left_out = self._left_out, 0
+                self._put(f"(lines left out here, which nobody took: {lines})\n")
+            for begin in range(0, len(words), ROOM):
+                if not self._takes(0.0 if self._left_out else PATIENCE_SECONDS):
+                    self._left_out += max(1, words.count("\n", begin))
+                    break
+                self._put(words[begin : begin + ROOM])
+        return len(words)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            self._stream.flush()
+
+    def _put(self, words: str) -> None:
+        # A signal's handler that says something while something else is being written is refused.
+        with suppress(OSError, RuntimeError):
+            self._stream.write(words)
+            self._stream.flush()
+
+    def _takes(self, seconds: float) -> bool:
+        """Return whether something can be written without a wait, now or within some seconds."""
+        try:
+            poll = select.poll()
+            poll.register(self._stream.fileno(), select.POLLOUT)
+        except (AttributeError, OSError, ValueError):
+            return True  # it is no file, or this system cannot tell
+        return bool(poll.poll(seconds * 1000.0))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def words_of(robot: str, name: str, content: Mapping[str, str]) -> str:

@@ -27,7 +27,7 @@ Tell = Callable[[str], None]
 
 def tell_people(line: str) -> None:
     """Write a line to standard error."""
-    print(f"bus: {line}", file=sys.stderr, flush=True)
+    print(f"bus: {line}\n", end="", file=sys.stderr, flush=True)
 
 
 class Net:

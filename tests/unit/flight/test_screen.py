@@ -1,0 +1,60 @@
+"""Robots rely on a process whether anybody reads what it says or not."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from contextlib import redirect_stderr
+
+import pytest
+from stalls import Stalls
+
+from mmrs_core.flight.screen import say, unfailing
+
+LINE = "'Alba': LAND"
+MOST = 1 << 20
+
+
+@pytest.fixture
+def full():
+    """Return a pipe that nobody reads and that takes nothing any more, and what writes to it."""
+    reads, writes = os.pipe()
+    os.set_blocking(writes, False)
+    os.write(writes, b" " * MOST)
+    os.set_blocking(writes, True)
+    with os.fdopen(writes, "w", encoding="utf-8") as stream:
+        yield reads, stream
+    os.close(reads)
+
+
+def test_nobody_waits_for_a_reader_that_sleeps(full):
+    reads, stream = full
+    rescue = threading.Timer(8.0, os.read, [reads, MOST])
+    rescue.start()
+    stalls, begun = Stalls(), time.monotonic()
+    with redirect_stderr(stream), unfailing():
+        for _ in range(100):
+            say(LINE)
+    seconds = time.monotonic() - begun
+    rescue.cancel()
+    assert seconds < 3.0 + stalls.seconds
+
+
+def test_a_reader_who_wakes_is_told_how_much_was_left_out(full):
+    reads, stream = full
+    with redirect_stderr(stream), unfailing():
+        for _ in range(3):
+            say(LINE)
+        os.read(reads, MOST)
+        say("'Alba': stopped")
+    assert os.read(reads, MOST) == b"(lines left out here, which nobody took: 3)\n'Alba': stopped\n"
+
+
+def test_long_words_arrive_as_they_are_where_somebody_reads():
+    reads, writes = os.pipe()
+    words = "".join(f"{number}\n" for number in range(5000))
+    with os.fdopen(writes, "w") as stream, redirect_stderr(stream), unfailing():
+        say(words)
+    with os.fdopen(reads) as heard:
+        assert heard.read() == f"{words}\n"
