@@ -50,6 +50,7 @@ Config = Annotated[
 ]
 Run = Annotated[str, typer.Option("--run", metavar="NAME", help="Identifier of the run.")]
 
+_NAME = re.compile(r"(?!-)[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _HOLDER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 
 
@@ -88,8 +89,9 @@ def keys(
         from mmrs_core.cli.bus_certificates import make_keys
     holders = tuple(_holder(text) for text in robots)
     _refuse_doubles(holders)
+    reached = [_host(text) for text in hosts or ("localhost", "127.0.0.1")]
     try:
-        made = make_keys(folder, holders, hosts or ["localhost", "127.0.0.1"], datetime.now(UTC), days)
+        made = make_keys(folder, holders, reached, datetime.now(UTC), days)
     except OSError as error:
         raise UnreadableError(f"{error.filename}: {error.strerror}") from error
     except ValueError as error:
@@ -237,6 +239,19 @@ def _holder(text: str) -> Holder:
             f"--robot {text}: a folder is named so: letters, digits, . _ - only; say NAME=ROBOT for others"
         )
     return Holder(name, tuple(robots.split(",")) if separator else (name,))
+
+
+def _host(text: str) -> str:
+    """Return a name, or an address, also where it is written as in an endpoint: ``[fd00::1]``."""
+    from ipaddress import ip_address
+
+    host = text[1:-1] if text.startswith("[") and text.endswith("]") else text
+    try:
+        return str(ip_address(host))
+    except ValueError as error:
+        if _NAME.fullmatch(host):
+            return host
+        raise typer.BadParameter(f"--host {text}: no name, nor an address, such as 10.0.0.1") from error
 
 
 def _refuse_doubles(holders: tuple[Holder, ...]) -> None:

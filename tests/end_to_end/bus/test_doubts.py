@@ -111,6 +111,12 @@ def test_certificates_that_are_missing_are_told_before_anything_moves(ends):
         ends.open_at("a", Endpoints((), ("tls/127.0.0.1:1",)))
 
 
+def test_an_address_that_would_be_tried_in_vain_by_tls_is_told_before_anything_moves(ends):
+    ends.certify()
+    with pytest.raises(OSError, match=r"tls/\[::1\]:1: IPv6 addresses are not reached by TLS"):
+        ends.open_at("a", Endpoints((), ("tls/[::1]:1",), ends.keys / "a" / "bus.json5"))
+
+
 def test_an_endpoint_that_the_configuration_does_not_allow_is_told_before_anything_moves(ends):
     ends.certify()
     with pytest.raises(OSError, match=r"tcp/127\.0\.0\.1:1: .*bus\.json5 allows tls only"):

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import json
+import socket
 import stat
 import time
 
 import pytest
+from cryptography import x509
 
 from mmrs_core.cli.running import run_command
 from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints, ZenohCarrier
 
 LONG_ENOUGH = 1.5
+
+
+def _has_ipv6():
+    try:
+        socket.create_server(("::1", 0), family=socket.AF_INET6).close()
+    except OSError:
+        return False
+    return True
 
 
 @pytest.fixture
@@ -136,6 +146,39 @@ def test_whoever_has_a_certificate_and_is_not_named_is_not_shut_out_silently(tmp
     assert run_command(["bus", "keys", str(folder), "--robot", "c"], "mmrs") == 3
     assert "'a', 'b' would not be let in any more" in capsys.readouterr().err
     assert (folder / "observer" / "bus.json5").read_bytes() == before
+
+
+def test_keys_are_for_names_and_for_addresses_of_either_kind(tmp_path, capsys):
+    folder = tmp_path / "keys"
+    hosts = [
+        word for each in ("Heron-2.local", "10.0.0.1", "[fd00::1]", "fd00::2") for word in ("--host", each)
+    ]
+    assert run_command(["bus", "keys", str(folder), "--robot", "a", *hosts], "mmrs") == 0
+    made = x509.load_pem_x509_certificate((folder / "a" / "certificate.pem").read_bytes())
+    known = made.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    assert known.get_values_for_type(x509.DNSName) == ["Heron-2.local"]
+    addresses = [str(each) for each in known.get_values_for_type(x509.IPAddress)]
+    assert addresses == ["10.0.0.1", "fd00::1", "fd00::2"]
+
+
+@pytest.mark.parametrize("host", ["10.0.0.1:7447", "tls/10.0.0.1", "a b", "[heron", ""])
+def test_a_host_that_is_none_is_refused(tmp_path, capsys, host):
+    assert run_command(["bus", "keys", str(tmp_path / "keys"), "--robot", "a", "--host", host], "mmrs") == 2
+    assert "no name, nor an address" in capsys.readouterr().err.replace("\n", " ")
+
+
+@pytest.mark.parametrize(("way", "listen"), [("tls", "localhost"), ("tls", "[::]"), ("tcp", "[::1]")])
+def test_peers_meet_by_names_and_by_addresses_of_either_kind(ends, until, way, listen):
+    """By TLS they connect to names only, where those that listen do so by IPv6."""
+    if listen != "localhost" and not _has_ipv6():
+        pytest.skip("this machine has no IPv6")
+    if way == "tls":
+        ends.certify()
+    file = {robot: ends.keys / robot / "bus.json5" if ends.keys else None for robot in ("a", "b")}
+    port, connect = ends.ports["a"], "localhost" if way == "tls" else listen
+    ends.open_at("a", Endpoints((f"{way}/{listen}:{port}",), (), file["a"]))
+    there = ends.open_at("b", Endpoints((), (f"{way}/{connect}:{port}",), file["b"]))
+    until(lambda: not there.missing(["a"]))
 
 
 @pytest.mark.parametrize("name", ["../x", "a/b", "observer", ""])

@@ -51,6 +51,7 @@ _FILES = (
 )
 _SHOWN = ("root_ca_certificate", "connect_certificate", "connect_private_key")
 _SOURCES = re.compile(r" at \S+\.rs:\d+\.?")
+_TLS_TO_IPV6 = re.compile(r"(tls|quic|quic_datagram)/\[")
 RETRY = {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2}
 
 
@@ -293,8 +294,12 @@ def _refuse_ways(endpoints: Endpoints, allowed: Sequence[str] | None) -> None:
     """Refuse endpoints that Zenoh would try in vain, and without a word.
 
     Raises:
-        OSError: one needs certificates and there are none, or the file does not allow it.
+        OSError: one needs certificates and there are none, the file does not allow it, or Zenoh, which takes
+            an IPv6 address for a name, does not reach it by TLS.
     """
+    for each in endpoints.connect:
+        if _TLS_TO_IPV6.match(each):
+            raise OSError(f"{each}: IPv6 addresses are not reached by TLS: say a name that stands for it")
     for each in (*endpoints.listen, *endpoints.connect):
         way = each.partition("/")[0]
         if endpoints.file is None and way in ("tls", "quic"):
