@@ -26,6 +26,7 @@ from errno import EEXIST
 from pathlib import Path
 from typing import Any
 
+from .orders.calling import network
 from .orders.ordering import PATTERN
 from .orders.orders import ANSWER, ORDERS, STATUS, Inbox, Order, Receipt
 
@@ -71,6 +72,8 @@ class Control:
             "token": self._token,
             "pid": os.getpid(),
             "run": run,
+            "machine": socket.gethostname(),
+            "network": network(),
             "robots": list(self._inboxes),
         }
         try:

@@ -7,14 +7,27 @@ import queue
 import socket
 import threading
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 CALL_SECONDS = 5.0
+_BOOT = Path("/proc/sys/kernel/random/boot_id")
 SIGNAL_SECONDS = 0.5
 """How long nothing may be said before an interrupt is heeded that did not end the waiting."""
 
 Request = tuple[int, Mapping[str, Any]]
 """A port of this machine, and what is asked there."""
+
+
+def network() -> str:
+    """Return what tells the network of this process from that of another machine, or container.
+
+    It changes when the machine is started again; where the system does not say, it is the machine's name.
+    """
+    try:
+        return f"{_BOOT.read_text('ascii').strip()} {Path('/proc/self/ns/net').readlink()}"
+    except OSError:
+        return socket.gethostname()
 
 
 class Unreachable(Exception):  # noqa: N818  # reads as what it says of the robots

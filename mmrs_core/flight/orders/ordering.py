@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..screen import bear_all_characters
-from .calling import Unreachable, asked_at_once
+from .calling import Unreachable, asked_at_once, network
 from .orders import ANSWER, ORDERS, STATUS
 from .standing import lines_of
 
@@ -22,11 +22,16 @@ WORDS = {"yes": True, "no": False}
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """Where a process listens: its port, its token, and the robots that it runs."""
+    """Where a process listens: its port, its token, and the robots that it runs.
+
+    Attributes:
+        elsewhere: the name of the machine where it was started, if that was in another network than this.
+    """
 
     port: int
     token: str
     robots: tuple[str, ...]
+    elsewhere: str = ""
 
 
 def channels(folder: Path) -> tuple[Channel, ...]:
@@ -99,7 +104,7 @@ def _replies(
     failed: dict[int, Exception] = {}
     for number, said in asked_at_once(requests, seconds):
         if isinstance(said, Exception):
-            failed[number] = said
+            failed[number] = _far(asked[number].elsewhere) if asked[number].elsewhere else said
         else:
             heard.add(said["robot"])
             yield said
@@ -110,6 +115,12 @@ def _replies(
     silent = {robot: str(why) for channel, why in lost for robot in channel.robots if robot not in heard}
     for robot, why in silent.items():
         yield _silent(robot, str(content["order"]), why)
+
+
+def _far(machine: str) -> Unreachable:
+    return Unreachable(
+        f"was started on {machine!r} and takes orders there only; from here nobody can tell if it runs"
+    )
 
 
 def _raise_for(lost: Sequence[tuple[Channel, Exception]]) -> None:
@@ -193,7 +204,9 @@ def _parser() -> argparse.ArgumentParser:
 def _read(path: Path) -> Iterator[Channel]:
     try:
         facts = json.loads(path.read_text("ascii"))
-        yield Channel(int(facts["port"]), str(facts["token"]), tuple(map(str, facts["robots"])))
+        here = network()
+        elsewhere = "" if facts.get("network", here) == here else str(facts["machine"])
+        yield Channel(int(facts["port"]), str(facts["token"]), tuple(map(str, facts["robots"])), elsewhere)
     except (OSError, ValueError, KeyError, TypeError):
         # It is being written, or taken away, right now; what was meant to be there will be in a moment.
         return

@@ -22,9 +22,6 @@ CAUSE_SECONDS = 1.5
 RESTART_SECONDS = 4.0
 """For how long it is looked for when the vehicle may have started anew, until it tells since when it runs."""
 
-FIRST_MODE = 0
-"""The mode that ArduPilot starts in unless it is told otherwise."""
-
 Cause = tuple[str, str]
 """An event, and the reason to believe that it is there."""
 
@@ -120,7 +117,7 @@ class Departures:
 
     def _await_cause(self, mode: int) -> Cause | None:
         signs, link = self._signs, self._link
-        if not self._vehicle.telemetry.armed() or mode == FIRST_MODE:
+        if not self._vehicle.telemetry.armed() or mode == modes.FIRST_MODE:
             # One that has started anew has lost its position, too: that is no cause.
             anew = link.wait(lambda: signs.restarted, self._clock.patience(RESTART_SECONDS))
             return (VEHICLE_RESTARTED, STARTED_ANEW) if anew else None

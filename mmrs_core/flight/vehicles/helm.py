@@ -42,6 +42,7 @@ class Helm:
     since: it is only late, or a copy of it was.
 
     Attributes:
+        alone: modes into which the vehicle goes by itself, as it was told once, beside those of failsafes.
         explains: finds out what a vehicle has gone elsewhere for while it was told a mode.
         insists: whether the vehicle is to be told again what it has left by itself while it was told.
     """
@@ -59,6 +60,7 @@ class Helm:
         self._requests = Requests(link)
         self._asked_again = -inf
         self._arming = False
+        self.alone: frozenset[int] = frozenset()
         self.explains: Callable[[Fault], Fault] = lambda left: left
         self.insists: Callable[[Fault], bool] = lambda fault: False
 
@@ -90,8 +92,7 @@ class Helm:
             Fault: it goes into a third one, or out of the wanted one again: somebody has taken over.
         """
         wanted, left = self._modes[mode], self._mode or self.mode()
-        if self._strays():
-            self._explain(left)
+        self._heed(left)
         known = self._accepted or frozenset({self._telemetry.mode()})
         self._mode, self._accepted = None, known | {wanted.number}
         for _ in range(MODE_TRIES):
@@ -103,8 +104,7 @@ class Helm:
                 self._link.clock.patience(MODE_SECONDS),
                 heard=True,
             )
-            if self._strays():
-                self._explain(left)
+            self._heed(left)
             if self._telemetry.mode() == wanted.number:
                 self._requests.is_back()
                 if before != wanted.number:
@@ -140,18 +140,30 @@ class Helm:
         Raises:
             Fault: the vehicle has left the mode; TAKEN_OVER, or what it has answered by itself.
         """
-        number = self._telemetry.mode()
+        number, mode = self._telemetry.mode(), self._mode or "take-off"
+        if (glimpse := self._glimpse()) not in (None, number):
+            raise self._overtaken(glimpse, mode)
         if not self._accepted or number in self._accepted:
             self._requests.is_back()
         elif not self._strays():
             self._ask_again(number)
         elif self._link.since("HEARTBEAT") < self._link.clock.patience(3.0):
-            raise self._left(number, self._mode or "take-off")
+            raise self._left(number, mode)
 
     def _strays(self) -> bool:
         """Return whether the vehicle is in a mode that nobody here has told it."""
         number = self._telemetry.mode()
         return bool(self._accepted) and number not in self._accepted and not self._requests.own(number)
+
+    def _glimpse(self) -> int | None:
+        """Return a mode that nobody but a pilot chooses, if one was shown since this was asked last.
+
+        What was told the vehicle at that moment may have put it into another since.
+        """
+        known = self._accepted | self.alone
+        shown = [number for number in self._requests.shown() if number not in known]
+        pilots = (number for number in shown if modes.is_pilots(self._link, self._kind, number))
+        return next(pilots, None) if self._accepted else None
 
     def _ask_again(self, number: int) -> None:
         """Ask once more for the mode, where an earlier request of the program, being late, was heeded.
@@ -171,6 +183,27 @@ class Helm:
     def _begin(self, mode: str) -> None:
         if mode == modes.GUIDED:
             self.habits.begin_guiding()
+
+    def _heed(self, before: str) -> None:
+        """Make sure that nobody else has taken over while the vehicle is told to leave a mode.
+
+        Raises:
+            Fault: somebody has, or what the vehicle has answered by itself is to be answered.
+        """
+        glimpse = self._glimpse()
+        if self._strays():
+            self._explain(before)
+        elif glimpse is not None:
+            raise self.explains(self._overtaken(glimpse, before))
+
+    def _overtaken(self, number: int, mode: str) -> Fault:
+        """Return that a pilot had chosen a mode before the vehicle heard what it was told."""
+        self.habits.end_guiding()
+        return Fault(
+            TAKEN_OVER,
+            f"the vehicle left mode {mode} for {modes.word_of(self._link, self._kind, number)}: somebody else"
+            f" has taken over; what it was told at that moment has put it into mode {self.mode()}",
+        )
 
     def _explain(self, before: str) -> None:
         """Accept the mode that a vehicle has left another for by itself, where it is to be told again.

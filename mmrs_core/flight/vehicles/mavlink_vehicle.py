@@ -139,6 +139,7 @@ class MavlinkVehicle:
         alone = modes.alone(self._link, self._kind, told)
         # Until it confirms, it may do the one or the other.
         self._alone |= alone
+        self._helm.alone |= alone
         otherwise = preparation.answer_lost_link(self._link, self._kind, response, after)
         self._alone = alone
         if otherwise:

@@ -106,6 +106,21 @@ def of_failsafes(link: Link, kind: str) -> frozenset[int]:
     return FAILSAFES[kind]
 
 
+FIRST_MODE = 0
+"""The mode that ArduPilot starts in unless it is told otherwise."""
+
+PX4_OWN = (4, 6)
+"""Main modes of a PX4 that flies by itself, or as a program says."""
+
+
+def is_pilots(link: Link, kind: str, number: int) -> bool:
+    """Return whether nobody but a pilot puts a vehicle into the mode of a number."""
+    if is_px4(link):
+        return number >> 16 & 0xFF not in PX4_OWN
+    own = {mode.number for mode in modes_of(link, kind).values()}
+    return number not in own | FAILSAFES[kind] | {FIRST_MODE}
+
+
 ANSWERS: Mapping[str, Mapping[str, frozenset[int]]] = {
     "copter": {
         POSITION_LOST: frozenset({9}),

@@ -1,7 +1,11 @@
-"""Modes that the program itself has asked for lately: no pilot has chosen them, however late they come."""
+"""Modes that the program itself has asked for lately: no pilot has chosen them, however late they come.
+
+And all that the vehicle has shown since somebody looked: a pilot's may last no longer than a request takes.
+"""
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -12,6 +16,9 @@ from . import modes
 
 SHOWN_SECONDS = 5.0
 """In which a vehicle shows a mode after it has heard of it, its next heartbeats being lost."""
+
+
+MOST_SHOWN = 16
 
 
 @dataclass(slots=True)
@@ -36,13 +43,22 @@ class Requests:
         self._link = link
         self._of: dict[int, Request] = {}
         self._late: tuple[int, float] | None = None
+        self._shown: deque[int] = deque(maxlen=MOST_SHOWN)
         link.observe(self)
 
     def __call__(self, message: Message, outgoing: bool) -> None:
-        """Remember that a mode is asked for now."""
+        """Remember that a mode is asked for now, or shown."""
+        if not outgoing and message.get_type() == "HEARTBEAT":
+            if message.get_srcComponent() == self._link.component:
+                self._shown.append(int(message.custom_mode))
+            return
         command = message.command if outgoing and message.get_type() == "COMMAND_LONG" else None
         if command == mavlink.MAV_CMD_DO_SET_MODE:
             self._of[_number_in(self._link, message)] = Request(self._link.clock.now())
+
+    def shown(self) -> tuple[int, ...]:
+        """Return the modes that heartbeats have shown since this was asked last."""
+        return tuple(self._shown.popleft() for _ in range(len(self._shown)))
 
     def shows(self, number: int) -> None:
         """Know that the vehicle has gone into the mode that was asked for last."""

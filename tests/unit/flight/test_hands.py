@@ -132,6 +132,30 @@ def test_a_vehicle_that_a_pilot_takes_is_told_nothing_any_more(tmp_path, kind, s
     fly_until_a_pilot_comes(tmp_path, kind, seed)
 
 
+@pytest.mark.parametrize(("kind", "stick"), [("copter", "loiter"), ("sub", "alt_hold"), ("rover", "loiter")])
+def test_a_pilot_is_noticed_whom_a_mode_that_was_on_its_way_has_overtaken(tmp_path, kind, stick):
+    """Both heartbeats come while the program stands still, so that it sees the second mode only."""
+    with still(tmp_path, robot_of(kind), Air(delay=0.2)) as made:
+        world, vehicle = made.world, made.world.vehicle
+
+        def order() -> None:
+            made.order("hold", world.clock.time)
+            world.at(world.clock.time + 0.1, take)
+
+        def take() -> None:
+            world.ours = world.clock.time + 0.8
+            vehicle.faults.take_stick(stick)
+            world.at(world.clock.time + 40.0, vehicle.autopilot.disarm)
+
+        world.at(20.0, lambda: when_it_moves(world, order))
+        made.fly()
+        modes = [mode for _, mode in vehicle.autopilot.modes]
+        after = modes[modes.index(vehicle.autopilot.numbers[stick]) + 1 :]
+        assert after
+        assert vehicle.autopilot.numbers[stick] not in [mode for _, mode in world.shown]
+        assert made.says("taken over"), made.said
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.thorough
 def test_what_is_late_is_no_pilots_and_a_pilot_is_left_alone(tmp_path, kind):
