@@ -119,7 +119,8 @@ def _replies(
 
 def _far(machine: str) -> Unreachable:
     return Unreachable(
-        f"was started on {machine!r} and takes orders there only; from here nobody can tell if it runs"
+        f"was started on {machine!r}, in another network than this or before a restart, and takes orders only"
+        " there: nobody can tell here if it runs"
     )
 
 

@@ -17,7 +17,7 @@ from signals_elsewhere import broken_off
 from stalls import Stalls
 
 from mmrs_core.flight.control import Control, Taken
-from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable, asked_at_once
+from mmrs_core.flight.orders.calling import CALL_SECONDS, Unreachable, asked_at_once, network
 from mmrs_core.flight.orders.ordering import give, main
 from mmrs_core.flight.orders.orders import Inbox, Order
 from mmrs_core.flight.questions import Questions
@@ -194,10 +194,10 @@ def test_processes_that_share_a_folder_are_all_heard(tmp_path, opened, inboxes, 
     assert {reply["robot"] for reply in give(tmp_path, "hold")} == {"alpha", "beta"}
 
 
-def left_by_a_killed_process(folder, robots, name="control-1.json"):
+def left_by_a_killed_process(folder, robots, name="control-1.json", **where):
     """Announce a process that is not there any more."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        facts = {"port": server.getsockname()[1], "token": "old", "robots": robots}
+        facts = {"port": server.getsockname()[1], "token": "old", "robots": robots, **where}
     (folder / name).write_text(json.dumps(facts), "ascii")
 
 
@@ -246,6 +246,20 @@ def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_onc
     robots(*inboxes.values())
     left_by_a_killed_process(tmp_path, ["alpha"])
     assert [reply["confirmed"] for reply in give(tmp_path, "hold", ["alpha"])] == [True]
+
+
+def test_of_a_process_on_another_machine_nobody_says_that_it_has_ended(tmp_path):
+    left_by_a_killed_process(tmp_path, ["alpha"], machine="heron", network="of heron")
+    with pytest.raises(
+        Unreachable, match="'alpha': was started on 'heron', in another network.*can tell here if it runs"
+    ):
+        list(give(tmp_path, "hold"))
+
+
+def test_a_channel_says_where_it_is(tmp_path, opened, inboxes):
+    opened(inboxes)
+    facts = json.loads((tmp_path / "control.json").read_text())
+    assert (facts["machine"], facts["network"]) == (socket.gethostname(), network())
 
 
 def test_where_all_processes_were_killed_nobody_can_be_reached(tmp_path):
