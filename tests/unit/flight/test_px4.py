@@ -30,6 +30,9 @@ def here(height: float = 20.0):
     return mavlink.MAVLink_global_position_int_message(0, *place, 0, 0, 0, 9000)
 
 
+LEAST_POINTS = 3
+
+
 class Autopilot:
     """Grants modes as a PX4 does: OFFBOARD only while set-points come."""
 
@@ -48,7 +51,7 @@ class Autopilot:
             return
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
             number = modes.px4_number(int(message.param2), int(message.param3))
-            if number == OFFBOARD and len(self.points) < 3:
+            if number == OFFBOARD and len(self.points) < LEAST_POINTS:
                 yield acknowledged(message.command, mavlink.MAV_RESULT_DENIED)
                 return
             self.mode = number
@@ -89,7 +92,7 @@ def test_set_points_come_before_offboard_is_asked_for_and_go_on(px4):
     helm.enter(modes.GUIDED)
     assert telemetry.mode() == OFFBOARD
     before = len(autopilot.points)
-    assert before >= 10
+    assert before >= LEAST_POINTS
     eventually(lambda: len(autopilot.points) > before + 10)
 
 

