@@ -140,9 +140,7 @@ class Berth:
 
     def _hub(self, port: int) -> str:
         words = [sys.executable, "-m", "mmrs_core", "can", "hub", "--simulated-time", "--port", str(port)]
-        hub = self._processes["hub"] = subprocess.Popen(
-            words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
+        hub = self._processes["hub"] = _begun(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         assert hub.stdout is not None
         line = hub.stdout.readline()
         if not line.startswith("hub at "):
@@ -153,7 +151,16 @@ class Berth:
     def _start(self, part: str, *more: str) -> None:
         words = [sys.executable, "-m", "mmrs_auv.vessel", part, "--sheet", str(self._file)]
         words += ["--channel", self.channel, "--clock", "bus", *more]
-        self._processes[part] = subprocess.Popen(words, stdin=subprocess.PIPE, text=True)
+        self._processes[part] = _begun(words)
+
+
+def _begun(
+    words: Sequence[str], stdout: int | None = None, stderr: int | None = None
+) -> subprocess.Popen[str]:
+    """Return a process that hears no interrupt of the terminal, for its end comes after that of others."""
+    return subprocess.Popen(
+        words, stdin=subprocess.PIPE, stdout=stdout, stderr=stderr, text=True, start_new_session=True
+    )
 
 
 def keep(

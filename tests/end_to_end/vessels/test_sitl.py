@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import queue
+import signal
 import subprocess
 import sys
 import threading
 from contextlib import closing
 from pathlib import Path
 
+import pytest
 from mmrs_auv.commands.modelled import sheets_in
 from mmrs_auv.vessel.wire.ports import open_port
 from ports import free_port
@@ -24,7 +27,7 @@ class Sitl:
         words = [sys.executable, "-m", "mmrs_core", "auv", "sitl", str(POOL), "--port", str(port)]
         self.process = subprocess.Popen(
             [*words, "--speedup", "5"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True, bufsize=1,
+            text=True, bufsize=1, start_new_session=True,
         )  # fmt: skip
         self.lines: list[str] = []
         self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -41,6 +44,13 @@ class Sitl:
         """End it as people do; return its exit code."""
         assert self.process.stdin is not None
         self.process.stdin.write("quit\n")
+        code = self.process.wait(30)
+        self._reader.join(30)
+        return code
+
+    def interrupt(self) -> int:
+        """End it as a terminal does, which tells all processes that began in it; return its exit code."""
+        os.killpg(self.process.pid, signal.SIGINT)
         code = self.process.wait(30)
         self._reader.join(30)
         return code
@@ -88,6 +98,14 @@ def test_what_is_typed_happens():
             assert until(lambda: any(said.name == "Pressure" for _, said in ear.heard[cut:]), 20)
         assert sitl.quit() == 0
         assert [line for line in sitl.lines if "incomplete message" in line or "bus is gone" in line] == []
+
+
+@pytest.mark.thorough
+def test_an_interrupt_ends_all_of_it_in_order():
+    with closing(Sitl(free_port())) as sitl:
+        assert "Naiad=" in sitl.first_line()
+        assert sitl.interrupt() == 130
+        assert sitl.lines == []
 
 
 def drives(ear: Ear) -> set[object]:

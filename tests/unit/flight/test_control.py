@@ -251,7 +251,7 @@ def test_a_robot_that_was_started_again_after_its_process_was_killed_is_told_onc
 def test_of_a_process_on_another_machine_nobody_says_that_it_has_ended(tmp_path):
     left_by_a_killed_process(tmp_path, ["alpha"], machine="heron", network="of heron")
     with pytest.raises(
-        Unreachable, match="'alpha': was started on 'heron', in another network.*can tell here if it runs"
+        Unreachable, match=r"'alpha': was started on 'heron', in another network.*can tell here if it runs"
     ):
         list(give(tmp_path, "hold"))
 

@@ -16,6 +16,7 @@ import typer
 from typer.main import get_command
 
 from mmrs_core.behaviour.log import SUFFIX, log_name
+from mmrs_core.cli.interruption import INTERRUPTED
 from mmrs_core.cli.output import say, tell
 from mmrs_core.cli.typed import typed_lines
 from mmrs_core.errors import UnreadableError
@@ -87,10 +88,12 @@ def sitl(
     sheets = sheets_in(path)
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in _ending():
             stack.callback(signal.signal, number, signal.signal(number, stop))
         berths = {}
         for count, (robot, sheet) in enumerate(sheets.items()):
+            if stopped:
+                return INTERRUPTED
             berths[robot] = stack.enter_context(
                 Berth(
                     sheet,
@@ -107,7 +110,15 @@ def sitl(
         words += ["--speedup", f"{speedup:g}"] if speedup != 1.0 else []
         say(" ".join(map(quote, words)))
         keep(berths, time.monotonic() + (seconds or inf), stopped, typed_lines(), tell)
-    return 0
+    return INTERRUPTED if stopped else 0
+
+
+def _ending() -> list[signal.Signals]:
+    """Return the signals that end it; a terminal that closes does, unless it was to be ignored."""
+    heeded = [signal.SIGINT, signal.SIGTERM]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        heeded.append(signal.SIGHUP)
+    return heeded
 
 
 @app.command("sheet")
