@@ -19,6 +19,9 @@ from .water import POOL, Water
 WAIT, AGAIN = 0.01, 1.0
 """Seconds between two looks for new pictures, and without any until the memory is opened anew."""
 
+SIGNAL_SECONDS = 0.5
+"""How long a wait lasts at most before a signal is heeded that came just before it, and did not end it."""
+
 PATIENCE = 3.0
 """Seconds that something may be amiss before it is said."""
 
@@ -71,7 +74,7 @@ def handle(
     )
     adjusted = {name: Adjusted(camera) for name, camera in cameras.items()}
     begin, taken = time.monotonic(), 0
-    while not stop.wait(max(0.0, begin + taken / rate - time.monotonic())):
+    while not _ended(stop, begin + taken / rate):
         pose, now = where(), clock()
         lost.note(pose is None)
         for name, source in sources.items():
@@ -81,6 +84,14 @@ def handle(
                 return
             writers[name].write(now, pose, *adjusted[name].pair(*pictures), adjusted[name].gain)
         taken = max(taken + 1, int((time.monotonic() - begin) * rate))
+
+
+def _ended(stop: threading.Event, until: float) -> bool:
+    """Return, when a time has come, whether it is to end; at once if it is."""
+    while (left := until - time.monotonic()) > 0.0:
+        if stop.wait(min(left, SIGNAL_SECONDS)):
+            return True
+    return stop.is_set()
 
 
 def watch(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from pathlib import Path
 
 import cv2
@@ -16,6 +18,8 @@ from mmrs_auv.vision.cameras import Pose, cameras_of
 from mmrs_auv.vision.detecting import sought_in, unseen
 from mmrs_auv.vision.processes import Notice
 from mmrs_auv.vision.sources import Adjusted, Captured, SourceError
+from signals_elsewhere import signalled
+from stalls import Stalls
 
 FRONT, BOTTOM = cameras_of(pool_sheet())
 HERE = Pose(0.0, 0.0, 1.0)
@@ -146,3 +150,10 @@ def test_what_is_amiss_for_long_is_said_once_and_so_is_its_end(
     for is_amiss in (True, True, True, False, False):
         notice.note(is_amiss)
     assert capsys.readouterr().err == "amiss\nmended\n"
+
+
+def test_a_signal_ends_the_taking_of_pictures_that_are_far_apart() -> None:
+    stop, stalls, begun = threading.Event(), Stalls(), time.monotonic()
+    with signalled(stop.set, rescue=stop.set):
+        processes.handle({}, {}, {}, lambda: HERE, time.time, stop, rate=0.01)
+    assert time.monotonic() - begun < 3.0 + stalls.seconds
