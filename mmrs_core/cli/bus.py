@@ -130,6 +130,7 @@ def gateway(
     """
     from mmrs_core.cli.behaviours import load_program
     from mmrs_core.cli.journey import Workshop
+    from mmrs_core.flight.screen import unfailing
 
     with _needing("eclipse-zenoh"):
         from mmrs_core.flight.bus.carriers.over_zenoh import Endpoints
@@ -142,8 +143,9 @@ def gateway(
         found = _gateway(program, robot, endpoints, run, log, port)
     except OSError as error:
         raise LinkLostError(f"gateway: {error.strerror or error}") from error
-    tell(f"gateway of '{robot}' at 127.0.0.1:{found.port}; its token stands in {log / 'gateway.json'}")
-    _until_interrupted(found)
+    with unfailing():
+        tell(f"gateway of '{robot}' at 127.0.0.1:{found.port}; its token stands in {log / 'gateway.json'}")
+        _until_interrupted(found)
     return 0
 
 

@@ -8,24 +8,19 @@ import time
 from contextlib import redirect_stderr
 
 import pytest
+from full_pipes import MOST, full_pipe
 from stalls import Stalls
 
 from mmrs_core.flight.screen import say, unfailing
 
 LINE = "'Alba': LAND"
-MOST = 1 << 20
 
 
 @pytest.fixture
 def full():
     """Return a pipe that nobody reads and that takes nothing any more, and what writes to it."""
-    reads, writes = os.pipe()
-    os.set_blocking(writes, False)
-    os.write(writes, b" " * MOST)
-    os.set_blocking(writes, True)
-    with os.fdopen(writes, "w", encoding="utf-8") as stream:
-        yield reads, stream
-    os.close(reads)
+    with full_pipe() as pipe:
+        yield pipe
 
 
 def test_nobody_waits_for_a_reader_that_sleeps(full):

@@ -9,6 +9,7 @@ import time
 from contextlib import suppress
 
 import pytest
+from full_pipes import full_pipe
 from gateway_client import RunningGateway
 from waiting_pair import waiting_pair
 
@@ -31,11 +32,11 @@ def behaviour(tmp_path_factory):
 
 @pytest.fixture
 def gateway(behaviour, ends, tmp_path):
-    """Return a gateway for 'a' that runs."""
+    """Return a gateway for 'a' that runs, and of which nobody reads what it says."""
     command = [sys.executable, "-m", "mmrs_core", "bus", "gateway", str(behaviour), "--robot", "a"]
     command += ["--log", str(tmp_path / "logs"), "--listen", f"tcp/127.0.0.1:{ends.ports['a']}"]
     file = tmp_path / "logs" / "gateway.json"
-    with subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
+    with full_pipe() as (_, unread), subprocess.Popen(command, stderr=unread) as process:
         until = time.monotonic() + 20
         while not file.exists():
             assert process.poll() is None and time.monotonic() < until  # noqa: PT018
