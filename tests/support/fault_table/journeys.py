@@ -27,7 +27,7 @@ AROUND = 2.0
 
 
 def _reached(fleet: Fleet, robot: str, moment: str) -> bool:
-    return wait_for(lambda: MOMENTS[moment](fleet.vehicles[robot].autopilot), 30.0)
+    return wait_for(lambda: MOMENTS[moment](fleet.vehicles[robot]), 30.0)
 
 
 def _visited(vehicle: SimulatedVehicle) -> list[str]:

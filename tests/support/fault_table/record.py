@@ -35,29 +35,46 @@ GUIDED = 4
 SPEED = 178
 """The command for a speed, which is told again behind the first targets of a leg."""
 
-Moment = Callable[[Autopilot], bool]
+Moment = Callable[[SimulatedVehicle], bool]
 
 
 def _near(place: tuple[float, float, float]) -> Moment:
-    return lambda pilot: pilot.armed and pilot.body.distance_to(place) < 1.0 and pilot.body.pace < STILL
+    return _when(
+        lambda pilot: pilot.armed and pilot.body.distance_to(place) < 1.0 and pilot.body.pace < STILL
+    )
+
+
+def _when(holds: Callable[[Autopilot], bool]) -> Moment:
+    return lambda vehicle: holds(vehicle.autopilot)
+
+
+def _being_set_up(vehicle: SimulatedVehicle) -> bool:
+    """Return whether somebody has told a vehicle on the ground something, as who has heard it does."""
+    return bool(vehicle.received) and not (vehicle.autopilot.armed or vehicle.autopilot.track)
 
 
 MOMENTS: Mapping[str, Moment] = {
-    "on the ground": lambda pilot: not (pilot.armed or pilot.track) and bool(pilot.history),
-    "climbing": lambda pilot: pilot.armed and 3.0 < pilot.body.position[2] < 8.0,
-    "on a leg (GUIDED)": lambda pilot: (
-        pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0
+    "on the ground": _being_set_up,
+    "climbing": _when(lambda pilot: pilot.armed and 3.0 < pilot.body.position[2] < 8.0),
+    "on a leg (GUIDED)": _when(
+        lambda pilot: pilot.armed and pilot.mode == 4 and 8.0 < pilot.body.position[0] < 22.0
     ),
     "at its place": _near(OUT),
-    "landing at home": lambda pilot: (
-        pilot.mode == 9 and 3.0 < pilot.body.position[2] < 9.0 and hypot(*pilot.body.position[:2]) < NEAR_HOME
+    "landing at home": _when(
+        lambda pilot: (
+            pilot.mode == 9
+            and 3.0 < pilot.body.position[2] < 9.0
+            and hypot(*pilot.body.position[:2]) < NEAR_HOME
+        )
     ),
     "waiting": _near(OUT),
-    "on a mission (AUTO)": lambda pilot: pilot.mode == 3 and pilot.body.distance_to(TOUR[1]) < 6.0,
-    "charging": lambda pilot: (
-        not pilot.armed
-        and any(number == 22 for _, number, _ in pilot.history)
-        and pilot.body.position[2] < 0.1
+    "on a mission (AUTO)": _when(lambda pilot: pilot.mode == 3 and pilot.body.distance_to(TOUR[1]) < 6.0),
+    "charging": _when(
+        lambda pilot: (
+            not pilot.armed
+            and any(number == 22 for _, number, _ in pilot.history)
+            and pilot.body.position[2] < 0.1
+        )
     ),
 }
 

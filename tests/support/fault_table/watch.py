@@ -49,7 +49,7 @@ class Watch:
     def ready(self) -> bool:
         """Return whether the vehicle is where the row wants it to be struck, and so is the one that is."""
         there = MOMENTS[self._row.during]
-        return there(self._vehicle.autopilot) and there(self._victim.autopilot)
+        return there(self._vehicle) and there(self._victim)
 
     def strike(self) -> None:
         """Make it happen."""
