@@ -36,8 +36,9 @@ from fault_table.rows import ROWS
 from fault_table.trial import batches, fly
 
 HEAD = ("fault", "declared", "execution", "what the vehicle did", "answered", "at rest", "log", "as declared")
-JOBS = 3
-"""Flights at once: ten robots and their vehicles take up to three quarters of a core at a speed-up of ten."""
+JOBS = 2
+"""Flights at once: ten robots and their vehicles take up to three quarters of a core at a speed-up of ten,
+those of all orders more, and two cores then answer up to a second late."""
 
 ALONE = "orders in real time"
 """The flight with nothing beside: 43 robots in one process, which must confirm within a real second."""
