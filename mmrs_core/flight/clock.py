@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import time
 
+SIGNAL_SECONDS = 0.5
+"""Real seconds that a main thread waits at most before it heeds a signal that did not end its wait.
+
+One that comes just before a thread waits, or to another thread, does not.
+"""
+
 
 class Clock:
     """Seconds of the run."""

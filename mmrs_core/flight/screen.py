@@ -78,10 +78,14 @@ class _Unfailing:
             self._stream.flush()
 
     def _put(self, words: str) -> None:
-        # A signal's handler that says something while something else is being written is refused.
-        with suppress(OSError, RuntimeError):
+        try:
             self._stream.write(words)
             self._stream.flush()
+        except RuntimeError:
+            # A signal's handler that says something while something else is being written is refused.
+            self._left_out += max(1, words.count("\n"))
+        except OSError:
+            return  # nobody will ever read it
 
     def _takes(self, seconds: float) -> bool:
         """Return whether something can be written without a wait, now or within some seconds."""

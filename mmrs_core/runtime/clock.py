@@ -7,11 +7,7 @@ from contextlib import suppress
 from math import inf
 from queue import Empty, SimpleQueue
 
-SIGNAL_SECONDS = 0.5
-"""How long a sleeper sleeps at most before it heeds a signal that did not end its sleep.
-
-One that comes just before a thread waits, or to another thread, does not.
-"""
+from mmrs_core.flight.clock import SIGNAL_SECONDS
 
 
 class SimulatedClock:

@@ -17,9 +17,10 @@ from mmrs_core.contributions.backends import Backend, BackendFactory, BackendInp
 from mmrs_core.contributions.buses import Bus
 from mmrs_core.contributions.execution import Condition
 from mmrs_core.errors import LinkLostError
+from mmrs_core.flight.clock import SIGNAL_SECONDS
 from mmrs_core.flight.faults import ORDERED, STOPPED
 from mmrs_core.runtime.attention import Attention
-from mmrs_core.runtime.clock import SIGNAL_SECONDS, RealClock
+from mmrs_core.runtime.clock import RealClock
 from mmrs_core.runtime.interpreter import PACE, interpret
 from mmrs_core.runtime.orders import ANSWER, ENDINGS, HOLD, RESUME, STOP, Order, Orders
 from mmrs_core.runtime.resuming import over_by

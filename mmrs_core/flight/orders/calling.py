@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..clock import SIGNAL_SECONDS
+
 CALL_SECONDS = 5.0
 _BOOT = Path("/proc/sys/kernel/random/boot_id")
-SIGNAL_SECONDS = 0.5
-"""How long nothing may be said before an interrupt is heeded that did not end the waiting."""
 
 Request = tuple[int, Mapping[str, Any]]
 """A port of this machine, and what is asked there."""

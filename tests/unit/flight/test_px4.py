@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from contextlib import contextmanager
 from itertools import pairwise
 from math import isnan, radians
 
@@ -30,9 +31,6 @@ def here(height: float = 20.0):
     return mavlink.MAVLink_global_position_int_message(0, *place, 0, 0, 0, 9000)
 
 
-LEAST_POINTS = 3
-
-
 class Autopilot:
     """Grants modes as a PX4 does: OFFBOARD only while set-points come."""
 
@@ -51,7 +49,7 @@ class Autopilot:
             return
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
             number = modes.px4_number(int(message.param2), int(message.param3))
-            if number == OFFBOARD and len(self.points) < LEAST_POINTS:
+            if number == OFFBOARD and len(self.points) < 3:
                 yield acknowledged(message.command, mavlink.MAV_RESULT_DENIED)
                 return
             self.mode = number
@@ -61,8 +59,14 @@ class Autopilot:
 
 @pytest.fixture
 def px4():
-    """Return a helm, its telemetry, and the PX4 that it steers, in the air."""
-    with linked(autopilot=PX4, speedup=10.0) as (link, wire):
+    """Return a helm, its telemetry, and the PX4 that it steers, in the air, at ten times real time."""
+    with steered(10.0) as found:
+        yield found
+
+
+@contextmanager
+def steered(speedup: float):
+    with linked(autopilot=PX4, speedup=speedup) as (link, wire):
         wire.answer = autopilot = Autopilot(wire)
         telemetry = Telemetry(link, HOME)
         wire.say(here())
@@ -87,13 +91,13 @@ def test_the_heartbeat_says_which_habits_count(px4):
         assert isinstance(Helm(link, Telemetry(link, HOME), "copter").habits, ArduPilot)
 
 
-def test_set_points_come_before_offboard_is_asked_for_and_go_on(px4):
-    helm, telemetry, autopilot = px4
-    helm.enter(modes.GUIDED)
-    assert telemetry.mode() == OFFBOARD
-    before = len(autopilot.points)
-    assert before >= LEAST_POINTS
-    eventually(lambda: len(autopilot.points) > before + 10)
+def test_set_points_come_before_offboard_is_asked_for_and_go_on():
+    with steered(1.0) as (helm, telemetry, autopilot):
+        helm.enter(modes.GUIDED)
+        assert telemetry.mode() == OFFBOARD
+        before = len(autopilot.points)
+        assert before >= 10
+        eventually(lambda: len(autopilot.points) > before + 10)
 
 
 def test_set_points_begin_where_the_vehicle_is_above_sea_level(px4):

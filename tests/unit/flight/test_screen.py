@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import threading
 import time
@@ -44,6 +45,26 @@ def test_a_reader_who_wakes_is_told_how_much_was_left_out(full):
         os.read(reads, MOST)
         say("'Alba': stopped")
     assert os.read(reads, MOST) == b"(lines left out here, which nobody took: 3)\n'Alba': stopped\n"
+
+
+class Busy(io.StringIO):
+    """Refuses the first words, as a stream does in the middle of whose writing a signal is heeded."""
+
+    refuses = True
+
+    def write(self, words: str) -> int:
+        if self.refuses:
+            self.refuses = False
+            raise RuntimeError("reentrant call")
+        return super().write(words)
+
+
+def test_words_that_were_refused_are_counted_as_left_out():
+    stream = Busy()
+    with redirect_stderr(stream), unfailing():
+        say("stopping")
+        say("stopped")
+    assert stream.getvalue() == "(lines left out here, which nobody took: 1)\nstopped\n"
 
 
 def test_long_words_arrive_as_they_are_where_somebody_reads():

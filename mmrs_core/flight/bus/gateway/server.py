@@ -18,6 +18,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
+from ...clock import SIGNAL_SECONDS
 from ..node import Node
 from ..owners.members import Recorded
 from ..reading import Unreadable, number_in, object_in, text_in
@@ -32,12 +33,6 @@ HELLO_SECONDS = 5.0
 
 SORE_SECONDS = 0.2
 MOST_WAITING = 512
-
-SIGNAL_SECONDS = 0.5
-"""How long nobody may come before this process looks whether a signal has.
-
-One that comes just before a thread waits for a connection does not end the waiting.
-"""
 
 LONGEST_SILENCE = 3600
 
